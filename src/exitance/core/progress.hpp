@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <string_view>
+
+namespace exitance {
+
+/// Where long work says how far it is, and asks whether to go on. One object serves one run; the terminal derives its
+/// own. Calls come from the thread that drives a phase, never from inside parallel loops.
+class Progress {
+  public:
+    virtual ~Progress() = default;
+
+    /// A phase begins ("link", "solve", ...).
+    virtual void phase(std::string_view /*name*/) {}
+    /// `fraction` of the present phase is done, in [0, 1]; `detail` is a few words such as "residual 3e-4".
+    virtual void advance(double /*fraction*/, std::string_view /*detail*/ = {}) {}
+    /// A finding the user should see, once.
+    virtual void warn(std::string_view /*message*/) {}
+};
+
+/// Asked at safe points: has a signal or a time limit asked the work to stop? Safe to ask from any thread.
+class StopRequest {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    void interrupt() { interrupted_.store(true, std::memory_order_relaxed); }  ///< Async-signal-safe.
+    void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
+
+    bool interrupted() const { return interrupted_.load(std::memory_order_relaxed); }
+    bool out_of_time() const { return Clock::now() >= deadline_; }
+    bool requested() const { return interrupted() || out_of_time(); }
+
+  private:
+    std::atomic<bool> interrupted_{false};
+    Clock::time_point deadline_ = Clock::time_point::max();
+};
+
+/// Seconds since it was made or last restarted.
+class Stopwatch {
+  public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    double restart() {
+        const double elapsed = seconds();
+        start_ = std::chrono::steady_clock::now();
+        return elapsed;
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace exitance

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/core/ids.hpp"
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+using ElementId = Id<struct ElementTag>;  ///< A node of an ElementTree.
+
+/// The affine image of a reference shape: p(u, v) = origin + u a + v b, with (u, v) in the unit square for a
+/// parallelogram and in {u, v >= 0, u + v <= 1} for a triangle. Its front is where a x b points. Metres.
+struct Patch {
+    enum class Shape : std::uint8_t { parallelogram, triangle };
+
+    Point origin;
+    Vec3 a, b;
+    Shape shape = Shape::parallelogram;
+
+    bool is_triangle() const { return shape == Shape::triangle; }
+    Point at(double u, double v) const { return origin + u * a + v * b; }
+    Point at(Vec2 uv) const { return at(uv.x, uv.y); }
+    double area() const { return norm(cross(a, b)) * (is_triangle() ? 0.5 : 1.0); }  ///< m^2
+    Normal normal() const { return normalized(cross(a, b)); }
+    Point centre() const { return is_triangle() ? at(1.0 / 3, 1.0 / 3) : at(0.5, 0.5); }
+
+    int corner_count() const { return is_triangle() ? 3 : 4; }
+    /// Corner i, counter-clockwise: (0,0), (1,0), then (1,1), (0,1) or for a triangle (0,1).
+    Point corner(int i) const { return at(corner_uv(i)); }
+    Vec2 corner_uv(int i) const;
+
+    /// The coordinates (u, v) of the foot of p in the patch's plane.
+    Vec2 coordinates(const Point& p) const;
+};
+
+/// How a patch is cut: across its u direction, across v, or both. A triangle has one way: four, at its edges' midpoints.
+enum class Cut : std::uint8_t { none, u, v, both };
+
+/// The pieces of a patch, in a fixed order; `ratio` in (0, 1) is where a cut across one direction stands.
+std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
+
+/// Elements from whole pieces of a region (roots) to leaves, in one growing pool. Children lie side by side and after
+/// their parent. Hence one forward sweep pushes light down, one backward sweep pulls it up, and neither recurses.
+/// Ids survive growth; spans and references do not.
+class ElementTree {
+  public:
+    ElementId add_root(RegionId region, const Patch& shape);
+    /// Cuts a leaf; returns the first child.
+    ElementId split(ElementId leaf, Cut way, double ratio = 0.5);
+
+    std::size_t size() const { return patch_.size(); }
+    IdRange<ElementId> ids() const { return patch_.ids(); }  ///< Parents before children.
+    const std::vector<ElementId>& roots() const { return roots_; }
+    IdRange<ElementId> children(ElementId e) const { return children_[e]; }  ///< Empty for a leaf.
+    bool is_leaf(ElementId e) const { return children_[e].empty(); }
+    ElementId parent(ElementId e) const { return parent_[e]; }  ///< None for a root.
+    RegionId region(ElementId e) const { return region_[e]; }
+    const Patch& patch(ElementId e) const { return patch_[e]; }
+    double area(ElementId e) const { return area_[e]; }  ///< m^2
+    std::vector<ElementId> leaves() const;               ///< In order of their ids.
+
+    /// The leaf below `e` that holds the point (u, v) of `e`, and the point's coordinates there, pushed into the leaf.
+    struct Place {
+        ElementId element;
+        Vec2 uv;
+    };
+    Place leaf_at(ElementId e, Vec2 uv) const;
+
+    std::size_t memory_bytes() const;
+
+  private:
+    Field<ElementId, Patch> patch_;
+    Field<ElementId, IdRange<ElementId>> children_;
+    Field<ElementId, ElementId> parent_;
+    Field<ElementId, RegionId> region_;
+    Field<ElementId, double> area_;
+    std::vector<ElementId> roots_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,17 @@
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+Spectrum ElementFunction::at(ElementTree::Place place) const {
+    const auto [u, v] = place.uv;
+    const bool triangle = tree.patch(place.element).is_triangle();
+    const double weight[4] = {triangle ? 1 - u - v : (1 - u) * (1 - v), triangle ? u : u * (1 - v),
+                              triangle ? v : u * v, triangle ? 0 : (1 - u) * v};
+    const std::size_t first = first_value[place.element];
+    Spectrum sum;
+    for (std::size_t i = 0; i < (triangle ? 3u : 4u); ++i)
+        for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[i] * static_cast<double>(values[first + i][b]);
+    return sum;
+}
+
+}  // namespace exitance

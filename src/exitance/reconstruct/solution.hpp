@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "exitance/mesh/element_tree.hpp"
+
+namespace exitance {
+
+/// Irradiance as one polynomial a leaf: linear on triangles, bilinear on parallelograms, given by its values at the
+/// leaf's corners (Patch::corner). Values of neighbours need not agree: edges may be sharp. W/m^2.
+struct ElementFunction {
+    ElementTree tree;
+    Field<ElementId, std::uint32_t> first_value;  ///< A leaf's first corner in `values`; of inner elements: unused.
+    std::vector<std::array<float, bands>> values;
+
+    /// The value at (u, v) of a leaf.
+    Spectrum at(ElementTree::Place place) const;
+};
+
+/// Emitted flux, what became of it, and how far the two are apart, W (or lm), summed over the bands.
+struct EnergyBalance {
+    double emitted = 0;   ///< int M dA
+    double absorbed = 0;  ///< int (1 - rho) E dA
+    double defect = 0;    ///< |emitted - absorbed| / emitted; meaningful in closed scenes, where nothing is lost.
+};
+
+/// What a solve took and what it reached: the keys of `solve --json` and `stats --json`, in their order.
+struct SolveStatistics {
+    std::string method, basis, schedule;
+    int threads = 1;
+    std::size_t surfaces = 0, elements = 0, leaf_elements = 0, links = 0;
+    std::size_t rays = 0, form_factors = 0, iterations = 0;
+    bool converged = false;       ///< The error asked for was reached, or none was asked for.
+    double residual = 0;          ///< Of the discrete system, relative to its right-hand side.
+    double relative_error_estimate = 0;              ///< Of what `probe` evaluates.
+    double relative_error_bound = 0;                 ///< The same, as an upper bound.
+    double relative_error_estimate_interpolant = 0;  ///< Of what `export` writes.
+    EnergyBalance energy;
+    std::map<std::string, double> seconds;  ///< total, read, mesh, link, solve, certify, reconstruct, write
+    std::size_t peak_memory_bytes = 0, link_memory_bytes = 0;
+    std::vector<std::string> warnings;
+    std::string stopped_by;  ///< Empty, or "time limit", "memory limit", "iterations", "interrupt".
+};
+
+/// Light everywhere: B(x) = M + rho (E_dir(x) + E_ind(x)). E_dir is evaluated exactly from the scene when asked for,
+/// E_ind is `indirect`; `interpolant` stands for both together in files that hold plain elements.
+struct Solution {
+    Scene scene;
+    ElementFunction indirect;     ///< E_ind: what arrives after at least one reflection.
+    ElementFunction interpolant;  ///< E_dir + E_ind on elements split until they hold three times the error asked for.
+    SolveStatistics statistics;
+    std::string options;  ///< The options in force, as JSON.
+    /// 'all' bounces, or direct light alone: then `indirect` is zero and without elements below the roots.
+    int bounces = -1;
+};
+
+}  // namespace exitance

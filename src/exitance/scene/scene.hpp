@@ -1,0 +1,123 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exitance/core/ids.hpp"
+#include "exitance/core/result.hpp"
+#include "exitance/core/spectrum.hpp"
+#include "exitance/geometry/polygon.hpp"
+
+namespace exitance {
+
+using SurfaceId = Id<struct SurfaceTag>;    ///< One face of the input.
+using MaterialId = Id<struct MaterialTag>;  ///< One material of the input.
+using GroupId = Id<struct GroupTag>;        ///< One named object of the input.
+using RegionId = Id<struct RegionTag>;      ///< Coplanar faces of one material joined along edges.
+
+/// How a surface reflects and emits, both diffusely.
+struct Material {
+    std::string name;
+    Spectrum reflectance;  ///< Share of the arriving flux that leaves again, in [0, 1).
+    Spectrum exitance;     ///< Emitted flux per area, W/m^2 (or lm/m^2).
+
+    bool emits() const { return max(exitance) > 0; }
+};
+
+/// Emitted radiance L_e (W/(m^2 sr)) as exitance M = pi L_e (W/m^2). The one place where radiance becomes exitance.
+inline Spectrum exitance_of_radiance(const Spectrum& radiance) { return pi * radiance; }
+
+/// One planar face of the input: one-sided, its corners counter-clockwise seen from the front.
+struct Surface {
+    std::uint32_t first_corner = 0;
+    std::uint32_t corner_count = 0;
+    MaterialId material;
+    GroupId group;
+    RegionId region;
+    int line = 0;  ///< Where it stands in the scene file, 0 when it does not come from a file.
+    Normal normal;
+    double area = 0;  ///< m^2
+};
+
+/// Coplanar, edge-sharing faces of one material: for light they are one polygon, however finely it was cut.
+struct Region {
+    MaterialId material;
+    Plane plane;
+    double area = 0;  ///< m^2
+    std::vector<SurfaceId> surfaces;
+    /// Border loops, T-vertices and collinear corners removed: outer loops counter-clockwise seen from the front, holes
+    /// clockwise. Metres.
+    std::vector<std::vector<Point>> loops;
+};
+
+/// What was found out about an input, for people: `exitance check` prints these.
+struct Finding {
+    enum class Kind { error, warning, repair };
+    Kind kind = Kind::error;
+    std::string file;
+    int line = 0;
+    std::string message;  ///< One sentence holding the offending values, and for a repair what was done.
+    std::string hint;     ///< What to do next, or empty.
+};
+
+/// Polygons as a file gives them, not yet looked at.
+struct SceneDescription {
+    struct Face {
+        std::vector<std::uint32_t> corners;  ///< Indices into `points`.
+        std::uint32_t material = 0;          ///< Index into `materials`.
+        std::uint32_t group = 0;             ///< Index into `groups`.
+        int line = 0;
+    };
+    std::string file;
+    std::vector<Point> points;
+    std::vector<Material> materials;
+    std::vector<std::string> groups;
+    std::vector<Face> faces;
+};
+
+/// Polygons with materials, checked and joined to regions. Immutable once made.
+class Scene {
+  public:
+    const std::string& file() const { return file_; }
+    const Field<SurfaceId, Surface>& surfaces() const { return surfaces_; }
+    const Field<MaterialId, Material>& materials() const { return materials_; }
+    const Field<GroupId, std::string>& groups() const { return groups_; }
+    const Field<RegionId, Region>& regions() const { return regions_; }
+
+    /// Corners of a face, counter-clockwise seen from its front, metres; planar, without repeated corners.
+    std::span<const Point> outline(SurfaceId s) const {
+        return std::span(corners_).subspan(surfaces_[s].first_corner, surfaces_[s].corner_count);
+    }
+    const Material& material(SurfaceId s) const { return materials_[surfaces_[s].material]; }
+    const Material& material(RegionId r) const { return materials_[regions_[r].material]; }
+
+    const Box& box() const { return box_; }
+    double size() const { return box_.diagonal(); }  ///< Diagonal of its box, metres.
+
+    /// Faces that emit, in the order of their ids.
+    const std::vector<SurfaceId>& emitters() const { return emitters_; }
+
+  private:
+    friend class SceneBuilder;
+    std::string file_;
+    Field<SurfaceId, Surface> surfaces_;
+    Field<MaterialId, Material> materials_;
+    Field<GroupId, std::string> groups_;
+    Field<RegionId, Region> regions_;
+    std::vector<Point> corners_;
+    std::vector<SurfaceId> emitters_;
+    Box box_;
+};
+
+/// A scene, unless a finding is an error, and everything that was found on the way.
+struct CheckedScene {
+    Result<Scene> scene;
+    std::vector<Finding> findings;  ///< Errors first, then in the order of the file.
+};
+
+/// Checks every face and material, repairs what has a safe repair (and says so), joins coplanar neighbours to regions.
+/// A scene without faces, or with any error, is not made. O(n log n).
+CheckedScene make_scene(SceneDescription description);
+
+}  // namespace exitance
