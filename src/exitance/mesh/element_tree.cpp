@@ -1,9 +1,8 @@
 #include "exitance/mesh/element_tree.hpp"
 
-namespace exitance {
-namespace {
+#include <utility>
 
-/// Where a point of the pushed-in reference shape lies at most outside by rounding: moved onto the shape.
+namespace exitance {
 Vec2 into_shape(Vec2 uv, Patch::Shape shape) {
     uv = {std::clamp(uv.x, 0.0, 1.0), std::clamp(uv.y, 0.0, 1.0)};
     if (shape == Patch::Shape::triangle && uv.x + uv.y > 1) {
@@ -11,6 +10,23 @@ Vec2 into_shape(Vec2 uv, Patch::Shape shape) {
         uv = {uv.x / sum, uv.y / sum};
     }
     return uv;
+}
+
+namespace {
+
+/// Which piece of cut() holds (u, v), and the coordinates there.
+std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut way, double ratio) {
+    const auto [u, v] = uv;
+    if (shape == Patch::Shape::triangle) {
+        if (u >= 0.5) return {1, {2 * u - 1, 2 * v}};
+        if (v >= 0.5) return {2, {2 * u, 2 * v - 1}};
+        if (u + v <= 0.5) return {0, {2 * u, 2 * v}};
+        return {3, {1 - 2 * u, 1 - 2 * v}};
+    }
+    const auto half = [](double t, double r) { return t < r ? t / r : (t - r) / (1 - r); };
+    if (way == Cut::u) return {u < ratio ? 0 : 1, {half(u, ratio), v}};
+    if (way == Cut::v) return {v < ratio ? 0 : 1, {u, half(v, ratio)}};
+    return {(u < 0.5 ? 0u : 1u) + (v < 0.5 ? 0u : 2u), {half(u, 0.5), half(v, 0.5)}};
 }
 
 }  // namespace
@@ -52,6 +68,8 @@ ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
     parent_.add(ElementId());
     region_.add(region);
     area_.add(shape.area());
+    way_.add(Cut::none);
+    ratio_.add(0.5);
     roots_.push_back(e);
     return e;
 }
@@ -66,7 +84,11 @@ ElementId ElementTree::split(ElementId leaf, Cut way, double ratio) {
         parent_.add(leaf);
         region_.add(RegionId(region_[leaf]));
         area_.add(piece.area());
+        way_.add(Cut::none);
+        ratio_.add(0.5);
     }
+    way_[leaf] = patch_[leaf].is_triangle() ? Cut::both : way;
+    ratio_[leaf] = ratio;
     children_[leaf] = {first, patch_.size()};
     return ElementId(first);
 }
@@ -79,26 +101,18 @@ std::vector<ElementId> ElementTree::leaves() const {
 }
 
 ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
-    Point p = patch_[e].at(uv);
+    const Patch::Shape shape = patch_[e].shape;
+    uv = into_shape(uv, shape);
     while (!is_leaf(e)) {
-        // The child that holds the point, or by rounding comes nearest to holding it.
-        ElementId best = children_[e].front();
-        double depth = -HUGE_VAL;
-        for (ElementId child : children_[e]) {
-            const Vec2 c = patch_[child].coordinates(p);
-            const double inside = patch_[child].is_triangle()
-                                      ? std::min({c.x, c.y, 1 - c.x - c.y})
-                                      : std::min({c.x, c.y, 1 - c.x, 1 - c.y});
-            if (inside > depth) depth = inside, best = child;
-            if (inside >= 0) break;
-        }
-        e = best;
+        const auto [child, inside] = descend(uv, shape, way_[e], ratio_[e]);
+        e = children_[e][child];
+        uv = inside;
     }
-    return {e, into_shape(patch_[e].coordinates(p), patch_[e].shape)};
+    return {e, into_shape(uv, shape)};
 }
 
 std::size_t ElementTree::memory_bytes() const {
-    return patch_.size() * (sizeof(Patch) + sizeof(IdRange<ElementId>) + 2 * sizeof(ElementId) + sizeof(double));
+    return patch_.size() * (sizeof(Patch) + sizeof(IdRange<ElementId>) + 2 * sizeof(ElementId) + 2 * sizeof(double) + sizeof(Cut));
 }
 
 }  // namespace exitance

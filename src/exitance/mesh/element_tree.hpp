@@ -39,6 +39,9 @@ struct Patch {
 /// How a patch is cut: across its u direction, across v, or both. A triangle has one way: four, at its edges' midpoints.
 enum class Cut : std::uint8_t { none, u, v, both };
 
+/// Coordinates that rounding left at most a little outside the reference shape, moved onto it.
+Vec2 into_shape(Vec2 uv, Patch::Shape shape);
+
 /// The pieces of a patch, in a fixed order; `ratio` in (0, 1) is where a cut across one direction stands.
 std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
 
@@ -56,6 +59,8 @@ class ElementTree {
     const std::vector<ElementId>& roots() const { return roots_; }
     IdRange<ElementId> children(ElementId e) const { return children_[e]; }  ///< Empty for a leaf.
     bool is_leaf(ElementId e) const { return children_[e].empty(); }
+    Cut way(ElementId e) const { return way_[e]; }       ///< How an element was cut; none for a leaf.
+    double ratio(ElementId e) const { return ratio_[e]; }  ///< Where; meaningful for cuts across one direction.
     ElementId parent(ElementId e) const { return parent_[e]; }  ///< None for a root.
     RegionId region(ElementId e) const { return region_[e]; }
     const Patch& patch(ElementId e) const { return patch_[e]; }
@@ -63,6 +68,7 @@ class ElementTree {
     std::vector<ElementId> leaves() const;               ///< In order of their ids.
 
     /// The leaf below `e` that holds the point (u, v) of `e`, and the point's coordinates there, pushed into the leaf.
+    /// O(depth).
     struct Place {
         ElementId element;
         Vec2 uv;
@@ -77,6 +83,8 @@ class ElementTree {
     Field<ElementId, ElementId> parent_;
     Field<ElementId, RegionId> region_;
     Field<ElementId, double> area_;
+    Field<ElementId, Cut> way_;
+    Field<ElementId, double> ratio_;
     std::vector<ElementId> roots_;
 };
 
