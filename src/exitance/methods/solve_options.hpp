@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace exitance {
+
+enum class Method { automatic, matrix, progressive, substructuring, monte_carlo };
+enum class BasisKind { constant, linear };
+enum class Relaxation { jacobi, gauss_seidel, cg, gmres, southwell };
+enum class VisibilityKind { automatic, fractional, exact };
+enum class FormFactorKind { analytic, ray_cast };
+
+/// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
+inline constexpr std::array<std::pair<Method, std::string_view>, 5> method_names{{
+    {Method::automatic, "auto"},
+    {Method::matrix, "matrix"},
+    {Method::progressive, "progressive"},
+    {Method::substructuring, "substructuring"},
+    {Method::monte_carlo, "monte-carlo"},
+}};
+inline constexpr std::array<std::pair<BasisKind, std::string_view>, 2> basis_names{{
+    {BasisKind::constant, "constant"},
+    {BasisKind::linear, "linear"},
+}};
+inline constexpr std::array<std::pair<Relaxation, std::string_view>, 5> relaxation_names{{
+    {Relaxation::jacobi, "jacobi"},
+    {Relaxation::gauss_seidel, "gauss-seidel"},
+    {Relaxation::cg, "cg"},
+    {Relaxation::gmres, "gmres"},
+    {Relaxation::southwell, "southwell"},
+}};
+inline constexpr std::array<std::pair<VisibilityKind, std::string_view>, 3> visibility_names{{
+    {VisibilityKind::automatic, "auto"},
+    {VisibilityKind::fractional, "fractional"},
+    {VisibilityKind::exact, "exact"},
+}};
+inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 2> form_factor_names{{
+    {FormFactorKind::analytic, "analytic"},
+    {FormFactorKind::ray_cast, "ray-cast"},
+}};
+
+/// The name of a choice in its table.
+template <class Choice, std::size_t N>
+constexpr std::string_view name_in(const std::array<std::pair<Choice, std::string_view>, N>& table, Choice choice) {
+    for (const auto& [value, name] : table)
+        if (value == choice) return name;
+    return {};
+}
+
+inline constexpr int all_bounces = -1;
+inline constexpr double default_error = 0.02;  ///< Relative RMS error, of radiosity.
+
+/// What a solve is asked for. An empty optional leaves the choice to the method, which derives it from the error asked
+/// for; a knob that is set by hand is used as it stands and lifts the default demand.
+struct SolveOptions {
+    Method method = Method::automatic;
+    std::optional<BasisKind> basis;
+    int bounces = all_bounces;  ///< 0: direct light alone; n: at most n reflections; all_bounces: until convergence.
+
+    std::optional<double> error;  ///< Relative RMS error of what `probe` evaluates; empty: see error_demand().
+
+    std::optional<double> mesh_size;            ///< Longest edge of an element, metres.
+    std::optional<double> residual;             ///< Of the discrete system, relative to its right-hand side.
+    std::optional<std::size_t> max_iterations;  ///< Sweeps, Krylov steps or shots.
+    std::optional<double> min_area;             ///< No element is cut to pieces smaller than this, m^2.
+    std::optional<Relaxation> relaxation;
+    bool overshooting = false;  ///< Shooting sends more than the unshot light, expecting what returns.
+
+    VisibilityKind visibility = VisibilityKind::automatic;
+    std::optional<std::size_t> visibility_samples;  ///< Rays a pair of elements.
+    std::optional<FormFactorKind> form_factors;
+
+    int threads = 0;  ///< 0: all cores. Results do not depend on it.
+    std::uint64_t seed = 1;
+    std::optional<std::size_t> memory_limit_bytes;  ///< Of the whole process.
+
+    /// Has any of the knobs been set that the error asked for would otherwise decide?
+    bool has_knobs() const { return mesh_size || residual || max_iterations || min_area || visibility_samples; }
+    /// The error to be reached: as asked for; `default_error` when nothing was said; none when knobs were set by hand.
+    std::optional<double> error_demand() const {
+        if (error) return error;
+        return has_knobs() ? std::nullopt : std::optional(default_error);
+    }
+    /// The error that knobs left open are derived from.
+    double error_target() const { return error.value_or(default_error); }
+};
+
+}  // namespace exitance
