@@ -24,8 +24,8 @@ std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut way, doubl
         return {3, {1 - 2 * u, 1 - 2 * v}};
     }
     const auto half = [](double t, double r) { return t < r ? t / r : (t - r) / (1 - r); };
-    if (way == Cut::u) return {u < ratio ? 0 : 1, {half(u, ratio), v}};
-    if (way == Cut::v) return {v < ratio ? 0 : 1, {u, half(v, ratio)}};
+    if (way == Cut::u) return {u < ratio ? 0u : 1u, {half(u, ratio), v}};
+    if (way == Cut::v) return {v < ratio ? 0u : 1u, {u, half(v, ratio)}};
     return {(u < 0.5 ? 0u : 1u) + (v < 0.5 ? 0u : 2u), {half(u, 0.5), half(v, 0.5)}};
 }
 
