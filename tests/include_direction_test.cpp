@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace exitance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folders in the order in which they may include: each includes itself and those before it.
+const std::vector<std::string> order{"core",  "geometry",    "scene",   "mesh", "basis", "transport",
+                                     "solve", "reconstruct", "methods", "io",   "cli"};
+
+/// The files that may include a third-party library, by the first folder or the name of its headers.
+struct Door {
+    std::string library;
+    std::regex header;
+    std::set<std::string> files;
+};
+const std::vector<Door> doors{
+    {"Embree", std::regex("embree3?/.*"), {"transport/embree_visibility.cpp"}},
+    {"CGAL", std::regex("CGAL/.*"), {"mesh/planar_subdivision.cpp"}},
+    {"oneTBB", std::regex("(tbb|oneapi)/.*"), {"core/parallel.cpp"}},
+    {"HDF5", std::regex("hdf5.*|H5.*"), {"io/hdf5_file.cpp"}},
+    {"libpng", std::regex("png\\.h"), {"io/png.cpp"}},
+    {"CLI11", std::regex("CLI/.*"), {"cli/arguments.cpp"}},
+    {"nlohmann-json", std::regex("nlohmann/.*"), {"cli/json_output.cpp", "io/json.cpp"}},
+};
+
+struct Include {
+    std::string file;  ///< Below src/exitance.
+    int line;
+    std::string header;
+    std::string place() const { return file + ":" + std::to_string(line) + ": " + header; }
+};
+
+std::vector<Include> read_includes(const fs::path& root, const fs::path& path) {
+    static const std::regex pattern(R"re(^\s*#\s*include\s*["<]([^">]+)[">])re");
+    std::vector<Include> found;
+    std::ifstream in(path);
+    std::string line;
+    std::smatch match;
+    for (int number = 1; std::getline(in, line); ++number)
+        if (std::regex_search(line, match, pattern)) found.push_back({fs::relative(path, root), number, match[1]});
+    return found;
+}
+
+/// Every #include of the library and the program; unit tests are free in what they include.
+const std::vector<Include>& all_includes() {
+    static const std::vector<Include> includes = [] {
+        const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+        std::vector<Include> all;
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
+            const std::string name = entry.path().filename();
+            const bool is_code = name.ends_with(".cpp") || name.ends_with(".hpp");
+            if (!is_code || name.ends_with("_test.cpp")) continue;
+            for (Include& include : read_includes(root, entry.path())) all.push_back(std::move(include));
+        }
+        return all;
+    }();
+    return includes;
+}
+
+std::optional<std::size_t> rank(const std::string& folder) {
+    const auto at = std::find(order.begin(), order.end(), folder);
+    if (at == order.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - order.begin());
+}
+
+std::string first_folder(const std::string& path) {
+    return path.substr(0, path.find('/'));
+}
+
+}  // namespace
+
+TEST(Includes, FoldersIncludeOnlyThoseBeforeThem) {
+    const std::string own = "exitance/";
+    for (const Include& include : all_includes()) {
+        const std::optional<std::size_t> from = rank(first_folder(include.file));
+        ASSERT_TRUE(from) << include.file << " stands in a folder without a place in the order";
+        if (!include.header.starts_with(own)) continue;
+        const std::optional<std::size_t> to = rank(first_folder(include.header.substr(own.size())));
+        ASSERT_TRUE(to) << include.place();
+        EXPECT_LE(*to, *from) << include.place() << ": an arrow pointing back";
+    }
+}
+
+TEST(Includes, EveryLibraryHasOneDoor) {
+    for (const Include& include : all_includes())
+        for (const Door& door : doors)
+            if (std::regex_match(include.header, door.header)) {
+                EXPECT_TRUE(door.files.contains(include.file))
+                    << include.place() << ": " << door.library << "'s door is " << *door.files.begin();
+            }
+}
+
+TEST(Includes, HeadersArePlain) {
+    const std::regex third_party("(embree3?|CGAL|tbb|oneapi|CLI|nlohmann|fmt|Eigen)/.*|hdf5.*|H5.*|png\\.h");
+    for (const Include& include : all_includes()) {
+        if (include.file.ends_with(".hpp")) {
+            EXPECT_FALSE(std::regex_match(include.header, third_party)) << include.place();
+        }
+    }
+}
+
+TEST(Includes, EveryHeaderIsGuardedAndEveryFileIsRead) {
+    const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+    std::size_t headers = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
+        if (entry.path().extension() != ".hpp") continue;
+        std::ifstream in(entry.path());
+        std::string line;
+        while (std::getline(in, line) && (line.empty() || line.starts_with("//"))) {
+        }
+        EXPECT_EQ(line, "#pragma once") << entry.path();
+        ++headers;
+    }
+    EXPECT_GT(headers, 5u);
+    EXPECT_GT(all_includes().size(), headers);
+}
+
+}  // namespace exitance
