@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that building, testing and benchmarking need. Does nothing when all are there.
+set -euo pipefail
+
+packages=(
+    g++ cmake ninja-build ccache                                             # to build
+    libembree-dev libtbb-dev libcgal-dev libeigen3-dev libhdf5-dev libpng-dev  # the library
+    libfmt-dev libcli11-dev nlohmann-json3-dev                               # the program
+    libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers
+    libbenchmark-dev                                                         # the benchmarks
+)
+
+missing=()
+for package in "${packages[@]}"; do
+    [[ $(dpkg-query --show --showformat '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+    if ! command -v sudo >/dev/null; then
+        echo "error: these packages are missing and neither root nor sudo is at hand: ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+
+echo "Installing ${missing[*]}"
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
