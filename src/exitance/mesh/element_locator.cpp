@@ -1,0 +1,115 @@
+#include "exitance/mesh/element_locator.hpp"
+
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t few_roots = 8;
+
+/// The root among some that holds a point, or else the one nearest by.
+struct Nearest {
+    ElementId root;
+    Vec2 uv;
+    double distance = HUGE_VAL;  ///< Squared, m^2.
+
+    void look_at(const ElementTree& tree, std::span<const ElementId> roots, const Point& p) {
+        for (ElementId e : roots) {
+            const Patch& patch = tree.patch(e);
+            const Vec2 at = patch.coordinates(p), held = into_shape(at, patch.shape);
+            const Vec2 out = at - held;
+            const double d = squared_norm(out.x * patch.a + out.y * patch.b);
+            if (d < distance) *this = {e, held, d};
+            if (distance == 0) return;
+        }
+    }
+};
+
+/// Cell of a coordinate along an axis of `count` cells; what lies outside goes to the cell at the end.
+std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count) {
+    const double i = (x - origin) * scale;
+    return i > 0 ? static_cast<std::uint32_t>(std::min(i, static_cast<double>(count - 1))) : 0;  // NaN goes to 0
+}
+
+}  // namespace
+
+std::uint32_t ElementLocator::Grid::column(double x) const { return cell_of(x, s0, s_scale, columns); }
+std::uint32_t ElementLocator::Grid::row(double y) const { return cell_of(y, t0, t_scale, rows); }
+
+ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count)
+    : tree_(&tree), first_root_(region_count + 1, 0), roots_(tree.roots().size()), grid_of_(region_count, -1) {
+    for (ElementId e : tree.roots()) {
+        EXI_CHECK(tree.region(e).value < region_count);
+        ++first_root_[tree.region(e).value + 1];
+    }
+    for (std::size_t r = 0; r < region_count; ++r) first_root_[r + 1] += first_root_[r];
+    std::vector<std::uint32_t> next(first_root_.begin(), first_root_.end() - 1);
+    for (ElementId e : tree.roots()) roots_[next[tree.region(e).value]++] = e;
+    for (std::size_t r = 0; r < region_count; ++r) {
+        const std::span<const ElementId> mine = roots(RegionId(r));
+        if (mine.size() <= few_roots) continue;
+        grid_of_[r] = static_cast<std::int32_t>(grids_.size());
+        grids_.push_back(make_grid(mine));
+    }
+}
+
+ElementLocator::Grid ElementLocator::make_grid(std::span<const ElementId> roots) const {
+    Grid grid;
+    const Vec3 n = cross(tree_->patch(roots[0]).a, tree_->patch(roots[0]).b);
+    const Vec3 size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+    const std::uint8_t drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    grid.s = (drop + 1) % 3, grid.t = (drop + 2) % 3;
+
+    const auto box_of = [&](ElementId e) {
+        Box box;
+        for (int i = 0; i < tree_->patch(e).corner_count(); ++i) box.add(tree_->patch(e).corner(i));
+        return box;
+    };
+    Box all;
+    for (ElementId e : roots) all.add(box_of(e));
+    // About one cell a root, as square as the region allows.
+    const double width = all.size()[grid.s], height = all.size()[grid.t], count = static_cast<double>(roots.size());
+    const double side = std::sqrt(width * height / count);
+    const auto cells = [&](double length) {
+        return static_cast<std::uint32_t>(side > 0 ? std::clamp(std::ceil(length / side), 1.0, 4 * count) : 1);
+    };
+    grid.columns = cells(width), grid.rows = cells(height);
+    if (static_cast<double>(grid.columns) * grid.rows > 8 * count) grid.columns = grid.rows = 1;
+    grid.s0 = all.lo[grid.s], grid.t0 = all.lo[grid.t];
+    grid.s_scale = width > 0 ? grid.columns / width : 0, grid.t_scale = height > 0 ? grid.rows / height : 0;
+
+    // Counted, then filled. Boxes grow a little, so that points on borders find the roots of both sides.
+    const double margin = 1e-9 * all.diagonal();
+    const auto for_cells = [&](ElementId e, const auto& body) {
+        const Box box = box_of(e);
+        const std::uint32_t c0 = grid.column(box.lo[grid.s] - margin), c1 = grid.column(box.hi[grid.s] + margin);
+        const std::uint32_t r0 = grid.row(box.lo[grid.t] - margin), r1 = grid.row(box.hi[grid.t] + margin);
+        for (std::uint32_t r = r0; r <= r1; ++r)
+            for (std::uint32_t c = c0; c <= c1; ++c) body(r * grid.columns + c);
+    };
+    grid.first.assign(static_cast<std::size_t>(grid.columns) * grid.rows + 1, 0);
+    for (ElementId e : roots) for_cells(e, [&](std::uint32_t i) { ++grid.first[i + 1]; });
+    for (std::size_t i = 1; i < grid.first.size(); ++i) grid.first[i] += grid.first[i - 1];
+    grid.roots.resize(grid.first.back());
+    std::vector<std::uint32_t> next(grid.first.begin(), grid.first.end() - 1);
+    for (ElementId e : roots) for_cells(e, [&](std::uint32_t i) { grid.roots[next[i]++] = e; });
+    return grid;
+}
+
+ElementTree::Place ElementLocator::find(RegionId region, const Point& p) const {
+    Nearest nearest;
+    const std::int32_t g = grid_of_[region.value];
+    if (g >= 0) {
+        const Grid& grid = grids_[static_cast<std::size_t>(g)];
+        nearest.look_at(*tree_, grid.cell(grid.row(p[grid.t]) * grid.columns + grid.column(p[grid.s])), p);
+        const double margin = 1e-9 * (1 / std::max(grid.s_scale, 1e-300) + 1 / std::max(grid.t_scale, 1e-300));
+        // Outside the roots of its cell by more than rounding: rare, and then every root may be the nearest.
+        if (!(nearest.distance <= margin * margin)) nearest.look_at(*tree_, roots(region), p);
+    } else {
+        nearest.look_at(*tree_, roots(region), p);
+    }
+    if (nearest.root.is_none()) return {ElementId(), {}};
+    return tree_->leaf_at(nearest.root, nearest.uv);
+}
+
+}  // namespace exitance
