@@ -1,0 +1,96 @@
+#include "exitance/transport/occluders.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "exitance/geometry/polygon.hpp"
+#include "exitance/geometry/triangulation.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double coplanar_share = 1e-6;  ///< Of the scene's size: planes nearer than this are one plane.
+
+Box box_of(std::span<const Point> corners) {
+    Box box;
+    for (const Point& p : corners) box.add(p);
+    return box;
+}
+
+}  // namespace
+
+Occluders::Occluders(const Scene& scene) : scene_(&scene) {
+    const Box& b = scene.box();
+    const double reach = std::max({std::abs(b.lo.x), std::abs(b.lo.y), std::abs(b.lo.z), std::abs(b.hi.x),
+                                   std::abs(b.hi.y), std::abs(b.hi.z)});
+    rounding_ = 16 * std::numeric_limits<double>::epsilon() * reach;
+    of_region_.resize(scene.regions().size());
+    std::vector<Point> part;
+    for (RegionId r : scene.regions().ids()) {
+        const Region& region = scene.regions()[r];
+        const std::size_t first = pieces_.size();
+        const double tolerance = 1e-12 * region.area;  // collinear corners of coarse input
+        if (region.loops.size() == 1 && is_convex(region.loops[0], region.plane.n, tolerance)) {
+            add_piece(region.loops[0], r, region.surfaces[0], region.plane);
+        } else {
+            for (SurfaceId s : region.surfaces) {
+                const std::span<const Point> outline = scene.outline(s);
+                for (const std::vector<std::uint32_t>& piece : convex_pieces(outline, scene.surfaces()[s].normal)) {
+                    part.clear();
+                    for (std::uint32_t i : piece) part.push_back(outline[i]);
+                    const Normal& n = scene.surfaces()[s].normal;
+                    add_piece(part, r, s, {n, dot(n, part[0])});
+                }
+            }
+        }
+        of_region_[r] = {first, pieces_.size()};
+    }
+    std::vector<Box> boxes;
+    boxes.reserve(pieces_.size());
+    for (PieceId p : pieces_.ids()) boxes.push_back(box_of(corners(p)));
+    bvh_ = Bvh(boxes);
+}
+
+void Occluders::add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane) {
+    ConvexPiece piece{static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(corners.size()), region,
+                      surface, plane, 0};
+    // Small things stay apart from what they stand on: the tolerance shrinks with them.
+    piece.thickness = std::max(rounding_, std::min(coplanar_share * scene_->size(), 1e-3 * box_of(corners).diagonal()));
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    pieces_.add(piece);
+}
+
+bool Occluders::is_back_of(RegionId a, RegionId b) const {
+    const Region &front = scene_->regions()[a], &back = scene_->regions()[b];
+    if (std::abs(front.area - back.area) > 1e-6 * front.area || front.loops.empty() || back.loops.empty()) return false;
+    const Box p = box_of(front.loops[0]), q = box_of(back.loops[0]);
+    const double tolerance = 1e-6 * p.diagonal() + rounding_;
+    return norm(p.lo - q.lo) <= tolerance && norm(p.hi - q.hi) <= tolerance;
+}
+
+bool Occluders::is_covered(const Point& x, const Normal& n, RegionId own) const {
+    const double reach = coplanar_share * scene_->size() + rounding_;
+    Box near;
+    near.add(x - Vec3{reach, reach, reach});
+    near.add(x + Vec3{reach, reach, reach});
+    bool covered = false;
+    bvh_.visit_box(near, [&](std::uint32_t i) {
+        const PieceId p(i);
+        const ConvexPiece& piece = pieces_[p];
+        if (covered || piece.region == own) return;
+        const double facing = dot(piece.plane.n, n);
+        const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // of the piece above x
+        if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return;
+        if (facing > 0 && height <= rounding_) return;
+        if (!contains(corners(p), piece.plane.n, x)) return;
+        covered = facing > 0 || own.is_none() || !is_back_of(own, piece.region);
+    });
+    return covered;
+}
+
+std::size_t Occluders::memory_bytes() const {
+    return bvh_.memory_bytes() + corners_.capacity() * sizeof(Point) +
+           pieces_.size() * sizeof(ConvexPiece) + of_region_.size() * sizeof(IdRange<PieceId>);
+}
+
+}  // namespace exitance

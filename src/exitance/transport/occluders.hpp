@@ -1,0 +1,60 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/core/ids.hpp"
+#include "exitance/geometry/bvh.hpp"
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+using PieceId = Id<struct PieceTag>;  ///< One convex piece of a region.
+
+/// A convex part of a region: the whole region where its border is one convex loop (however finely it was cut), else
+/// a convex part of one of its faces.
+struct ConvexPiece {
+    std::uint32_t first_corner = 0, corner_count = 0;
+    RegionId region;
+    SurfaceId surface;  ///< A face it lies on (the region's first one where the piece is the whole region).
+    Plane plane;
+    double thickness = 0;  ///< Metres; what lies nearer to its plane than this lies in it.
+};
+
+/// Everything that blocks light, as convex pieces with a tree of boxes over them. Immutable, shared by all threads.
+class Occluders {
+  public:
+    explicit Occluders(const Scene& scene);
+
+    const Scene& scene() const { return *scene_; }
+    const Field<PieceId, ConvexPiece>& pieces() const { return pieces_; }
+    /// Counter-clockwise seen from the front, metres.
+    std::span<const Point> corners(PieceId p) const {
+        return std::span(corners_).subspan(pieces_[p].first_corner, pieces_[p].corner_count);
+    }
+    IdRange<PieceId> pieces(RegionId r) const { return of_region_[r]; }
+    const Bvh& bvh() const { return bvh_; }  ///< Its items are the pieces.
+
+    /// How far apart two places may be that are meant to be the same, metres: a few roundings of the coordinates.
+    double rounding() const { return rounding_; }
+
+    /// Does another surface lie on the point x of region `own`, front to front, so that no light can get there? A sheet
+    /// whose other side is a region of the same outline does not lie on itself. A surface on top of it with its front
+    /// upwards counts when it is above by more than rounding; of two that share a plane neither covers the other.
+    bool is_covered(const Point& x, const Normal& n, RegionId own) const;
+
+    std::size_t memory_bytes() const;
+
+  private:
+    void add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane);
+    bool is_back_of(RegionId a, RegionId b) const;
+
+    const Scene* scene_;
+    Field<PieceId, ConvexPiece> pieces_;
+    Field<RegionId, IdRange<PieceId>> of_region_;
+    std::vector<Point> corners_;
+    Bvh bvh_;
+    double rounding_ = 0;
+};
+
+}  // namespace exitance

@@ -1,0 +1,216 @@
+#include "exitance/transport/visible_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/transport/form_factor.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double on_plane = 1e-14;  ///< Sine of an angle that rounding alone may make.
+constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle are points.
+
+using Workspace = VisibilityWorkspace;
+
+/// The part of a convex polygon with heights[i] >= 0; the cut runs through the same place from either side.
+void cut_above(std::span<const Vec3> polygon, std::span<const double> heights, std::vector<Vec3>& out) {
+    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+        const std::size_t j = i + 1 == m ? 0 : i + 1;
+        const double a = heights[i], b = heights[j];
+        if (a >= 0) out.push_back(polygon[i]);
+        if ((a > 0 && b < 0) || (a < 0 && b > 0)) {
+            const bool forward = a < b;
+            const Vec3 &p = forward ? polygon[i] : polygon[j], &q = forward ? polygon[j] : polygon[i];
+            const double hp = forward ? a : b, hq = forward ? b : a;
+            out.push_back(p + (hp / (hp - hq)) * (q - p));
+        }
+    }
+}
+
+/// Keeps the part of `polygon` where n . R >= offset.
+void clip_in_place(std::vector<Vec3>& polygon, const Normal& n, double offset, Workspace& scratch) {
+    bool any_below = false;
+    scratch.heights.clear();
+    for (const Vec3& r : polygon) {
+        scratch.heights.push_back(dot(n, r) - offset);
+        any_below |= scratch.heights.back() < 0;
+    }
+    if (!any_below) return;
+    scratch.side.clear();
+    cut_above(polygon, scratch.heights, scratch.side);
+    if (scratch.side.size() < 3) scratch.side.clear();
+    std::swap(polygon, scratch.side);
+}
+
+/// The source as seen from x and above its horizon, in scratch.source; empty when nothing of it can be seen.
+void look_at_source(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+    scratch.source.clear();
+    const ConvexPiece& piece = occluders.pieces()[source];
+    const std::span<const Point> corners = occluders.corners(source);
+    if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
+    for (const Point& p : corners) scratch.source.push_back(p - at.x);
+    clip_in_place(scratch.source, at.n, 0, scratch);
+}
+
+/// The pieces whose boxes reach into the pyramid from x over the source, between the planes of both.
+void find_candidates(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+    const double slack = occluders.rounding();
+    const auto above = [&](const Vec3& n, double height) { return Plane{n, dot(n, at.x) + height}; };
+    scratch.region.clear();
+    const Normal& ns = occluders.pieces()[source].plane.n;
+    scratch.region.add(above(ns, dot(ns, scratch.source[0]) + slack));
+    scratch.region.add(above(at.n, slack));
+    for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {
+        const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
+        const Vec3 inward = cross(b - a, a);
+        const double length = norm(inward);
+        if (length > no_width * norm(a) * norm(b)) scratch.region.add(above(inward / length, -slack));
+    }
+    scratch.candidates.clear();
+    occluders.bvh().visit_region(scratch.region, [&](std::uint32_t i) { scratch.candidates.push_back(PieceId(i)); });
+}
+
+/// Adds the planes of the pyramid over a convex polygon (relative to x); false if the polygon is seen edge-on.
+bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratch) {
+    const std::size_t first = scratch.planes.size();
+    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+        const Vec3 &a = polygon[i], &b = polygon[i + 1 == m ? 0 : i + 1];
+        const Vec3 normal = cross(b - a, a);
+        const double squared = squared_norm(normal), reach = squared_norm(a) * squared_norm(b);
+        if (squared > no_width * no_width * reach) scratch.planes.push_back(normal * (std::copysign(1.0, facing) / std::sqrt(squared)));
+    }
+    if (scratch.planes.size() < first + 3) {
+        scratch.planes.resize(first);
+        return false;
+    }
+    return true;
+}
+
+/// What a candidate hides: the pyramid over its part between the planes of the source and the receiver.
+void add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate, Workspace& scratch) {
+    const ConvexPiece& piece = occluders.pieces()[candidate];
+    if (piece.region == at.own || piece.region == source.region) return;
+    const std::span<const Point> corners = occluders.corners(candidate);
+    const double facing = dot(piece.plane.n, at.x - corners[0]);
+    if (std::abs(facing) <= occluders.rounding()) return;  // seen edge-on
+    scratch.clipped.clear();
+    const double source_height = dot(source.plane.n, scratch.source[0]);
+    double highest = -HUGE_VAL, nearest_source = -HUGE_VAL;
+    for (const Point& p : corners) {
+        scratch.clipped.push_back(p - at.x);
+        highest = std::max(highest, dot(at.n, scratch.clipped.back()));
+        nearest_source = std::max(nearest_source, dot(source.plane.n, scratch.clipped.back()) - source_height);
+    }
+    if (highest <= occluders.rounding() || nearest_source <= piece.thickness) return;
+    for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {  // outside one side of the source's pyramid?
+        const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
+        const Vec3 inward = cross(b - a, a);
+        bool outside = true;
+        for (const Vec3& r : scratch.clipped) outside &= dot(inward, r) <= 0;
+        if (outside && squared_norm(inward) > 0) return;
+    }
+    clip_in_place(scratch.clipped, source.plane.n, source_height, scratch);
+    clip_in_place(scratch.clipped, at.n, 0, scratch);
+    if (scratch.clipped.size() < 3) return;
+    Workspace::Shadow shadow;
+    shadow.first_plane = static_cast<std::uint32_t>(scratch.planes.size());
+    if (!add_pyramid(scratch.clipped, facing, scratch)) return;
+    shadow.plane_count = static_cast<std::uint32_t>(scratch.planes.size()) - shadow.first_plane;
+    Vec3 twice_area, middle;
+    for (std::size_t i = 2; i < scratch.clipped.size(); ++i)
+        twice_area += cross(scratch.clipped[i - 1] - scratch.clipped[0], scratch.clipped[i] - scratch.clipped[0]);
+    for (const Vec3& r : scratch.clipped) middle += r;
+    const double distance = norm(middle) / static_cast<double>(scratch.clipped.size());
+    shadow.solid_angle = std::abs(facing) * norm(twice_area) / (distance * distance * distance);
+    scratch.shadows.push_back(shadow);
+}
+
+/// Heights of a polygon's corners over a plane through x, as sines; rounding counts as zero.
+struct Sides {
+    bool any_in = false, any_out = false;
+};
+Sides measure(std::span<const Vec3> polygon, const Vec3& plane, std::vector<double>& heights) {
+    heights.clear();
+    Sides sides;
+    for (const Vec3& r : polygon) {
+        double h = dot(plane, r);
+        if (std::abs(h) <= on_plane * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z))) h = 0;
+        heights.push_back(h);
+        sides.any_in |= h > 0, sides.any_out |= h < 0;
+    }
+    return sides;
+}
+
+/// Adds to `out` what an occluder leaves of one lit fragment.
+void subtract(std::span<const Vec3> fragment, std::span<const Vec3> planes, Workspace& scratch, Workspace::Polygons& out) {
+    scratch.offcuts.clear();
+    scratch.rest.assign(fragment.begin(), fragment.end());
+    bool hidden = true;
+    for (const Vec3& plane : planes) {
+        const Sides sides = measure(scratch.rest, plane, scratch.heights);
+        if (!sides.any_in) hidden = false;  // the fragment lies beside the occluder
+        if (!hidden) break;
+        if (!sides.any_out) continue;
+        scratch.side.clear();
+        cut_above(scratch.rest, scratch.heights, scratch.side);
+        for (double& h : scratch.heights) h = -h;
+        cut_above(scratch.rest, scratch.heights, scratch.offcuts.corners);
+        scratch.offcuts.close();
+        std::swap(scratch.rest, scratch.side);
+    }
+    if (!hidden) {
+        out.corners.insert(out.corners.end(), fragment.begin(), fragment.end());
+        out.close();
+        return;
+    }
+    for (std::size_t i = 0; i < scratch.offcuts.size(); ++i) {
+        const std::span<const Vec3> piece = scratch.offcuts[i];
+        if (piece.size() < 3) continue;
+        out.corners.insert(out.corners.end(), piece.begin(), piece.end());
+        out.close();
+    }
+}
+
+double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, PieceId source,
+                               std::span<const PieceId> candidates, Workspace& scratch) {
+    scratch.planes.clear();
+    scratch.shadows.clear();
+    for (PieceId candidate : candidates) add_shadow(occluders, at, occluders.pieces()[source], candidate, scratch);
+    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
+    // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
+    std::sort(scratch.shadows.begin(), scratch.shadows.end(), [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
+        return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
+    });
+    scratch.lit.clear();
+    scratch.lit.corners.assign(scratch.source.begin(), scratch.source.end());
+    scratch.lit.close();
+    for (const Workspace::Shadow& shadow : scratch.shadows) {
+        const std::span<const Vec3> planes = std::span(scratch.planes).subspan(shadow.first_plane, shadow.plane_count);
+        scratch.next.clear();
+        for (std::size_t i = 0; i < scratch.lit.size(); ++i) subtract(scratch.lit[i], planes, scratch, scratch.next);
+        std::swap(scratch.lit, scratch.next);
+        if (scratch.lit.size() == 0) return 0;
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < scratch.lit.size(); ++i) sum += contour_sum(at.n, scratch.lit[i]);
+    return std::clamp(sum, 0.0, 1.0);
+}
+
+}  // namespace
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch) {
+    look_at_source(occluders, at, source, scratch);
+    if (scratch.source.empty()) return 0;
+    find_candidates(occluders, at, source, scratch);
+    return form_factor_of_lit_part(occluders, at, source, scratch.candidates, scratch);
+}
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch) {
+    look_at_source(occluders, at, source, scratch);
+    if (scratch.source.empty()) return 0;
+    return form_factor_of_lit_part(occluders, at, source, candidates, scratch);
+}
+
+}  // namespace exitance
