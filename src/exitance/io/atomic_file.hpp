@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "exitance/core/result.hpp"
+
+namespace exitance {
+
+/// A file that appears whole or not at all: written beside its place in the same folder, flushed to the disk, renamed.
+/// A file of that name stays as it is until then; a symbolic link goes on to lead to the same place. What is not a
+/// plain file (a pipe, a terminal, /dev/null) is written to directly. Without commit() nothing is left behind.
+/// Failures are ErrorCode::cannot_write, with the path and what the system says.
+class AtomicFile {
+  public:
+    static Result<AtomicFile> create(const std::string& path);
+    static AtomicFile standard_output();
+
+    AtomicFile(AtomicFile&& other) noexcept;
+    AtomicFile& operator=(AtomicFile&& other) noexcept;
+    ~AtomicFile();
+
+    /// Gathers small pieces; a failure is remembered and reported by commit(), so that loops need not look.
+    void write(std::string_view text);
+    void write(std::span<const std::byte> bytes) {
+        write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    }
+    Result<void> commit();
+
+  private:
+    AtomicFile() = default;
+    void flush();
+    void abandon();
+
+    std::string path_;       ///< As the user wrote it, for messages.
+    std::string target_;     ///< Where it is renamed to.
+    std::string temporary_;  ///< Empty when written to directly.
+    std::string buffer_;
+    int file_ = -1;
+    int error_ = 0;  ///< The first failure, as errno.
+    bool sync_ = true;
+};
+
+/// Writes a file in one go.
+Result<void> write_file(const std::string& path, std::string_view content);
+
+}  // namespace exitance
