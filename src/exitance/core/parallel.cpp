@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <memory>
 
@@ -29,6 +30,11 @@ void parallel_ranges(std::size_t count, std::size_t grain, const std::function<v
         tbb::blocked_range<std::size_t>(0, count, grain),
         [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
         tbb::simple_partitioner());
+}
+
+void run_alone(const std::function<void()>& body) {
+    tbb::task_arena alone(1);
+    alone.execute(body);
 }
 
 }  // namespace exitance

@@ -14,6 +14,10 @@ int threads();
 /// A body must write only what belongs to its own indices.
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
+/// Calls body() so that parallel work within it runs on this thread alone: for libraries whose results follow from how
+/// many threads they use.
+void run_alone(const std::function<void()>& body);
+
 /// Calls body(i) for every i in [0, count), `grain` indices a task.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
