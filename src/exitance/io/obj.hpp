@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+/// What a scene file says, and what is wrong with how it says it. Faces that cannot be read are not in it.
+struct ReadScene {
+    SceneDescription description;
+    std::vector<Finding> findings;
+};
+
+/// Reads Wavefront OBJ with its MTL files: faces with any number of corners, 'g' and 'o' names, 'usemtl', several
+/// 'mtllib' (relative to the file), relative indices, indices of texture and normal (ignored), comments, continued lines.
+/// Faces before any 'usemtl' get a grey material named 'default', with a warning. Every error is reported, with file
+/// and line, not just the first. O(size of the file).
+ReadScene read_obj(const std::string& path);
+
+/// The same for a caller who needs it whole: the first error, or the description.
+Result<SceneDescription> load_obj(const std::string& path);
+
+}  // namespace exitance

@@ -1,0 +1,43 @@
+#include "exitance/io/scene_file.hpp"
+
+#include <filesystem>
+
+#include "exitance/io/obj.hpp"
+#include "exitance/io/whole_file.hpp"
+#include "exitance/scene/findings.hpp"
+
+namespace exitance {
+namespace {
+
+CheckedScene refused(ErrorCode code, const std::string& path, std::string message, std::string hint) {
+    return {Error{code, message, path, hint}, {{Finding::Kind::error, path, 0, message, hint}}};
+}
+
+/// Findings of the reader and of the checks together. A file with errors is still looked at in full, but not warned
+/// about light that may be among what could not be read.
+CheckedScene checked(ReadScene read) {
+    const bool broken = has_errors(read.findings);
+    if (broken && read.description.faces.empty()) {
+        sort_findings(read.findings);
+        Error first = error_of(read.findings);
+        return {std::move(first), std::move(read.findings)};
+    }
+    CheckedScene out = make_scene(std::move(read.description));
+    if (broken) std::erase_if(out.findings, [](const Finding& f) { return f.kind == Finding::Kind::warning; });
+    out.findings.insert(out.findings.begin(), read.findings.begin(), read.findings.end());
+    sort_findings(out.findings);
+    if (broken) out.scene = error_of(out.findings);
+    return out;
+}
+
+}  // namespace
+
+CheckedScene load_scene(const std::string& path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+        return refused(ErrorCode::cannot_read, path, "there is no such file", "");
+    if (ending(path) == ".obj") return checked(read_obj(path));
+    return refused(ErrorCode::bad_input, path, "this kind of scene file is not known", "known endings: .obj");
+}
+
+}  // namespace exitance

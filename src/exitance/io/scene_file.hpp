@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+/// Reads and checks a scene file; its ending says what it is (.obj). Every error of the file is among the findings.
+/// An unreadable file has the code cannot_read, everything else that is wrong bad_input.
+CheckedScene load_scene(const std::string& path);
+
+}  // namespace exitance

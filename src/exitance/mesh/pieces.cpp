@@ -1,0 +1,172 @@
+#include "exitance/mesh/pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/mesh/planar_subdivision.hpp"
+#include "exitance/mesh/rectangles.hpp"
+
+namespace exitance {
+namespace {
+
+/// Below this share of the polygon's extent lengths are rounding. Well above the digits that scene files carry.
+constexpr double same_place = 1e-9;
+/// The smallest height to longest side that a triangle beside a parallelogram may have.
+constexpr double sliver = 0.15;
+/// Outlines with more corners are not searched for parallelograms at their border, which takes a time of corners^3.
+constexpr std::size_t most_peeled = 40;
+
+using Loop = std::vector<Point>;
+
+Patch triangle(const Point& p, const Point& q, const Point& r) { return {p, q - p, r - p, Patch::Shape::triangle}; }
+
+/// Four corners as a parallelogram, if they are one but for `tolerance`. It has the corners' area exactly: a and b are
+/// means of opposite sides, and a x b is half the product of the diagonals, as for the corners.
+std::optional<Patch> as_parallelogram(std::span<const Point> p, double tolerance) {
+    const Vec3 gap = (p[0] + p[2]) - (p[1] + p[3]);
+    if (norm(gap) > tolerance) return std::nullopt;
+    const Vec3 a = 0.5 * ((p[1] - p[0]) + (p[2] - p[3])), b = 0.5 * ((p[3] - p[0]) + (p[2] - p[1]));
+    return Patch{p[0] - 0.25 * gap, a, b, Patch::Shape::parallelogram};
+}
+
+/// A convex quadrangle with two parallel sides as a parallelogram on the shorter one and a triangle; nothing when no
+/// sides are parallel or the triangle would be a sliver.
+std::vector<Patch> as_trapezoid(std::span<const Point> p, double tolerance) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Point &s = p[i], &t = p[(i + 1) % 4], &u = p[(i + 2) % 4], &v = p[(i + 3) % 4];  // is s -> t the longer?
+        const Vec3 lower = t - s, upper = u - v;
+        const double length = norm(lower);
+        if (norm(upper) > length || norm(cross(lower, upper)) > tolerance * length || dot(lower, upper) <= 0) continue;
+        const Point foot = s + upper;  // the parallelogram s, foot, u, v and the triangle foot, t, u
+        const Patch rest = triangle(foot, t, u);
+        const double longest = std::max({norm(t - foot), norm(u - t), norm(u - foot)});
+        if (2 * rest.area() < sliver * longest * longest) continue;
+        return {Patch{s, upper, v - s, Patch::Shape::parallelogram}, rest};
+    }
+    return {};
+}
+
+/// Takes a parallelogram off an outline whose sides are three edges in a row and a chord that nothing crosses; what is
+/// left has two corners less, and none where it goes straight on. False when there is none.
+bool peel_parallelogram(Loop& loop, const Normal& n, double tolerance, std::vector<Patch>& out) {
+    const std::size_t m = loop.size();
+    for (std::size_t i = 0; m > 4 && i < m; ++i) {
+        const Point quad[4] = {loop[i], loop[(i + 1) % m], loop[(i + 2) % m], loop[(i + 3) % m]};
+        const auto patch = as_parallelogram(quad, tolerance);
+        if (!patch || dot(cross(patch->a, patch->b), n) <= 0) continue;
+        bool free = true;
+        for (std::size_t k = 4; k < m && free; ++k) {
+            const Vec2 uv = patch->coordinates(loop[(i + k) % m]);
+            free = uv.x < 0 || uv.x > 1 || uv.y < 0 || uv.y > 1;
+        }
+        if (!free) continue;
+        out.push_back(*patch);
+        std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>((i + 1) % m), loop.end());
+        loop.erase(loop.begin(), loop.begin() + 2);
+        for (std::size_t k = 0; loop.size() > 3 && k < loop.size();) {
+            const Point &before = loop[(k + loop.size() - 1) % loop.size()], &after = loop[(k + 1) % loop.size()];
+            const bool straight = norm(cross(after - before, loop[k] - before)) <= tolerance * norm(after - before);
+            if (straight)
+                loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(k));
+            else
+                ++k;
+        }
+        return true;
+    }
+    return false;
+}
+
+/// A frame in the polygon's plane along its longest edge, in which right angles lie along the axes.
+struct PlaneFrame {
+    Point origin;
+    Vec3 u, v;
+
+    PlaneFrame(std::span<const Loop> loops, const Normal& n) : origin(loops[0][0]) {
+        double longest = -1;
+        for (const Loop& loop : loops)
+            for (std::size_t i = 0; i < loop.size(); ++i) {
+                const Vec3 d = loop[(i + 1) % loop.size()] - loop[i];
+                // A clear margin: of edges of about one length the first is taken, whatever rounding says.
+                if (squared_norm(d) > longest * (1 + 1e-9)) longest = squared_norm(d), u = d;
+            }
+        u = normalized(u - dot(u, n) * n);
+        v = cross(n, u);
+    }
+    Vec2 flat(const Point& p) const { return {dot(p - origin, u), dot(p - origin, v)}; }
+    Point lifted(Vec2 p) const { return origin + p.x * u + p.y * v; }
+};
+
+/// Triangles, of which pairs that form a parallelogram are joined.
+std::vector<Patch> triangles(std::span<const Loop> loops, std::span<const std::vector<Vec2>> flat, double tolerance) {
+    std::vector<Point> corners;
+    for (const Loop& loop : loops) corners.insert(corners.end(), loop.begin(), loop.end());
+    const auto all = delaunay_triangles(flat);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::size_t>> across;  // edge -> triangle, side
+    std::vector<char> joined(all.size(), 0);
+    std::vector<Patch> out;
+    for (std::size_t t = 0; t < all.size(); ++t)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t p = all[t][i], q = all[t][(i + 1) % 3], apex = all[t][(i + 2) % 3];
+            across[{p, q}] = {t, i};
+            const auto other = across.find({q, p});
+            if (other == across.end() || joined[t] || joined[other->second.first]) continue;
+            const auto [o, side] = other->second;
+            const Point quad[4] = {corners[apex], corners[p], corners[all[o][(side + 2) % 3]], corners[q]};
+            if (const auto patch = as_parallelogram(quad, tolerance)) {
+                joined[t] = joined[o] = 1;
+                out.push_back(*patch);
+            }
+        }
+    for (std::size_t t = 0; t < all.size(); ++t)
+        if (!joined[t]) out.push_back(triangle(corners[all[t][0]], corners[all[t][1]], corners[all[t][2]]));
+    return out;
+}
+
+}  // namespace
+
+std::vector<Patch> tile(std::span<const Loop> loops, const Normal& n) {
+    Box box;
+    for (const Loop& loop : loops)
+        for (const Point& p : loop) box.add(p);
+    const double tolerance = same_place * box.diagonal();
+    if (loops.size() == 1 && loops[0].size() == 3) return {triangle(loops[0][0], loops[0][1], loops[0][2])};
+    if (loops.size() == 1 && loops[0].size() == 4) {
+        if (const auto patch = as_parallelogram(loops[0], tolerance)) return {*patch};
+        if (is_convex(loops[0], n))
+            if (auto two = as_trapezoid(loops[0], tolerance); !two.empty()) return two;
+    }
+    const PlaneFrame frame(loops, n);
+    std::vector<std::vector<Vec2>> flat;
+    for (const Loop& loop : loops) {
+        flat.emplace_back();
+        for (const Point& p : loop) flat.back().push_back(frame.flat(p));
+    }
+    std::vector<Patch> out;
+    for (const auto& [lo, hi] : tile_by_rectangles(flat, tolerance))
+        out.push_back({frame.lifted(lo), (hi.x - lo.x) * frame.u, (hi.y - lo.y) * frame.v, Patch::Shape::parallelogram});
+    if (!out.empty()) return out;
+    if (Loop rest = loops[0]; loops.size() == 1 && rest.size() <= most_peeled && peel_parallelogram(rest, n, tolerance, out)) {
+        const auto others = tile(std::vector<Loop>{std::move(rest)}, n);
+        out.insert(out.end(), others.begin(), others.end());
+        return out;
+    }
+    return triangles(loops, flat, tolerance);
+}
+
+std::vector<Piece> cut_into_pieces(const Scene& scene) {
+    const auto& regions = scene.regions();
+    std::vector<std::vector<Patch>> patches(regions.size());
+    parallel_for(regions.size(), 256, [&](std::size_t i) {
+        const Region& region = regions[RegionId(i)];
+        patches[i] = tile(region.loops, region.plane.n);
+    });
+    std::vector<Piece> out;
+    for (std::size_t i = 0; i < patches.size(); ++i)
+        for (const Patch& patch : patches[i]) out.push_back({RegionId(i), patch});
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/geometry/vec.hpp"
+
+namespace exitance {
+
+struct Rectangle {
+    Vec2 lo, hi;
+};
+
+/// Tiles a polygon whose edges are all parallel to the axes by rectangles.
+/// Up to 16 different coordinates an axis: the guillotine cuts of least total length, by dynamic programming
+/// (O(k^5) for k coordinates an axis). Beyond: slabs between all corners' coordinates along one axis, joined where
+/// neighbours match.
+/// loops      any order and direction; their union by parity is tiled
+/// tolerance  coordinates nearer than this are one; an edge that is tilted by more makes the result empty
+std::vector<Rectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance);
+
+}  // namespace exitance

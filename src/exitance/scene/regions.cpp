@@ -1,0 +1,297 @@
+#include "exitance/scene/regions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "exitance/core/random.hpp"
+#include "exitance/scene/border.hpp"
+#include "exitance/scene/hash_chains.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::uint32_t none = 0xffffffffu;
+
+/// Sets of faces; the root of a set is its smallest face.
+class UnionFind {
+  public:
+    explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
+    std::uint32_t root(std::uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void unite(std::uint32_t i, std::uint32_t j) {
+        i = root(i), j = root(j);
+        parent_[std::max(i, j)] = std::min(i, j);
+    }
+
+  private:
+    std::vector<std::uint32_t> parent_;
+};
+
+/// An unpaired edge under one of the keys of its line.
+struct LineEntry {
+    std::uint64_t key;
+    std::uint32_t edge;
+};
+
+/// One attempt at joining a set of faces. Edges are numbered over the corners of these faces.
+class Joiner {
+  public:
+    Joiner(const FaceMesh& mesh, const Tolerances& tolerances, std::vector<std::uint32_t> faces)
+        : mesh_(mesh), tol_(tolerances), faces_(std::move(faces)), sets_(faces_.size()) {
+        for (std::uint32_t f = 0; f < faces_.size(); ++f) {
+            const auto outline = mesh_.outline(faces_[f]);
+            first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));
+            for (std::size_t k = 0; k < outline.size(); ++k)
+                edges_.push_back({outline[k], outline[(k + 1) % outline.size()], f, none});
+        }
+        first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));
+    }
+
+    void pair_whole_edges();
+    void pair_parts_of_edges();
+    /// Appends the sets whose union is a proper polygon to `out`, and the faces of the others to `failed`.
+    void collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& failed);
+
+  private:
+    struct Edge {
+        std::uint32_t from, to, face, partner;
+    };
+    struct Split {
+        std::uint32_t edge, point;
+        double at;
+        auto operator<=>(const Split&) const = default;
+    };
+
+    const Point& point(std::uint32_t i) const { return mesh_.points[i]; }
+    std::uint32_t material(std::uint32_t f) const { return mesh_.material[faces_[f]]; }
+    bool coplanar(std::uint32_t f, std::uint32_t g) const;
+    void add_line_keys(std::uint32_t edge, const Point& centre, double size, std::vector<LineEntry>& out) const;
+    void pair_on_line(std::span<const LineEntry> group);
+    bool pair_parts(std::uint32_t e, std::uint32_t f);
+    void split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length);
+    std::vector<BorderEdge> border(std::span<const std::uint32_t> set) const;
+    bool is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector) const;
+
+    const FaceMesh& mesh_;
+    const Tolerances& tol_;
+    std::vector<std::uint32_t> faces_;
+    UnionFind sets_;
+    std::vector<Edge> edges_;
+    std::vector<std::uint32_t> first_edge_;
+    std::vector<Split> splits_;
+};
+
+/// Same orientation, and the smaller face lies in the larger one's plane. Slivers have no normal worth the name, so
+/// that their distance decides alone.
+bool Joiner::coplanar(std::uint32_t f, std::uint32_t g) const {
+    if (f == g) return true;
+    Vec3 a = mesh_.area_vector[faces_[f]], b = mesh_.area_vector[faces_[g]];
+    if (dot(a, b) <= 0) return false;
+    if (squared_norm(a) < squared_norm(b)) std::swap(a, b), std::swap(f, g);
+    const Normal n = normalized(a);
+    const Point& origin = point(mesh_.outline(faces_[f])[0]);
+    double far = 0;
+    for (std::uint32_t c : mesh_.outline(faces_[g])) far = std::max(far, std::abs(dot(n, point(c) - origin)));
+    return far <= tol_.place || (far <= tol_.plane && norm(cross(n, normalized(b))) <= tol_.tilt);
+}
+
+void Joiner::pair_whole_edges() {
+    HashChains chains(edges_.size());
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+        const auto [a, b] = std::minmax(edges_[e].from, edges_[e].to);
+        const std::uint64_t key = hash(a, b);
+        for (std::uint32_t o = chains.first(key); o != HashChains::end; o = chains.next(o)) {
+            if (edges_[o].from != edges_[e].to || edges_[o].to != edges_[e].from || edges_[o].partner != none) continue;
+            const std::uint32_t f = edges_[e].face, g = edges_[o].face;
+            if (material(f) != material(g) || !coplanar(f, g)) continue;
+            edges_[e].partner = o;
+            edges_[o].partner = e;
+            sets_.unite(f, g);
+            break;
+        }
+        chains.add(key);
+    }
+}
+
+/// Keys of the line through an edge: cells of its direction and of its point nearest to the scene's centre. Near a
+/// cell's wall the neighbour's key is given as well, so that edges of one line always have a key in common.
+void Joiner::add_line_keys(std::uint32_t edge, const Point& centre, double size, std::vector<LineEntry>& out) const {
+    const Point& p = point(edges_[edge].from);
+    Vec3 d = point(edges_[edge].to) - p;
+    const double length = norm(d);
+    d = d / length;
+    if (dot(d, Vec3{0.5377, 0.7323, 0.4181}) < 0) d = -d;  // no line of a practical scene is at a right angle to this
+    const Vec3 foot = (p - centre) - dot(p - centre, d) * d;
+    const double direction_error = 2 * tol_.place / length;
+    const double direction_cell = std::max(1e-3, 8 * direction_error);
+    const double foot_error = tol_.place + size * direction_error, foot_cell = std::max(1e-4 * size, 8 * foot_error);
+    std::array<std::int64_t, 6> cell;
+    std::array<std::int64_t, 6> other;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const double width = i < 3 ? direction_cell : foot_cell, error = i < 3 ? direction_error : foot_error;
+        const double x = (i < 3 ? d[i] : foot[i - 3]) / width;
+        cell[i] = std::llround(x);
+        const auto above = std::llround(x + error / width), below = std::llround(x - error / width);
+        other[i] = above != cell[i] ? above : below;
+    }
+    for (unsigned mask = 0; mask < 64; ++mask) {
+        std::uint64_t key = material(edges_[edge].face);
+        bool distinct = true;
+        for (std::size_t i = 0; i < 6; ++i) {
+            const bool use_other = mask >> i & 1u;
+            if (use_other && other[i] == cell[i]) distinct = false;
+            key = hash(key, static_cast<std::uint64_t>(use_other ? other[i] : cell[i]));
+        }
+        if (distinct) out.push_back({key, edge});
+    }
+}
+
+/// Marks where the ends of `other` lie inside edge e, whose unit direction is d.
+void Joiner::split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length) {
+    for (std::uint32_t corner : {edges_[other].from, edges_[other].to}) {
+        const double at = dot(point(corner) - point(edges_[e].from), d);
+        if (at > tol_.place && at < length - tol_.place) splits_.push_back({e, corner, at});
+    }
+}
+
+/// Pairs two edges of one line that run against each other and overlap.
+bool Joiner::pair_parts(std::uint32_t e, std::uint32_t f) {
+    const Point &p = point(edges_[e].from), &r = point(edges_[f].from);
+    const Vec3 a = point(edges_[e].to) - p, b = point(edges_[f].to) - r;
+    const double length = norm(a);
+    if (dot(a, b) >= 0) return false;
+    const Vec3 d = a / length;
+    const Vec3 w0 = r - p, w1 = point(edges_[f].to) - p;
+    const double t0 = dot(w0, d), t1 = dot(w1, d);
+    if (std::min(length, t0) - std::max(0.0, t1) <= 2 * tol_.place) return false;
+    const double off = std::max(squared_norm(w0 - t0 * d), squared_norm(w1 - t1 * d));
+    if (off > tol_.place * tol_.place || !coplanar(edges_[e].face, edges_[f].face)) return false;
+    sets_.unite(edges_[e].face, edges_[f].face);
+    split_at_ends(e, f, d, length);
+    split_at_ends(f, e, normalized(b), norm(b));
+    return true;
+}
+
+/// Sweeps along a line over the edges on it (and a few that only share its cell).
+void Joiner::pair_on_line(std::span<const LineEntry> group) {
+    const Point origin = point(edges_[group[0].edge].from);
+    const Vec3 d = normalized(point(edges_[group[0].edge].to) - origin);
+    struct Interval {
+        double lo, hi;
+        std::uint32_t edge;
+    };
+    std::vector<Interval> intervals;
+    for (const LineEntry& entry : group) {
+        const double s = dot(point(edges_[entry.edge].from) - origin, d), t = dot(point(edges_[entry.edge].to) - origin, d);
+        intervals.push_back({std::min(s, t), std::max(s, t), entry.edge});
+    }
+    std::sort(intervals.begin(), intervals.end(),
+              [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });
+    std::vector<Interval> open;
+    for (const Interval& i : intervals) {
+        std::erase_if(open, [&](const Interval& o) { return o.hi <= i.lo; });
+        for (const Interval& o : open)
+            if (material(edges_[o.edge].face) == material(edges_[i.edge].face)) pair_parts(o.edge, i.edge);
+        open.push_back(i);
+    }
+}
+
+void Joiner::pair_parts_of_edges() {
+    Box box;
+    for (const Edge& e : edges_) box.add(point(e.from));
+    std::vector<LineEntry> entries;
+    for (std::uint32_t e = 0; e < edges_.size(); ++e)
+        if (edges_[e].partner == none) add_line_keys(e, box.centre(), box.diagonal(), entries);
+    std::sort(entries.begin(), entries.end(),
+              [](const LineEntry& a, const LineEntry& b) { return a.key != b.key ? a.key < b.key : a.edge < b.edge; });
+    for (std::size_t i = 0, j; i < entries.size(); i = j) {
+        for (j = i + 1; j < entries.size() && entries[j].key == entries[i].key;) ++j;
+        if (j - i > 1) pair_on_line(std::span(entries).subspan(i, j - i));
+    }
+    std::sort(splits_.begin(), splits_.end());
+    splits_.erase(std::unique(splits_.begin(), splits_.end()), splits_.end());
+}
+
+/// The edges of a set of faces, split at T-vertices, those taken out that have a partner within the set.
+std::vector<BorderEdge> Joiner::border(std::span<const std::uint32_t> set) const {
+    std::vector<BorderEdge> out;
+    for (std::uint32_t f : set)
+        for (std::uint32_t e = first_edge_[f]; e < first_edge_[f + 1]; ++e) {
+            if (edges_[e].partner != none) continue;
+            auto split = std::lower_bound(splits_.begin(), splits_.end(), Split{e, 0, -1},
+                                          [](const Split& a, const Split& b) { return a.edge < b.edge; });
+            std::vector<std::pair<double, std::uint32_t>> inside;
+            for (; split != splits_.end() && split->edge == e; ++split) inside.push_back({split->at, split->point});
+            std::sort(inside.begin(), inside.end());
+            std::uint32_t from = edges_[e].from;
+            for (const auto& [at, point] : inside) out.push_back({from, point}), from = point;
+            out.push_back({from, edges_[e].to});
+        }
+    return out;
+}
+
+bool Joiner::is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector) const {
+    const Normal n = normalized(area_vector);
+    const Point& origin = point(mesh_.outline(faces_[set[0]])[0]);
+    double lo = 0, hi = 0;
+    for (std::uint32_t f : set)
+        for (std::uint32_t c : mesh_.outline(faces_[f])) {
+            const double height = dot(n, point(c) - origin);
+            lo = std::min(lo, height), hi = std::max(hi, height);
+        }
+    return hi - lo <= 2 * std::max(tol_.plane, tol_.place);
+}
+
+void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& failed) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // set, face
+    for (std::uint32_t f = 0; f < faces_.size(); ++f) order.push_back({sets_.root(f), f});
+    std::sort(order.begin(), order.end());
+    for (std::size_t i = 0, j; i < order.size(); i = j) {
+        std::vector<std::uint32_t> set;
+        Vec3 area_vector;
+        for (j = i; j < order.size() && order[j].first == order[i].first; ++j) {
+            set.push_back(order[j].second);
+            area_vector += mesh_.area_vector[faces_[order[j].second]];
+        }
+        JoinedFaces joined;
+        for (std::uint32_t f : set) joined.faces.push_back(faces_[f]);
+        bool proper = is_flat(set, area_vector);
+        if (proper) {
+            joined.loops = border_loops(mesh_.points, border(set), area_vector, tol_.place);
+            proper = !joined.loops.empty();
+        }
+        if (proper)
+            out.push_back(std::move(joined));
+        else
+            failed.insert(failed.end(), joined.faces.begin(), joined.faces.end());
+    }
+}
+
+}  // namespace
+
+std::vector<JoinedFaces> join_coplanar(const FaceMesh& mesh, const Tolerances& tolerances) {
+    std::vector<JoinedFaces> out;
+    std::vector<std::uint32_t> faces(mesh.size());
+    std::iota(faces.begin(), faces.end(), 0u);
+    // Finely cut curved surfaces bend little from one face to the next, but much over a whole set: such a set is joined
+    // again where it is flat to rounding alone.
+    Tolerances strict = tolerances;
+    strict.plane = strict.place;
+    for (const Tolerances& attempt : {tolerances, strict}) {
+        if (faces.empty()) break;
+        Joiner joiner(mesh, attempt, std::move(faces));
+        joiner.pair_whole_edges();
+        joiner.pair_parts_of_edges();
+        faces.clear();
+        joiner.collect(out, faces);
+    }
+    for (std::uint32_t f : faces) out.push_back({{f}, lone_face_loops(mesh, f, tolerances.place)});
+    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.faces[0] < b.faces[0]; });
+    return out;
+}
+
+}  // namespace exitance

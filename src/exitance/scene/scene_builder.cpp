@@ -1,0 +1,304 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exitance/core/random.hpp"
+#include "exitance/scene/findings.hpp"
+#include "exitance/scene/hash_chains.hpp"
+#include "exitance/scene/outline.hpp"
+#include "exitance/scene/regions.hpp"
+#include "exitance/scene/scene.hpp"
+#include "exitance/scene/weld.hpp"
+
+namespace exitance {
+
+Tolerances tolerances(const Box& box) {
+    const Vec3 far = max(max(box.hi, -box.hi), max(box.lo, -box.lo));
+    const double spacing = std::max({far.x, far.y, far.z}) * std::numeric_limits<double>::epsilon();
+    Tolerances t;
+    t.place = std::max(1e-9 * box.diagonal(), 4 * spacing);
+    t.plane = std::max(1e-5 * box.diagonal(), t.place);
+    return t;
+}
+
+/// Makes a scene step by step; findings gather on the way.
+class SceneBuilder {
+  public:
+    explicit SceneBuilder(SceneDescription description) : in_(std::move(description)) {}
+    CheckedScene build();
+
+  private:
+    void check_materials();
+    void place_corners();
+    void check_faces();
+    bool check_face(const SceneDescription::Face& face);
+    bool check_shape(const SceneDescription::Face& face, std::span<const std::uint32_t> outline);
+    void report_flattened();
+    void drop_duplicates();
+    void check_light();
+    Scene make();
+    void add_regions(Scene& scene, const std::vector<JoinedFaces>& joined);
+
+    void find(Finding::Kind kind, int line, std::string message, std::string hint = "") {
+        findings_.push_back({kind, in_.file, line, std::move(message), std::move(hint)});
+    }
+    void error(int line, std::string message, std::string hint = "") {
+        find(Finding::Kind::error, line, std::move(message), std::move(hint));
+    }
+    bool has_errors() const { return exitance::has_errors(findings_); }
+
+    SceneDescription in_;
+    std::vector<Finding> findings_;
+    std::vector<std::uint32_t> place_;  // of every point: the first point at its place
+    Tolerances tol_;
+    FaceMesh mesh_;
+    std::vector<std::uint32_t> origin_;  // face of the mesh -> face of the description
+    Box box_;
+    std::size_t flattened_ = 0;  // faces out of plane by more than rounding, within the tolerance
+    double farthest_ = 0;
+    int first_flattened_ = 0;
+};
+
+void SceneBuilder::check_materials() {
+    static constexpr const char* rgb[3] = {"R", "G", "B"};
+    const auto band = [](std::size_t b) { return bands == 3 ? std::string(rgb[b]) : std::to_string(b); };
+    for (const Material& m : in_.materials)
+        for (std::size_t b = 0; b < bands; ++b) {
+            if (!(m.reflectance[b] >= 0 && m.reflectance[b] < 1))
+                error(0, fmt::format("material '{}' has reflectance {:g} in band {}", m.name, m.reflectance[b], band(b)),
+                      "reflectances lie in [0, 1): at 1 light would never die out");
+            if (!(m.exitance[b] >= 0 && std::isfinite(m.exitance[b])))
+                error(0, fmt::format("material '{}' has exitance {:g} in band {}", m.name, m.exitance[b], band(b)),
+                      "emission is finite and not negative");
+        }
+}
+
+/// Finds the scene's box and the points that stand at one place.
+void SceneBuilder::place_corners() {
+    for (const auto& face : in_.faces)
+        for (std::uint32_t c : face.corners)
+            if (c < in_.points.size() && is_finite(in_.points[c])) box_.add(in_.points[c]);
+    tol_ = tolerances(box_);
+    place_ = weld(in_.points, tol_.place);
+}
+
+void SceneBuilder::check_faces() {
+    mesh_.first.push_back(0);
+    for (std::uint32_t f = 0; f < in_.faces.size(); ++f) {
+        if (!check_face(in_.faces[f])) continue;
+        origin_.push_back(f);
+        mesh_.first.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
+        mesh_.material.push_back(in_.faces[f].material);
+    }
+    report_flattened();
+    if (in_.faces.empty())
+        error(1, "there are no polygons", "a scene needs at least one face ('f' line)");
+    else if (mesh_.size() == 0 && !has_errors())
+        error(in_.faces[0].line, "no polygon is left once faces without area are taken out");
+}
+
+/// Appends the face to the mesh if it can be used; reports why not otherwise.
+bool SceneBuilder::check_face(const SceneDescription::Face& face) {
+    if (face.material >= in_.materials.size() || face.group >= in_.groups.size())
+        return error(face.line, "face has no material or no group"), false;
+    std::vector<std::uint32_t> outline = face.corners;
+    for (std::uint32_t& c : outline) {
+        if (c >= in_.points.size())
+            return error(face.line, fmt::format("face names corner {} of {} points", c + 1, in_.points.size())), false;
+        if (!is_finite(in_.points[c])) return error(face.line, "a corner of the face is not a finite point"), false;
+        c = place_[c];
+    }
+    const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);
+    if (outline.size() < 3) {
+        find(Finding::Kind::repair, face.line,
+             fmt::format("face has {} corners, {} at different places, and no area: it is left out", given, outline.size()),
+             "remove it or give it three corners that are not in line");
+        return false;
+    }
+    if (dropped > 0)
+        find(Finding::Kind::repair, face.line,
+             fmt::format("{} of the face's {} corners stand where a neighbour stands: they are merged", dropped, given));
+    if (!check_shape(face, outline)) return false;
+    mesh_.corners.insert(mesh_.corners.end(), outline.begin(), outline.end());
+    return true;
+}
+
+bool SceneBuilder::check_shape(const SceneDescription::Face& face, std::span<const std::uint32_t> outline) {
+    std::vector<Point> corners;
+    for (std::uint32_t c : outline) corners.push_back(in_.points[c]);
+    const Vec3 area = area_vector(corners);
+    Box box;
+    for (const Point& p : corners) box.add(p);
+    if (norm(area) <= tol_.place * box.diagonal()) {
+        if (is_collinear(corners, 2 * tol_.place))
+            find(Finding::Kind::repair, face.line,
+                 fmt::format("face of {} corners has no area, they are in line: it is left out", face.corners.size()));
+        else
+            error(face.line, "face crosses itself: its parts cancel out", "order its corners counter-clockwise");
+        return false;
+    }
+    const Normal n = normalized(area);
+    const double off = out_of_plane(corners, n);
+    // A face may be bent by as much as its neighbours may be tilted.
+    if (off > std::max(tol_.place, std::min(tol_.plane, tol_.tilt * box.diagonal()))) {
+        error(face.line, fmt::format("face of {} corners is {:.3g} m out of plane", corners.size(), off),
+              "split it into triangles");
+        return false;
+    }
+    EdgePair where{};
+    if (crosses_itself(corners, n, tol_.place, where)) {
+        const std::size_t m = corners.size();
+        error(face.line,
+              fmt::format("face crosses itself: the edge from corner {} to {} meets the edge from corner {} to {}",
+                          where.first + 1, (where.first + 1) % m + 1, where.second + 1, (where.second + 1) % m + 1),
+              "order its corners counter-clockwise, or split it");
+        return false;
+    }
+    if (off > tol_.place) {
+        if (flattened_++ == 0) first_flattened_ = face.line;
+        farthest_ = std::max(farthest_, off);
+    }
+    mesh_.area_vector.push_back(area);
+    return true;
+}
+
+void SceneBuilder::report_flattened() {
+    if (flattened_ == 0) return;
+    find(Finding::Kind::repair, first_flattened_,
+         fmt::format("{} {} out of plane by up to {:.3g} m, the first of them here: corners are moved into the plane",
+                     flattened_, flattened_ == 1 ? "face is" : "faces are", farthest_));
+}
+
+/// Leaves out faces that repeat an earlier one, corner by corner and to the same side: which of the two light meets
+/// would be left to chance.
+void SceneBuilder::drop_duplicates() {
+    HashChains chains(mesh_.size());
+    std::vector<std::uint32_t> rotated, other, kept;
+    const auto start_at_smallest = [&](std::uint32_t f, std::vector<std::uint32_t>& out) {
+        const auto outline = mesh_.outline(f);
+        out.assign(outline.begin(), outline.end());
+        std::rotate(out.begin(), std::min_element(out.begin(), out.end()), out.end());
+    };
+    FaceMesh left;
+    left.first.push_back(0);
+    std::vector<std::uint32_t> left_origin;
+    for (std::uint32_t f = 0; f < mesh_.size(); ++f) {
+        start_at_smallest(f, rotated);
+        std::uint64_t key = rotated.size();
+        for (std::uint32_t c : rotated) key = hash(key, c);
+        const SceneDescription::Face* same = nullptr;
+        for (std::uint32_t e = chains.first(key); e != HashChains::end && !same; e = chains.next(e)) {
+            start_at_smallest(e, other);
+            if (other == rotated) same = &in_.faces[origin_[e]];
+        }
+        chains.add(key);
+        if (same) {
+            find(Finding::Kind::repair, in_.faces[origin_[f]].line,
+                 fmt::format("face repeats the face of line {} corner by corner: it is left out", same->line),
+                 "remove one of the two");
+            continue;
+        }
+        left_origin.push_back(origin_[f]);
+        left.corners.insert(left.corners.end(), mesh_.outline(f).begin(), mesh_.outline(f).end());
+        left.first.push_back(static_cast<std::uint32_t>(left.corners.size()));
+        left.material.push_back(mesh_.material[f]);
+        left.area_vector.push_back(mesh_.area_vector[f]);
+    }
+    mesh_ = std::move(left);
+    origin_ = std::move(left_origin);
+}
+
+void SceneBuilder::check_light() {
+    const bool lit = std::any_of(origin_.begin(), origin_.end(),
+                                 [&](std::uint32_t f) { return in_.materials[in_.faces[f].material].emits(); });
+    if (!lit)
+        find(Finding::Kind::warning, in_.faces.empty() ? 0 : in_.faces[0].line, "nothing emits light: all results are 0",
+             "give a material an emission (in MTL: Ke r g b)");
+}
+
+/// Regions with their planes, points moved into them where they stand off by more than rounding.
+void SceneBuilder::add_regions(Scene& scene, const std::vector<JoinedFaces>& joined) {
+    scene.regions_.reserve(joined.size());
+    for (const JoinedFaces& set : joined) {
+        Region region;
+        region.material = MaterialId(mesh_.material[set.faces[0]]);
+        const RegionId id(scene.regions_.size());
+        Vec3 area;
+        double mean = 0, farthest = 0;
+        std::size_t count = 0;
+        const Point& origin = in_.points[set.loops[0][0]];
+        for (const auto& loop : set.loops) {
+            std::vector<Point>& corners = region.loops.emplace_back();
+            for (std::uint32_t c : loop) corners.push_back(in_.points[c]);
+            area += area_vector(corners);
+        }
+        const Normal n = normalized(area);
+        for (const auto& loop : region.loops)
+            for (const Point& p : loop) mean += dot(n, p - origin), ++count;
+        mean /= static_cast<double>(count);
+        region.plane = {n, dot(n, origin) + mean};
+        region.area = norm(area);
+        for (std::uint32_t f : set.faces)
+            for (std::uint32_t c : mesh_.outline(f))
+                farthest = std::max(farthest, std::abs(dot(n, in_.points[c] - origin) - mean));
+        const auto into_plane = [&](Point& p) { p -= (dot(n, p - origin) - mean) * n; };
+        if (farthest > tol_.place)
+            for (auto& loop : region.loops) std::for_each(loop.begin(), loop.end(), into_plane);
+        for (std::uint32_t f : set.faces) {
+            region.surfaces.push_back(SurfaceId(f));
+            Surface& surface = scene.surfaces_[SurfaceId(f)];
+            surface.region = id;
+            surface.normal = n;
+            auto outline = std::span(scene.corners_).subspan(surface.first_corner, surface.corner_count);
+            if (farthest > tol_.place) std::for_each(outline.begin(), outline.end(), into_plane);
+        }
+        scene.regions_.add(std::move(region));
+    }
+}
+
+Scene SceneBuilder::make() {
+    mesh_.points = in_.points;
+    Scene scene;
+    scene.file_ = in_.file;
+    scene.box_ = box_;
+    scene.surfaces_.resize(mesh_.size());
+    scene.corners_.reserve(mesh_.corners.size());
+    for (std::uint32_t c : mesh_.corners) scene.corners_.push_back(in_.points[c]);
+    for (std::uint32_t f = 0; f < mesh_.size(); ++f) {
+        const SceneDescription::Face& face = in_.faces[origin_[f]];
+        Surface& surface = scene.surfaces_[SurfaceId(f)];
+        surface.first_corner = mesh_.first[f];
+        surface.corner_count = mesh_.first[f + 1] - mesh_.first[f];
+        surface.material = MaterialId(face.material);
+        surface.group = GroupId(face.group);
+        surface.line = face.line;
+        surface.area = norm(mesh_.area_vector[f]);
+        if (in_.materials[face.material].emits()) scene.emitters_.push_back(SurfaceId(f));
+    }
+    add_regions(scene, join_coplanar(mesh_, tol_));
+    for (Material& m : in_.materials) scene.materials_.add(std::move(m));
+    for (std::string& g : in_.groups) scene.groups_.add(std::move(g));
+    return scene;
+}
+
+CheckedScene SceneBuilder::build() {
+    check_materials();
+    place_corners();
+    check_faces();
+    if (!has_errors()) {
+        drop_duplicates();
+        check_light();
+    }
+    sort_findings(findings_);
+    if (has_errors()) {
+        Error first = error_of(findings_);
+        return {std::move(first), std::move(findings_)};
+    }
+    return {make(), std::move(findings_)};
+}
+
+CheckedScene make_scene(SceneDescription description) { return SceneBuilder(std::move(description)).build(); }
+
+}  // namespace exitance

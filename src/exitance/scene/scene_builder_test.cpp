@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// Descriptions in a few strokes: every polygon brings its own points, as files from many programs do.
+struct Sketch {
+    SceneDescription d;
+    Sketch() {
+        d.file = "sketch.obj";
+        d.groups = {"all"};
+        d.materials = {{"grey", Spectrum(0.5), {}}, {"light", Spectrum(0), Spectrum(1)}, {"dark", Spectrum(0.1), {}}};
+    }
+    Sketch& add(std::vector<Point> outline, std::uint32_t material = 0) {
+        SceneDescription::Face face;
+        for (const Point& p : outline) {
+            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        face.material = material;
+        face.line = static_cast<int>(d.faces.size()) + 1;
+        d.faces.push_back(face);
+        return *this;
+    }
+    Sketch& rectangle(double x0, double y0, double x1, double y1, std::uint32_t material = 0) {
+        return add({{x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}}, material);
+    }
+    /// Far above, so that it meets nothing.
+    Sketch& light() { return add({{0, 0, 9}, {0, 1, 9}, {1, 1, 9}, {1, 0, 9}}, 1); }
+    CheckedScene make() const { return make_scene(d); }
+};
+
+int count(const CheckedScene& s, Finding::Kind kind) {
+    return static_cast<int>(
+        std::count_if(s.findings.begin(), s.findings.end(), [&](const Finding& f) { return f.kind == kind; }));
+}
+
+const Region& region(const CheckedScene& s, std::size_t i) { return s.scene->regions()[RegionId(i)]; }
+
+TEST(Regions, AnUncutFloorIsOneRegionWithItsCornersFromTheSmallestOn) {
+    const auto s = Sketch().add({{2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0, 0, 0}}).light().make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_TRUE(s.findings.empty());
+    ASSERT_EQ(s.scene->regions().size(), 2u);
+    EXPECT_EQ(region(s, 0).loops, (std::vector<std::vector<Point>>{{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}}));
+    EXPECT_EQ(region(s, 0).area, 2);
+    EXPECT_EQ(region(s, 0).plane.n, (Normal{0, 0, 1}));
+}
+
+TEST(Regions, FloorsCutWithTVerticesAreOnePolygon) {
+    const auto s = Sketch().rectangle(0, 0, 1, 2).rectangle(1, 0, 2, 1).rectangle(1, 1, 2, 2).light().make();
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(s.scene->regions().size(), 2u);
+    EXPECT_EQ(region(s, 0).surfaces.size(), 3u);
+    EXPECT_EQ(region(s, 0).loops, (std::vector<std::vector<Point>>{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}}));
+}
+
+TEST(Regions, ATriangulatedCopyHasTheSameLoops) {
+    const Point a{0, 0, 0}, b{3, 0, 0}, c{3, 3, 0}, d{1, 1, 0}, e{0, 3, 0};
+    const auto whole = Sketch().add({a, b, c, d, e}).light().make();
+    const auto cut = Sketch().add({a, b, d}).add({d, e, a}).add({b, c, d}).light().make();
+    ASSERT_TRUE(whole.scene && cut.scene);
+    EXPECT_EQ(region(whole, 0).loops, region(cut, 0).loops);
+    EXPECT_EQ(region(whole, 0).plane.offset, region(cut, 0).plane.offset);
+}
+
+TEST(Regions, AFrameOfFourRectanglesHasAHole) {
+    const auto s =
+        Sketch().rectangle(0, 0, 3, 1).rectangle(0, 2, 3, 3).rectangle(0, 1, 1, 2).rectangle(2, 1, 3, 2).light().make();
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(s.scene->regions().size(), 2u);
+    ASSERT_EQ(region(s, 0).loops.size(), 2u);
+    EXPECT_EQ(region(s, 0).loops[0], (std::vector<Point>{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}}));
+    EXPECT_EQ(region(s, 0).loops[1], (std::vector<Point>{{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}}));
+    EXPECT_EQ(region(s, 0).area, 8);
+}
+
+TEST(Regions, AHoleGivenByABridgeIsTheHoleOfTheSameRegion) {
+    const auto s = Sketch()
+                       .add({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0}, {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0}})
+                       .light()
+                       .make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_TRUE(s.findings.empty());
+    ASSERT_EQ(region(s, 0).loops.size(), 2u);
+    EXPECT_EQ(region(s, 0).loops[1], (std::vector<Point>{{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}}));
+    EXPECT_EQ(s.scene->outline(SurfaceId(0)).size(), 10u);
+}
+
+TEST(Regions, OtherMaterialsOtherSidesAndTouchingCornersStayApart) {
+    EXPECT_EQ(Sketch().rectangle(0, 0, 1, 1).rectangle(1, 0, 2, 1, 2).light().make().scene->regions().size(), 3u);
+    EXPECT_EQ(Sketch().rectangle(0, 0, 1, 1).rectangle(1, 1, 2, 2).light().make().scene->regions().size(), 3u);
+    const auto turned = Sketch().rectangle(0, 0, 1, 1).add({{1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 0, 0}}).light().make();
+    EXPECT_EQ(turned.scene->regions().size(), 3u);
+    const auto folded = Sketch().rectangle(0, 0, 1, 1).add({{1, 0, 0}, {2, 0, 0.1}, {2, 1, 0.1}, {1, 1, 0}}).light().make();
+    EXPECT_EQ(folded.scene->regions().size(), 3u);
+}
+
+TEST(Regions, TwoSquaresThatMeetInACornerAndAThirdThatJoinsThemAreOneRegion) {
+    const auto s = Sketch().rectangle(0, 0, 1, 1).rectangle(1, 1, 2, 2).rectangle(1, 0, 2, 1).light().make();
+    ASSERT_EQ(s.scene->regions().size(), 2u);
+    EXPECT_EQ(region(s, 0).loops[0].size(), 6u);
+}
+
+TEST(Regions, FacesBentWithinTheToleranceLieInOnePlane) {
+    Sketch sketch;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) {
+            const auto at = [](int x, int y) { return Point{double(x), double(y), (x + y) % 2 * 1e-6}; };
+            sketch.add({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    const auto s = sketch.light().make();
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(s.scene->regions().size(), 2u);
+    EXPECT_EQ(count(s, Finding::Kind::repair), 1);
+    ASSERT_EQ(region(s, 0).loops[0].size(), 4u);
+    for (std::size_t f = 0; f < 16; ++f)
+        for (const Point& p : s.scene->outline(SurfaceId(f)))
+            EXPECT_NEAR(region(s, 0).plane.signed_distance(p), 0, 1e-15);  // moved into the plane, but for rounding
+}
+
+TEST(Regions, AFinelyCutCylinderIsNotTakenForAPlane) {
+    Sketch sketch;
+    const int n = 20000;  // neighbours are tilted by 0.3 mrad, below what bent faces are allowed
+    const auto at = [&](int i, double z) { return Point{std::cos(2 * pi * i / n), std::sin(2 * pi * i / n), z}; };
+    for (int i = 0; i < n; ++i) sketch.add({at(i, 0), at((i + 1) % n, 0), at((i + 1) % n, 1), at(i, 1)});
+    const auto s = sketch.light().make();
+    ASSERT_TRUE(s.scene);
+    double area = 0;
+    for (const Region& r : s.scene->regions()) area += r.area;
+    EXPECT_NEAR(area, 2 * pi + 1, 1e-5);  // the side and the light; a facet's area differs by 1e-8 of itself
+    EXPECT_GT(s.scene->regions().size(), 5000u);
+}
+
+TEST(Checks, CornersAtOnePlaceAreMergedAndSaid) {
+    const auto s = Sketch().add({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}).light().make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->outline(SurfaceId(0)).size(), 4u);
+    ASSERT_EQ(count(s, Finding::Kind::repair), 1);
+    EXPECT_EQ(s.findings[0].line, 1);
+}
+
+TEST(Checks, FacesWithoutAreaAreLeftOutAndSaid) {
+    const auto s = Sketch().rectangle(0, 0, 1, 1).add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).add({{0, 0, 0}, {1, 0, 0}}).light().make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 2u);
+    ASSERT_EQ(count(s, Finding::Kind::repair), 2);
+    EXPECT_EQ(s.findings[0].line, 2);
+    EXPECT_EQ(s.findings[1].line, 3);
+}
+
+TEST(Checks, ABowTieIsAnErrorWhetherItsPartsCancelOrNot) {
+    for (double y : {1.0, 1.5}) {
+        const auto s = Sketch().add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, y, 0}}).light().make();
+        ASSERT_FALSE(s.scene);
+        EXPECT_EQ(s.scene.error().code, ErrorCode::bad_input);
+        EXPECT_EQ(s.scene.error().where, "sketch.obj:1");
+        EXPECT_NE(s.scene.error().message.find("crosses itself"), std::string::npos);
+    }
+}
+
+TEST(Checks, AClearlyBentFaceIsAnErrorThatSaysByHowMuch) {
+    const auto s = Sketch().add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.04}, {0, 1, 0}}).light().make();
+    ASSERT_FALSE(s.scene);
+    EXPECT_NE(s.scene.error().message.find("0.01 m out of plane"), std::string::npos) << s.scene.error().message;
+}
+
+TEST(Checks, EveryErrorIsFoundNotJustTheFirst) {
+    Sketch sketch;
+    sketch.add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.4}, {0, 1, 0}}).add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.5, 0}}).light();
+    sketch.d.materials[0].reflectance[1] = 1.25;
+    const auto s = sketch.make();
+    EXPECT_EQ(count(s, Finding::Kind::error), 3);
+    EXPECT_NE(s.scene.error().message.find("2 more errors"), std::string::npos);
+}
+
+TEST(Checks, ARepeatedFaceIsLeftOutNamingBothLines) {
+    const auto s = Sketch().rectangle(0, 0, 1, 1).light().add({{1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}}).make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 2u);
+    ASSERT_EQ(count(s, Finding::Kind::repair), 1);
+    EXPECT_EQ(s.findings[0].line, 3);
+    EXPECT_NE(s.findings[0].message.find("line 1"), std::string::npos);
+}
+
+TEST(Checks, ASceneWithoutLightIsWarnedOfAndOneWithoutFacesIsNone) {
+    const auto dark = Sketch().rectangle(0, 0, 1, 1).make();
+    EXPECT_TRUE(dark.scene);
+    EXPECT_EQ(count(dark, Finding::Kind::warning), 1);
+    EXPECT_FALSE(Sketch().make().scene);
+}
+
+TEST(Checks, ValuesThatAreNotNumbersOrPlacesAreErrors) {
+    Sketch far = Sketch().rectangle(0, 0, 1, 1).light();
+    far.d.faces[0].corners[2] = 99;
+    EXPECT_FALSE(far.make().scene);
+    Sketch nowhere = Sketch().rectangle(0, 0, 1, 1).light();
+    nowhere.d.points[1].x = std::nan("");
+    EXPECT_FALSE(nowhere.make().scene);
+    Sketch nameless = Sketch().rectangle(0, 0, 1, 1).light();
+    nameless.d.faces[0].material = 7;
+    EXPECT_FALSE(nameless.make().scene);
+    Sketch cold = Sketch().rectangle(0, 0, 1, 1).light();
+    cold.d.materials[1].exitance[0] = -1;
+    EXPECT_FALSE(cold.make().scene);
+}
+
+TEST(Checks, ScenesMayBeTinyHugeAndFarAway) {
+    for (double scale : {1e-6, 1.0, 1e8})
+        for (double shift : {0.0, 1e6}) {
+            Sketch sketch = Sketch().rectangle(0, 0, 1, 2).rectangle(1, 0, 2, 1).rectangle(1, 1, 2, 2).light();
+            for (Point& p : sketch.d.points) p = scale * (p + Vec3{shift, -shift, shift / 2});
+            const auto s = sketch.make();
+            ASSERT_TRUE(s.scene);
+            ASSERT_EQ(s.scene->regions().size(), 2u);
+            EXPECT_EQ(region(s, 0).loops[0].size(), 4u);
+        }
+}
+
+}  // namespace
+}  // namespace exitance
