@@ -1,0 +1,225 @@
+#include "exitance/cli/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/cli/nearest.hpp"
+
+namespace exitance {
+namespace {
+
+using Parsed = std::variant<Command, Information>;
+
+// -------------------------------------------------------------------------------------------------- values
+
+std::vector<std::string> names_of(const auto& table) {
+    std::vector<std::string> names;
+    for (const auto& entry : table) names.emplace_back(entry.second);
+    return names;
+}
+
+/// An option whose values are the names of a table.
+template <class Choice, std::size_t N, class Target>
+CLI::Option* add_choice(CLI::App& app, const std::string& name,
+                        const std::array<std::pair<Choice, std::string_view>, N>& table, Target& target,
+                        const std::string& help) {
+    const auto read = [name, &table, &target](const std::string& word) {
+        for (const auto& [value, known] : table)
+            if (known == word) {
+                target = value;
+                return;
+            }
+        throw CLI::ValidationError(name, fmt::format("'{}' is not one of {}", word, fmt::join(names_of(table), ", ")));
+    };
+    return app.add_option_function<std::string>(name, read, help)
+        ->type_name(fmt::format("{}", fmt::join(names_of(table), "|")));
+}
+
+double read_number(const std::string& option, const std::string& word) {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(word, value) || !std::isfinite(value))
+        throw CLI::ValidationError(option, fmt::format("'{}' is not a number", word));
+    return value;
+}
+
+/// A number above 0.
+template <class Target>
+CLI::Option* add_positive(CLI::App& app, const std::string& name, Target& target, const std::string& unit,
+                          const std::string& help) {
+    const auto read = [name, &target](const std::string& word) {
+        const double value = read_number(name, word);
+        if (value <= 0) throw CLI::ValidationError(name, fmt::format("must be above 0, not {}", word));
+        target = value;
+    };
+    return app.add_option_function<std::string>(name, read, help)->type_name(unit);
+}
+
+/// A whole number of at least `least`.
+template <class Target>
+CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, long long least,
+                       const std::string& help) {
+    constexpr double most = std::is_same_v<Target, int> ? 1 << 16 : 9e15;
+    const auto read = [name, &target, least](const std::string& word) {
+        const double value = read_number(name, word);
+        if (value != std::floor(value) || value < static_cast<double>(least))
+            throw CLI::ValidationError(name, fmt::format("must be a whole number from {}, not {}", least, word));
+        if (value > most) throw CLI::ValidationError(name, fmt::format("{} is too much", word));
+        target = static_cast<std::size_t>(value);
+    };
+    return app.add_option_function<std::string>(name, read, help)->type_name("N");
+}
+
+[[maybe_unused]] int read_bounces(const std::string& word) {
+    if (word == "all") return all_bounces;
+    const double value = read_number("--bounces", word);
+    if (value != std::floor(value) || value < 0 || value > 1e9)
+        throw CLI::ValidationError("--bounces", fmt::format("must be 'all' or a whole number from 0, not {}", word));
+    return static_cast<int>(value);
+}
+
+/// "4G", "500M", "1048576": bytes, with K, M, G and T as powers of 1024.
+[[maybe_unused]] std::size_t read_bytes(const std::string& option, const std::string& word) {
+    const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
+    std::string unit = word.substr(digits);
+    for (char& c : unit) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    const std::vector<std::string> units{"", "K", "M", "G", "T"};
+    const auto at = std::find_if(units.begin(), units.end(), [&](const std::string& prefix) {
+        return unit == prefix || unit == prefix + "B" || (!prefix.empty() && unit == prefix + "IB");
+    });
+    if (digits == 0 || at == units.end())
+        throw CLI::ValidationError(option, fmt::format("'{}' is not a size such as 500M or 4G", word));
+    const double bytes =
+        std::ldexp(read_number(option, word.substr(0, digits)), static_cast<int>(10 * (at - units.begin())));
+    if (bytes < 1 || bytes > 1e18)
+        throw CLI::ValidationError(option, fmt::format("must be between 1 byte and an exabyte, not {}", word));
+    return static_cast<std::size_t>(bytes);
+}
+
+// -------------------------------------------------------------------------------------------------- verbs
+
+constexpr std::array<std::pair<ProgressStyle, std::string_view>, 5> progress_names{{
+    {ProgressStyle::automatic, "auto"},
+    {ProgressStyle::bar, "bar"},
+    {ProgressStyle::plain, "plain"},
+    {ProgressStyle::json, "json"},
+    {ProgressStyle::none, "none"},
+}};
+
+constexpr std::array<std::pair<LightComponent, std::string_view>, 3> component_names{{
+    {LightComponent::total, "total"},
+    {LightComponent::direct, "direct"},
+    {LightComponent::indirect, "indirect"},
+}};
+
+void declare_common(CLI::App& app, CommonArguments& arguments) {
+    app.add_flag("-q,--quiet", arguments.quiet, "Nothing but errors on the error stream");
+    app.add_flag("-v,--verbose", arguments.verbose, "Say more on the error stream");
+}
+
+void declare_json(CLI::App& app, CommonArguments& arguments) {
+    app.add_flag("--json", arguments.json, "Facts as JSON on standard output");
+}
+
+[[maybe_unused]] void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
+    add_count(app, "--threads", threads, 1, "Threads to use; default all. The result does not depend on it");
+    add_choice(app, "--progress", progress_names, arguments.progress,
+               "auto: a bar on a terminal, a line every ten seconds otherwise");
+}
+
+void declare(CLI::App& app, CheckArguments& arguments) {
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
+    declare_json(app, arguments);
+}
+
+// -------------------------------------------------------------------------------------------------- parsing
+
+/// The word in quotation marks or after a colon that CLI11 did not expect.
+Error unexpected(const CLI::App& app, const std::vector<std::string>& words) {
+    const std::string word = words.empty() ? "" : words.front();
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    const std::string near = word.starts_with("--") ? nearest(word.substr(0, word.find('=')), known) : "";
+    return {ErrorCode::usage, fmt::format("'{}' is not understood", word), "",
+            near.empty() ? app.get_name() + " --help lists the options" : fmt::format("did you mean {}?", near)};
+}
+
+/// CLI11's messages begin with the option's name where there is one; two of them need clearer words.
+Error usage_error(const CLI::App& app, const std::string& what) {
+    Error error{ErrorCode::usage, what, "", app.get_name() + " --help shows how it is used"};
+    if (const std::size_t colon = what.find(": "); what.starts_with("-") && colon != std::string::npos) {
+        error.where = what.substr(0, colon);
+        error.message = what.substr(colon + 2);
+        if (error.message.ends_with(" missing")) error.message = "its value is missing";
+        if (error.message.starts_with("At Most 1 required")) error.message = "is given more than once";
+    }
+    return error;
+}
+
+template <class Arguments>
+Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words) {
+    Arguments arguments;
+    declare(app, arguments);
+    declare_common(app, arguments);
+    app.allow_extras();
+    try {
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::CallForHelp&) {
+        return Parsed(Information{app.help()});
+    } catch (const CLI::ParseError& error) {
+        if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) return unexpected(app, extras);
+        return usage_error(app, error.what());
+    }
+    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) return unexpected(app, extras);
+    return Parsed(Command(std::move(arguments)));
+}
+
+struct Verb {
+    std::string name, does, example;
+    Result<Parsed> (*parse)(CLI::App&, const std::vector<std::string>&);
+};
+
+const std::vector<Verb>& verbs() {
+    static const std::vector<Verb> all{
+        {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
+         parse_verb<CheckArguments>},
+    };
+    return all;
+}
+
+std::string help() {
+    std::string text =
+        "Example:\n  exitance solve room.obj -o room.h5\n\n"
+        "Light in rooms of diffuse surfaces.\n\n"
+        "Usage: exitance VERB [options] INPUT...\n\nVerbs:\n";
+    for (const Verb& verb : verbs()) text += fmt::format("  {:<12} {}\n", verb.name, verb.does);
+    return text + "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n";
+}
+
+Error unknown_verb(const std::string& word) {
+    std::vector<std::string> names;
+    for (const Verb& verb : verbs()) names.push_back(verb.name);
+    const std::string near = nearest(word, names);
+    return {ErrorCode::usage, fmt::format("there is no verb '{}'", word), "",
+            near.empty() ? fmt::format("the verbs are {}", fmt::join(names, ", "))
+                         : fmt::format("did you mean '{}'?", near)};
+}
+
+}  // namespace
+
+Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
+    if (arguments.empty()) return Error{ErrorCode::usage, "a verb is missing", "", "exitance --help lists the verbs"};
+    const std::string& first = arguments.front();
+    if (first == "--help" || first == "-h" || first == "help") return Parsed(Information{help()});
+    if (first == "--version")
+        return Parsed(Information{fmt::format("exitance {}\n{}\n", EXITANCE_VERSION, EXITANCE_LIBRARIES)});
+    const auto verb = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == first; });
+    if (verb == verbs().end()) return unknown_verb(first);
+    CLI::App app(fmt::format("Example:\n  {}\n\n{}", verb->example, verb->does), "exitance " + verb->name);
+    return verb->parse(app, {arguments.begin() + 1, arguments.end()});
+}
+
+}  // namespace exitance

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "exitance/cli/exit_code.hpp"
+#include "exitance/core/result.hpp"
+#include "exitance/methods/solve_options.hpp"
+
+namespace exitance {
+
+enum class ProgressStyle { automatic, bar, plain, json, none };
+
+/// What every verb understands.
+struct CommonArguments {
+    bool json = false;   ///< Facts as JSON on stdout.
+    bool quiet = false;  ///< Nothing but errors on stderr.
+    bool verbose = false;
+    ProgressStyle progress = ProgressStyle::automatic;
+};
+
+struct SolveArguments : CommonArguments {
+    std::string scene, output;
+    SolveOptions options;
+    std::optional<double> time_limit;  ///< Of the whole run, seconds.
+    bool dry_run = false;
+};
+
+enum class LightComponent { total, direct, indirect };
+
+struct ProbeArguments : CommonArguments {
+    std::string solution, points;
+    std::string output = "-";
+    bool interpolant = false;
+    LightComponent component = LightComponent::total;
+    std::size_t reference_paths = 0;  ///< 0: evaluate the solution; N: N unbiased paths a point instead.
+    std::uint64_t seed = 1;
+    int threads = 0;
+};
+
+struct CompareArguments : CommonArguments {
+    std::string solution, reference;
+    int threads = 0;
+};
+
+struct StatsArguments : CommonArguments {
+    std::string solution;
+};
+
+struct ExportArguments : CommonArguments {
+    std::string solution, output;
+};
+
+struct CheckArguments : CommonArguments {
+    std::string scene;
+};
+
+struct GenerateArguments : CommonArguments {
+    std::string family, output;
+    std::vector<std::string> parameters;  ///< "name=value"
+};
+
+struct ViewFactorArguments : CommonArguments {
+    std::string scene, output;
+    double tolerance = 1e-4;  ///< Relative error of every entry above 1e-6.
+    int threads = 0;
+};
+
+/// What the program is to do.
+using Command = std::variant<CheckArguments>;
+
+/// Text asked for by --help or --version.
+struct Information {
+    std::string text;
+};
+
+/// Reads the command line, the program's name left out. Errors are of code `usage` and name the nearest known verb or
+/// option in their hint.
+Result<std::variant<Command, Information>> parse_arguments(const std::vector<std::string>& arguments);
+
+}  // namespace exitance

@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include "exitance/cli/json_output.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/io/scene_file.hpp"
+
+namespace exitance {
+namespace {
+
+std::string place(const Finding& finding) {
+    return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
+}
+
+/// One kind of finding under its heading; nothing when there is none.
+std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std::string_view singular,
+                  std::string_view plural) {
+    std::string lines;
+    std::size_t count = 0;
+    for (const Finding& finding : findings) {
+        if (finding.kind != kind) continue;
+        ++count;
+        lines += fmt::format("  {}: {}\n", place(finding), finding.message);
+        if (!finding.hint.empty()) lines += fmt::format("    hint: {}\n", finding.hint);
+    }
+    return count == 0 ? "" : fmt::format("{} {}\n{}", count, count == 1 ? singular : plural, lines);
+}
+
+std::string report(const CheckedScene& checked) {
+    using Kind = Finding::Kind;
+    std::string text = group(checked.findings, Kind::error, "error", "errors") +
+                       group(checked.findings, Kind::warning, "warning", "warnings") +
+                       group(checked.findings, Kind::repair, "repair", "repairs");
+    if (!checked.scene) return text + "The scene cannot be used.\n";
+    const Scene& scene = *checked.scene;
+    double area = 0;
+    for (const Surface& surface : scene.surfaces()) area += surface.area;
+    const Vec3 size = scene.box().size();
+    return text + fmt::format(
+                      "The scene can be used: {} surfaces of {:.4g} m^2 ({} after joining coplanar neighbours), "
+                      "{} emitters, {} materials, {:.4g} x {:.4g} x {:.4g} m.\n",
+                      scene.surfaces().size(), area, scene.regions().size(), scene.emitters().size(),
+                      scene.materials().size(), size.x, size.y, size.z);
+}
+
+}  // namespace
+
+ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
+    const CheckedScene checked = load_scene(arguments.scene);
+    terminal.print(arguments.json ? check_json(checked) : report(checked));
+    return checked.scene ? ExitCode::done : terminal.fail(checked);
+}
+
+}  // namespace exitance

@@ -1,0 +1,123 @@
+#include "exitance/cli/json_output.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace exitance {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Text from files may hold bytes that are not UTF-8; they are replaced, not refused.
+std::string dump(const Json& json, int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+/// null where nothing was chosen.
+template <class T>
+Json value_or_null(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+template <class Choice, std::size_t N>
+Json name_or_null(const std::array<std::pair<Choice, std::string_view>, N>& table, const std::optional<Choice>& value) {
+    return value ? Json(name_in(table, *value)) : Json(nullptr);
+}
+
+Json to_json(const std::vector<Finding>& findings, Finding::Kind kind) {
+    Json list = Json::array();
+    for (const Finding& finding : findings)
+        if (finding.kind == kind)
+            list.push_back({{"file", finding.file}, {"line", finding.line}, {"message", finding.message}});
+    return list;
+}
+
+}  // namespace
+
+std::string statistics_json(const SolveStatistics& s) {
+    Json seconds;
+    for (const char* phase : {"total", "read", "mesh", "link", "solve", "certify", "reconstruct", "write"}) {
+        const auto at = s.seconds.find(phase);
+        seconds[phase] = at == s.seconds.end() ? 0.0 : at->second;
+    }
+    const Json json{
+        {"method", s.method},
+        {"basis", s.basis},
+        {"threads", s.threads},
+        {"schedule", s.schedule},
+        {"surfaces", s.surfaces},
+        {"elements", s.elements},
+        {"leaf_elements", s.leaf_elements},
+        {"links", s.links},
+        {"rays", s.rays},
+        {"form_factors", s.form_factors},
+        {"iterations", s.iterations},
+        {"converged", s.converged},
+        {"residual", s.residual},
+        {"relative_error_estimate", s.relative_error_estimate},
+        {"relative_error_bound", s.relative_error_bound},
+        {"relative_error_estimate_interpolant", s.relative_error_estimate_interpolant},
+        {"energy", {{"emitted", s.energy.emitted}, {"absorbed", s.energy.absorbed}, {"defect", s.energy.defect}}},
+        {"seconds", seconds},
+        {"peak_memory_bytes", s.peak_memory_bytes},
+        {"link_memory_bytes", s.link_memory_bytes},
+        {"warnings", s.warnings},
+    };
+    return dump(json, 2);
+}
+
+std::string options_json(const SolveOptions& o) {
+    const Json json{
+        {"method", name_in(method_names, o.method)},
+        {"basis", name_or_null(basis_names, o.basis)},
+        {"bounces", o.bounces == all_bounces ? Json("all") : Json(o.bounces)},
+        {"error", value_or_null(o.error_demand())},
+        {"mesh_size", value_or_null(o.mesh_size)},
+        {"min_area", value_or_null(o.min_area)},
+        {"residual", value_or_null(o.residual)},
+        {"max_iterations", value_or_null(o.max_iterations)},
+        {"relaxation", name_or_null(relaxation_names, o.relaxation)},
+        {"overshooting", o.overshooting},
+        {"visibility", name_in(visibility_names, o.visibility)},
+        {"visibility_samples", value_or_null(o.visibility_samples)},
+        {"form_factors", name_or_null(form_factor_names, o.form_factors)},
+        {"seed", o.seed},
+    };
+    return dump(json, -1);
+}
+
+std::string check_json(const CheckedScene& checked) {
+    const std::size_t surfaces = checked.scene ? checked.scene->surfaces().size() : 0;
+    Json errors = to_json(checked.findings, Finding::Kind::error);
+    if (!checked.scene && errors.empty())
+        errors.push_back(
+            {{"file", checked.scene.error().where}, {"line", 0}, {"message", checked.scene.error().message}});
+    const Json json{
+        {"surfaces", surfaces},
+        {"errors", errors},
+        {"warnings", to_json(checked.findings, Finding::Kind::warning)},
+        {"repairs", to_json(checked.findings, Finding::Kind::repair)},
+    };
+    return dump(json, 2);
+}
+
+std::string view_factors_json(const ViewFactorFacts& facts) {
+    const Json json{
+        {"surfaces", facts.surfaces},
+        {"reciprocity_defect", facts.reciprocity_defect},
+        {"row_sum", {{"least", facts.least_row_sum}, {"most", facts.most_row_sum}}},
+        {"seconds", facts.seconds},
+    };
+    return dump(json, 2);
+}
+
+std::string progress_json(std::string_view phase, double fraction, std::string_view detail, double elapsed,
+                          std::optional<double> remaining) {
+    const Json json{{"phase", phase},
+                    {"fraction", fraction},
+                    {"detail", detail},
+                    {"elapsed", elapsed},
+                    {"remaining", value_or_null(remaining)}};
+    return dump(json, -1);
+}
+
+}  // namespace exitance

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exitance/methods/solve_options.hpp"
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+/// The one place where the program writes JSON. Every function returns text without a line end; the names and the
+/// order of the keys are part of the program's interface.
+
+/// `solve --json` and `stats --json`.
+std::string statistics_json(const SolveStatistics& statistics);
+
+/// The options in force, as the solution records them: what the light depends on, and hence neither threads nor limits.
+std::string options_json(const SolveOptions& options);
+
+/// `check --json`.
+std::string check_json(const CheckedScene& checked);
+
+/// What `viewfactors` found out besides the matrix.
+struct ViewFactorFacts {
+    std::size_t surfaces = 0;
+    double seconds = 0;
+    double reciprocity_defect = 0;
+    double least_row_sum = 0, most_row_sum = 0;
+};
+
+/// `viewfactors --json`.
+std::string view_factors_json(const ViewFactorFacts& facts);
+
+/// One line of `--progress json`; times in seconds.
+std::string progress_json(std::string_view phase, double fraction, std::string_view detail, double elapsed,
+                          std::optional<double> remaining);
+
+}  // namespace exitance

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "exitance/cli/exit_code.hpp"
+#include "exitance/core/progress.hpp"
+
+namespace exitance {
+
+/// While it lives, SIGINT and SIGTERM ask the work to stop at its next safe point; a second one ends the program at
+/// once. One at a time.
+class SignalGuard {
+  public:
+    explicit SignalGuard(StopRequest& stop);
+    ~SignalGuard();
+    SignalGuard(const SignalGuard&) = delete;
+    SignalGuard& operator=(const SignalGuard&) = delete;
+
+    /// The exit status that the signal received so far asks for; empty when there was none.
+    std::optional<ExitCode> received() const;
+};
+
+}  // namespace exitance

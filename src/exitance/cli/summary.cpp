@@ -1,0 +1,58 @@
+#include "exitance/cli/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace exitance {
+namespace {
+
+std::string seconds_line(const std::map<std::string, double>& seconds) {
+    std::string parts;
+    for (const char* phase : {"read", "mesh", "link", "solve", "certify", "reconstruct", "write"}) {
+        const auto at = seconds.find(phase);
+        if (at == seconds.end() || at->second < 0.0005) continue;
+        parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", phase, at->second);
+    }
+    const auto total = seconds.find("total");
+    return fmt::format("{:.3g} s{}", total == seconds.end() ? 0.0 : total->second,
+                       parts.empty() ? "" : " (" + parts + ")");
+}
+
+}  // namespace
+
+std::string percent(double share) {
+    return fmt::format("{:.3g}%", 100 * share);
+}
+
+std::string bytes(std::size_t count) {
+    const std::array<const char*, 5> units{"B", "kB", "MB", "GB", "TB"};
+    double value = static_cast<double>(count);
+    std::size_t unit = 0;
+    while (value >= 999.5 && unit + 1 < units.size()) value /= 1000, ++unit;
+    return fmt::format("{:.3g} {}", value, units[unit]);
+}
+
+std::string summary(const SolveStatistics& s) {
+    std::string text;
+    const auto line = [&](std::string_view name, const std::string& value) {
+        text += fmt::format("{:<10} {}\n", name, value);
+    };
+    line("method", s.basis.empty() ? s.method : fmt::format("{}, {} basis", s.method, s.basis));
+    line("error", fmt::format("{} of the light that probe evaluates (at most {}), {} of what export writes",
+                              percent(s.relative_error_estimate), percent(s.relative_error_bound),
+                              percent(s.relative_error_estimate_interpolant)));
+    line("reached", s.converged ? "yes" : s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by));
+    line("elements", fmt::format("{} ({} leaves) on {} surfaces", s.elements, s.leaf_elements, s.surfaces));
+    line("transport", fmt::format("{} links ({}), {} form factors, {} rays", s.links, bytes(s.link_memory_bytes),
+                                  s.form_factors, s.rays));
+    line("solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
+    line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {} apart", s.energy.emitted, s.energy.absorbed,
+                               percent(s.energy.defect)));
+    line("time", fmt::format("{} on {} thread{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s"));
+    line("memory", bytes(s.peak_memory_bytes) + " at most");
+    for (const std::string& warning : s.warnings) line("warning", warning);
+    return text;
+}
+
+}  // namespace exitance

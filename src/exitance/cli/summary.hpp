@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+/// What a solve took and what it reached, for people: what `solve` and `stats` print.
+std::string summary(const SolveStatistics& statistics);
+
+/// "6.25%", "0.038%".
+std::string percent(double share);
+
+/// "1.2 GB", "830 kB".
+std::string bytes(std::size_t count);
+
+}  // namespace exitance

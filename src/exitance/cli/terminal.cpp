@@ -1,0 +1,69 @@
+#include "exitance/cli/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_findings = 20;  ///< Shown in passing; `exitance check` shows all.
+
+std::string place(const Finding& finding) {
+    return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
+}
+
+}  // namespace
+
+Terminal::Terminal(const CommonArguments& arguments)
+    : quiet_(arguments.quiet), progress_(resolve(arguments.progress), arguments.quiet, arguments.verbose) {}
+
+void Terminal::print(std::string_view text) {
+    progress_.clear();
+    fmt::print(stdout, "{}{}", text, text.ends_with('\n') ? "" : "\n");
+}
+
+void Terminal::note(std::string_view text) {
+    progress_.clear();
+    if (!quiet_) fmt::print(stderr, "{}\n", text);
+}
+
+ExitCode Terminal::fail(const Error& error) {
+    progress_.clear();
+    fmt::print(stderr, "error: {}{}{}\n", error.where, error.where.empty() ? "" : ": ", error.message);
+    if (!error.hint.empty()) fmt::print(stderr, "hint: {}\n", error.hint);
+    return exit_code(error.code);
+}
+
+void Terminal::show(const std::vector<Finding>& findings) {
+    progress_.clear();
+    if (quiet_) return;
+    std::size_t shown = 0;
+    for (const Finding& finding : findings) {
+        if (finding.kind == Finding::Kind::error) continue;
+        if (++shown > most_findings) continue;
+        fmt::print(stderr, "{}: {}: {}\n", finding.kind == Finding::Kind::repair ? "repair" : "warning", place(finding),
+                   finding.message);
+    }
+    if (shown > most_findings)
+        fmt::print(stderr, "warning: {} more findings; `exitance check` shows them all\n", shown - most_findings);
+}
+
+ExitCode Terminal::fail(const CheckedScene& checked) {
+    // The first error is the scene's own; the others are worth knowing before the file is mended.
+    const ExitCode code = fail(checked.scene.error());
+    std::size_t more = 0;
+    for (const Finding& finding : checked.findings) more += finding.kind == Finding::Kind::error;
+    if (more > 1) note(fmt::format("{} more errors; `exitance check` shows them all", more - 1));
+    return code;
+}
+
+ExitCode Terminal::finish(ExitCode code) {
+    progress_.finish();
+    const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    if (written || code != ExitCode::done) return code;
+    return fail(Error{ErrorCode::cannot_write, "the result could not be written", "standard output",
+                      "is the disk full, or the reader gone?"});
+}
+
+}  // namespace exitance

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/exit_code.hpp"
+#include "exitance/cli/terminal.hpp"
+
+namespace exitance {
+
+/// What each verb does; one file a verb.
+ExitCode run(const SolveArguments& arguments, Terminal& terminal);
+ExitCode run(const ProbeArguments& arguments, Terminal& terminal);
+ExitCode run(const CompareArguments& arguments, Terminal& terminal);
+ExitCode run(const StatsArguments& arguments, Terminal& terminal);
+ExitCode run(const ExportArguments& arguments, Terminal& terminal);
+ExitCode run(const CheckArguments& arguments, Terminal& terminal);
+ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
+ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
+
+}  // namespace exitance
