@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+
+#include "exitance/core/random.hpp"
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+/// A room of 2 m x 1 m x 1 m: its floor cut into two faces, a luminous strip in its ceiling, and a free-standing
+/// triangle seen from both sides. Eleven faces on lines 10 to 20, four materials, three groups.
+inline Scene sample_scene() {
+    SceneDescription d;
+    d.file = "sample room.obj";
+    const auto grey = [](double r, double g, double b) {
+        Spectrum s(g);
+        s[0] = r, s[bands - 1] = b;
+        return s;
+    };
+    d.materials = {{"wall", grey(0.5, 0.6, 0.7), Spectrum()},
+                   {"floor", grey(0.3, 0.2, 0.1), Spectrum()},
+                   {"lamp", Spectrum(), exitance_of_radiance(grey(10, 9, 8))},
+                   {"sign \xc3\xa9", grey(0.8, 0.1, 0.1), exitance_of_radiance(grey(0.1, 0.2, 0.3))}};
+    d.groups = {"shell", "lamp", "sign"};
+    int line = 10;
+    const auto face = [&](std::initializer_list<Point> corners, std::uint32_t material, std::uint32_t group) {
+        SceneDescription::Face f;
+        for (const Point& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        f.material = material, f.group = group, f.line = line++;
+        d.faces.push_back(f);
+    };
+    face({{0, 0, 0}, {1.25, 0, 0}, {1.25, 1, 0}, {0, 1, 0}}, 1, 0);
+    face({{1.25, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1.25, 1, 0}}, 1, 0);
+    face({{0, 0, 1}, {0, 0.4, 1}, {2, 0.4, 1}, {2, 0, 1}}, 0, 0);
+    face({{0, 0.4, 1}, {0, 0.6, 1}, {2, 0.6, 1}, {2, 0.4, 1}}, 2, 1);
+    face({{0, 0.6, 1}, {0, 1, 1}, {2, 1, 1}, {2, 0.6, 1}}, 0, 0);
+    face({{0, 0, 0}, {0, 0, 1}, {2, 0, 1}, {2, 0, 0}}, 0, 0);
+    face({{0, 1, 0}, {2, 1, 0}, {2, 1, 1}, {0, 1, 1}}, 0, 0);
+    face({{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}, 0, 0);
+    face({{2, 0, 0}, {2, 0, 1}, {2, 1, 1}, {2, 1, 0}}, 0, 0);
+    face({{0.5, 0.3, 0.2}, {0.9, 0.3, 0.3}, {0.6, 0.5, 0.7}}, 3, 2);
+    face({{0.5, 0.3, 0.2}, {0.6, 0.5, 0.7}, {0.9, 0.3, 0.3}}, 3, 2);
+    CheckedScene made = make_scene(d);
+    if (!made.scene) std::abort();  // the sample is good input
+    return *made.scene;
+}
+
+/// A tree over a scene whose regions are rectangles and triangles, cut at random; values at random.
+inline ElementFunction sample_function(const Scene& scene, std::uint64_t seed, int cuts) {
+    ElementFunction f;
+    for (RegionId r : scene.regions().ids()) {
+        const std::vector<Point>& loop = scene.regions()[r].loops[0];
+        const bool triangle = loop.size() == 3;
+        f.tree.add_root(r, {loop[0], loop[1] - loop[0], loop.back() - loop[0],
+                            triangle ? Patch::Shape::triangle : Patch::Shape::parallelogram});
+    }
+    RandomStream random(seed, Stream::mesh);
+    for (int i = 0; i < cuts; ++i) {
+        const auto leaves = f.tree.leaves();
+        const ElementId leaf = leaves[random.bits() % leaves.size()];
+        f.tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), 0.2 + 0.6 * random.uniform());
+    }
+    f.first_value.resize(f.tree.size(), 0);
+    for (ElementId e : f.tree.leaves()) {
+        f.first_value[e] = static_cast<std::uint32_t>(f.values.size());
+        for (int k = 0; k < f.tree.patch(e).corner_count(); ++k) {
+            f.values.emplace_back();
+            for (float& v : f.values.back()) v = static_cast<float>(30 * random.uniform());
+        }
+    }
+    return f;
+}
+
+inline Solution sample_solution(int cuts = 40) {
+    Solution s;
+    s.scene = sample_scene();
+    s.indirect = sample_function(s.scene, 1, cuts / 2);
+    s.interpolant = sample_function(s.scene, 2, cuts);
+    s.options = R"({"method": "hierarchical", "error": 0.02})";
+    s.bounces = -1;
+    SolveStatistics& t = s.statistics;
+    t.method = "hierarchical", t.basis = "constant", t.schedule = "stealing";
+    t.threads = 2, t.surfaces = 11, t.elements = 123, t.leaf_elements = 100, t.links = std::size_t(5) << 32;
+    t.rays = 7, t.form_factors = 8, t.iterations = 9, t.converged = true, t.residual = 1e-5;
+    t.relative_error_estimate = 0.011, t.relative_error_bound = 0.02, t.relative_error_estimate_interpolant = 0.03;
+    t.energy = {100, 99.5, 0.005};
+    t.seconds = {{"total", 1.5}, {"read", 0.1}, {"link", 1.0 / 3}};
+    t.peak_memory_bytes = 1000000, t.link_memory_bytes = 2000;
+    t.warnings = {"the room is open", "it is dark in there"};
+    return s;
+}
+
+}  // namespace exitance
