@@ -100,6 +100,7 @@ class Scene {
 
   private:
     friend class SceneBuilder;
+    friend class StoredScene;  ///< Restores a scene bit for bit from a solution's file.
     std::string file_;
     Field<SurfaceId, Surface> surfaces_;
     Field<MaterialId, Material> materials_;
