@@ -35,7 +35,9 @@ struct Float3 {
     float x, y, z;
 };
 
-Float3 to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+Float3 to_float(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
 RTCIntersectContext make_context() {
     RTCIntersectContext context;
@@ -64,8 +66,12 @@ struct RayTracer::Content {
     std::vector<SurfaceId> surface_of;  ///< Of every triangle.
 
     explicit Content(const Scene& s)
-        : scene(&s), centre(s.box().centre()), scale(std::exp2(-std::ilogb(s.size()))), lift_off(lift * s.size()),
-          device(rtcNewDevice(nullptr)), rtc(rtcNewScene(device)) {
+        : scene(&s),
+          centre(s.box().centre()),
+          scale(std::exp2(-std::ilogb(s.size()))),
+          lift_off(lift * s.size()),
+          device(rtcNewDevice(nullptr)),
+          rtc(rtcNewScene(device)) {
         std::vector<Float3> corners;
         std::vector<std::array<std::uint32_t, 3>> triangles;
         for (SurfaceId id : s.surfaces().ids()) {
@@ -139,7 +145,9 @@ RayTracer::~RayTracer() = default;
 RayTracer::RayTracer(RayTracer&&) noexcept = default;
 RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 
-std::size_t RayTracer::triangle_count() const { return content_->surface_of.size(); }
+std::size_t RayTracer::triangle_count() const {
+    return content_->surface_of.size();
+}
 
 std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,
                                std::span<RayHit> hits) const {
@@ -156,8 +164,8 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
             valid[i] = i < count ? -1 : 0;
             if (i >= count) continue;
             const Point& origin = origins[shared ? 0 : first + i];
-            set_ray(packet.ray, i, content_->local(origin + lifted), content_->local_direction(directions[first + i]), 0,
-                    HUGE_VALF);
+            set_ray(packet.ray, i, content_->local(origin + lifted), content_->local_direction(directions[first + i]),
+                    0, HUGE_VALF);
             packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         }
         rtcIntersect16(valid.data(), content_->rtc, &context, &packet);

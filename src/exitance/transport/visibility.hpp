@@ -10,16 +10,16 @@ namespace exitance {
 
 /// What a ray meets first.
 struct RayHit {
-    SurfaceId surface;  ///< None when nothing is met.
+    SurfaceId surface;                                          ///< None when nothing is met.
     double distance = std::numeric_limits<double>::infinity();  ///< In lengths of the ray's direction.
     bool front = false;                                         ///< Is it the surface's front that is met?
 };
 
 /// Rays through a scene, many at a time: single precision inside, on coordinates relative to the scene's middle. Rays
-/// that start on a region are lifted off its plane by a few roundings (2^-20 of the scene's size), so neither it nor its
-/// coplanar neighbours are ever in the way. Which surface is met is decided in single precision, so within about 1e-7
-/// of the scene's size beside an edge it may be the neighbour; the distance is to the plane of that surface, in double
-/// precision. Safe to use from any number of threads. The same rays give the same hits on any number of threads.
+/// that start on a region are lifted off its plane by a few roundings (2^-20 of the scene's size), so neither it nor
+/// its coplanar neighbours are ever in the way. Which surface is met is decided in single precision, so within about
+/// 1e-7 of the scene's size beside an edge it may be the neighbour; the distance is to the plane of that surface, in
+/// double precision. Safe to use from any number of threads. The same rays give the same hits on any number of threads.
 class RayTracer {
   public:
     /// The scene must outlive it. 0.3-0.5 s and about 85 MB a million triangles.
@@ -30,7 +30,8 @@ class RayTracer {
 
     /// The first surface along each ray from one point of region `own` (none: a point of free space). Directions need
     /// not have length 1. `hits` is as long as `directions`. Returns how many rays were traced.
-    std::size_t nearest(std::span<const Vec3> directions, const Point& origin, RegionId own, std::span<RayHit> hits) const;
+    std::size_t nearest(std::span<const Vec3> directions, const Point& origin, RegionId own,
+                        std::span<RayHit> hits) const;
 
     /// The same from a point of `own` a ray; all three are of one length.
     std::size_t nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,

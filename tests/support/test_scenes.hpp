@@ -1,0 +1,80 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "exitance/core/random.hpp"
+#include "exitance/geometry/polygon.hpp"
+#include "exitance/scene/scene.hpp"
+
+namespace exitance::test {
+
+/// A face of a hand-made scene; it emits if its exitance is not 0.
+struct Face {
+    std::vector<Point> corners;
+    double exitance = 0;
+};
+
+inline Scene make(const std::vector<Face>& faces) {
+    SceneDescription description;
+    description.groups = {"all"};
+    for (const Face& face : faces) {
+        SceneDescription::Face f;
+        for (const Point& p : face.corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(description.points.size()));
+            description.points.push_back(p);
+        }
+        f.material = static_cast<std::uint32_t>(description.materials.size());
+        description.materials.push_back({std::to_string(f.material), Spectrum(0.5), Spectrum(face.exitance)});
+        description.faces.push_back(f);
+    }
+    CheckedScene checked = make_scene(std::move(description));
+    EXPECT_TRUE(checked.scene) << checked.scene.error().message;
+    return std::move(*checked.scene);
+}
+
+inline Vec3 any_in_cube(RandomStream& random) {
+    const double x = random.uniform() - 0.5, y = random.uniform() - 0.5;
+    return {x, y, random.uniform() - 0.5};
+}
+
+/// The faces of a box, fronts inwards.
+inline std::vector<Face> closed_box(const Point& lo, const Vec3& size) {
+    const auto face = [&](std::initializer_list<int> corners) {
+        Face f;
+        for (int i : corners)
+            f.corners.push_back(lo + Vec3{(i & 1) * size.x, (i >> 1 & 1) * size.y, (i >> 2 & 1) * size.z});
+        return f;
+    };
+    return {face({0, 1, 3, 2}), face({4, 6, 7, 5}), face({0, 4, 5, 1}),
+            face({2, 3, 7, 6}), face({0, 2, 6, 4}), face({1, 5, 7, 3})};
+}
+
+/// `count` triangles of about the given size in a cube of side 1 around `middle`.
+inline std::vector<Face> triangle_soup(std::size_t count, double size, std::uint64_t seed, const Point& middle = {}) {
+    RandomStream random(seed, Stream::mesh, count);
+    std::vector<Face> faces;
+    while (faces.size() < count) {
+        const Point a = middle + any_in_cube(random);
+        const Point b = a + size * any_in_cube(random), c = a + size * any_in_cube(random);
+        if (norm(cross(b - a, c - a)) > 0.01 * size * size) faces.push_back({{a, b, c}});
+    }
+    return faces;
+}
+
+/// The first face on a ray, by looking at all of them in double precision.
+inline SurfaceId first_on_ray(const Scene& scene, const Point& origin, const Vec3& direction, double& distance,
+                              RegionId own = {}) {
+    SurfaceId first;
+    distance = HUGE_VAL;
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const Surface& surface = scene.surfaces()[s];
+        const double t = dot(surface.normal, scene.outline(s)[0] - origin) / dot(surface.normal, direction);
+        if (surface.region == own || !(t > 1e-12) || t >= distance) continue;
+        if (contains(scene.outline(s), surface.normal, origin + t * direction)) first = s, distance = t;
+    }
+    return first;
+}
+
+}  // namespace exitance::test
