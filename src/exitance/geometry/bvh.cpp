@@ -98,6 +98,8 @@ Bvh::Bvh(std::span<const Box> boxes) {
     BvhBuilder(*this).build();
 }
 
-std::size_t Bvh::memory_bytes() const { return nodes_.capacity() * sizeof(Node) + items_.capacity() * sizeof(Item); }
+std::size_t Bvh::memory_bytes() const {
+    return nodes_.capacity() * sizeof(Node) + items_.capacity() * sizeof(Item);
+}
 
 }  // namespace exitance

@@ -66,10 +66,12 @@ class Bvh {
     /// Calls visit(item) for every item whose box meets the given one.
     template <class Visit>
     void visit_box(const Box& query, const Visit& visit) const {
-        walk([&](const Box& b) {
+        walk(
+            [&](const Box& b) {
                 return b.lo.x <= query.hi.x && query.lo.x <= b.hi.x && b.lo.y <= query.hi.y && query.lo.y <= b.hi.y &&
                        b.lo.z <= query.hi.z && query.lo.z <= b.hi.z;
-            }, visit);
+            },
+            visit);
     }
 
     /// Calls visit(item) for items whose box meets the segment from `origin` to origin + length * direction, nearer

@@ -38,8 +38,9 @@ TEST(Bvh, FindsEveryBoxThatReachesIntoAConvexRegion) {
             const auto outside = [&](const Plane& p) {
                 bool all = true;
                 for (int c = 0; c < 8; ++c)
-                    all &= p.signed_distance({c & 1 ? boxes[i].lo.x : boxes[i].hi.x, c & 2 ? boxes[i].lo.y : boxes[i].hi.y,
-                                              c & 4 ? boxes[i].lo.z : boxes[i].hi.z}) < 0;
+                    all &=
+                        p.signed_distance({c & 1 ? boxes[i].lo.x : boxes[i].hi.x, c & 2 ? boxes[i].lo.y : boxes[i].hi.y,
+                                           c & 4 ? boxes[i].lo.z : boxes[i].hi.z}) < 0;
                 return all;
             };
             if (std::none_of(planes.begin(), planes.end(), outside)) expected.insert(i);

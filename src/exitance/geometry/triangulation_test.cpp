@@ -43,10 +43,11 @@ TEST(Triangulation, CoversStarsOfAnyShapeOnce) {
 }
 
 TEST(Triangulation, CoversWallsWithDoorsAndBridgedHoles) {
-    expect_covered(std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {1, 0, 2}, {2, 0, 2}, {2, 0, 0}, {5, 0, 0}, {5, 0, 3}, {0, 0, 3}});
+    expect_covered(
+        std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {1, 0, 2}, {2, 0, 2}, {2, 0, 0}, {5, 0, 0}, {5, 0, 3}, {0, 0, 3}});
     // a window joined to the border by a bridge walked to and fro
-    expect_covered(std::vector<Point>{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0},
-                                      {3, 1, 0}, {1, 1, 0}});
+    expect_covered(std::vector<Point>{
+        {0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
 }
 
 TEST(Triangulation, LeavesConvexOutlinesWholeAndAnEllInTwo) {

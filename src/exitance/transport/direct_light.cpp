@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "exitance/geometry/polygon.hpp"
+
 namespace exitance {
 namespace {
 
@@ -41,6 +43,60 @@ Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, 
     for (const Emitter& emitter : emitters_) {
         const double f = form_factor(at, emitter, scratch);
         if (f > 0) sum += f * emitter.exitance;
+    }
+    return sum;
+}
+
+void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
+                          Workspace& scratch) const {
+    light.n = n, light.own = own;
+    light.sources.clear();
+    light.candidates.clear();
+    const Point middle = centroid(receiver);
+    double radius = occluders_->rounding();
+    for (const Point& p : receiver) radius = std::max(radius, norm(p - middle));
+    for (std::uint32_t e = 0; e < emitters_.size(); ++e) {
+        const Emitter& emitter = emitters_[e];
+        if (emitter.region == own || emitter.plane.signed_distance(middle) <= -radius ||
+            dot(n, emitter.centre - middle) <= -emitter.radius)
+            continue;
+        for (PieceId piece : emitter.pieces) {
+            scratch.shaft.set(*occluders_, {receiver, n, own},
+                              {occluders_->corners(piece), emitter.plane.n, emitter.region});
+            add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
+        }
+    }
+}
+
+void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
+                          Workspace& scratch) const {
+    light.n = whole.n, light.own = whole.own;
+    light.sources.clear();
+    light.candidates.clear();
+    for (const ReceiverLight::Source& source : whole.sources) {
+        const Emitter& emitter = emitters_[source.emitter];
+        scratch.shaft.set(*occluders_, {receiver, whole.n, whole.own},
+                          {occluders_->corners(source.piece), emitter.plane.n, emitter.region});
+        const auto from = std::span(whole.candidates).subspan(source.first, source.count);
+        add_source(source.emitter, source.piece, scratch.shaft.classify(from, scratch.candidates), light, scratch);
+    }
+}
+
+void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light,
+                             Workspace& scratch) {
+    if (view == View::none) return;
+    light.sources.push_back({emitter, piece, static_cast<std::uint32_t>(light.candidates.size()),
+                             static_cast<std::uint32_t>(scratch.candidates.size())});
+    light.candidates.insert(light.candidates.end(), scratch.candidates.begin(), scratch.candidates.end());
+}
+
+Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch) const {
+    const Receiver at{x, light.n, light.own};
+    Spectrum sum;
+    for (const ReceiverLight::Source& source : light.sources) {
+        const auto candidates = std::span(light.candidates).subspan(source.first, source.count);
+        const double f = visible_form_factor(*occluders_, at, source.piece, candidates, scratch);
+        if (f > 0) sum += f * emitters_[source.emitter].exitance;
     }
     return sum;
 }

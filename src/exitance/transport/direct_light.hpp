@@ -4,9 +4,27 @@
 
 #include "exitance/scene/scene.hpp"
 #include "exitance/transport/occluders.hpp"
+#include "exitance/transport/shaft.hpp"
 #include "exitance/transport/visible_part.hpp"
 
 namespace exitance {
+
+/// What is known about the emitters from everywhere on one convex part of a surface: which of them can be seen, and
+/// what can stand in between. Made once a part, it saves every point of it the search of the tree.
+struct ReceiverLight {
+    struct Source {
+        std::uint32_t emitter = 0;
+        PieceId piece;
+        std::uint32_t first = 0, count = 0;  ///< Of `candidates`; none: all of the piece is visible.
+    };
+    Normal n;
+    RegionId own;
+    std::vector<Source> sources;  ///< Those that are not certainly hidden.
+    std::vector<PieceId> candidates;
+
+    bool is_dark() const { return sources.empty(); }           ///< No light from any emitter, certainly.
+    bool is_unshadowed() const { return candidates.empty(); }  ///< Smooth: no shadow edge crosses it, certainly.
+};
 
 /// The light that arrives straight from the emitters, exact at every point.
 class DirectLight {
@@ -25,6 +43,18 @@ class DirectLight {
     /// covers is for the caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
+    /// Looks at the emitters from a convex polygon of region `own` (metres, counter-clockwise about n); fills `light`,
+    /// whose memory is used again. About 1-2 microseconds an emitter, and what the shaft meets of the tree.
+    void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
+                 Workspace& scratch) const;
+
+    /// The same for a part of the polygon that `whole` was made for: only what reached into its shafts is looked at.
+    void prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
+                 Workspace& scratch) const;
+
+    /// The irradiance at a point of the polygon that `light` was made for: as above, up to rounding.
+    Spectrum irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch) const;
+
     /// An emitting region: its convex pieces, and a ball around it for quick rejection.
     struct Emitter {
         RegionId region;
@@ -41,6 +71,8 @@ class DirectLight {
     double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
 
   private:
+    static void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch);
+
     const Occluders* occluders_;
     std::vector<Emitter> emitters_;
 };

@@ -29,7 +29,8 @@ TEST(PointToPolygon, MeetsTheClosedFormForRectanglesOfEverySize) {
 }
 
 TEST(PointToPolygon, KeepsItsDigitsAtGrazingIncidence) {
-    const double f = point_to_polygon({0, 0, 0}, {0, 0, 1}, {{{100, 0, 0.5}, {100, 1, 0.5}, {101, 1, 0.5}, {101, 0, 0.5}}});
+    const double f =
+        point_to_polygon({0, 0, 0}, {0, 0, 1}, {{{100, 0, 0.5}, {100, 1, 0.5}, {101, 1, 0.5}, {101, 0, 0.5}}});
     EXPECT_NEAR(f / 7.80030446449299e-10, 1, 1e-12);  // Lambert's sum at 30 digits; printed with 15
 }
 

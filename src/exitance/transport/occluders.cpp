@@ -21,8 +21,8 @@ Box box_of(std::span<const Point> corners) {
 
 Occluders::Occluders(const Scene& scene) : scene_(&scene) {
     const Box& b = scene.box();
-    const double reach = std::max({std::abs(b.lo.x), std::abs(b.lo.y), std::abs(b.lo.z), std::abs(b.hi.x),
-                                   std::abs(b.hi.y), std::abs(b.hi.z)});
+    const double reach = std::max(
+        {std::abs(b.lo.x), std::abs(b.lo.y), std::abs(b.lo.z), std::abs(b.hi.x), std::abs(b.hi.y), std::abs(b.hi.z)});
     rounding_ = 16 * std::numeric_limits<double>::epsilon() * reach;
     of_region_.resize(scene.regions().size());
     std::vector<Point> part;
@@ -52,8 +52,12 @@ Occluders::Occluders(const Scene& scene) : scene_(&scene) {
 }
 
 void Occluders::add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane) {
-    ConvexPiece piece{static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(corners.size()), region,
-                      surface, plane, 0};
+    ConvexPiece piece{static_cast<std::uint32_t>(corners_.size()),
+                      static_cast<std::uint32_t>(corners.size()),
+                      region,
+                      surface,
+                      plane,
+                      0};
     // Small things stay apart from what they stand on: the tolerance shrinks with them.
     piece.thickness = std::max(rounding_, std::min(coplanar_share * scene_->size(), 1e-3 * box_of(corners).diagonal()));
     corners_.insert(corners_.end(), corners.begin(), corners.end());
@@ -89,8 +93,8 @@ bool Occluders::is_covered(const Point& x, const Normal& n, RegionId own) const 
 }
 
 std::size_t Occluders::memory_bytes() const {
-    return bvh_.memory_bytes() + corners_.capacity() * sizeof(Point) +
-           pieces_.size() * sizeof(ConvexPiece) + of_region_.size() * sizeof(IdRange<PieceId>);
+    return bvh_.memory_bytes() + corners_.capacity() * sizeof(Point) + pieces_.size() * sizeof(ConvexPiece) +
+           of_region_.size() * sizeof(IdRange<PieceId>);
 }
 
 }  // namespace exitance

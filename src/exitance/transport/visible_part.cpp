@@ -78,7 +78,8 @@ bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratc
         const Vec3 &a = polygon[i], &b = polygon[i + 1 == m ? 0 : i + 1];
         const Vec3 normal = cross(b - a, a);
         const double squared = squared_norm(normal), reach = squared_norm(a) * squared_norm(b);
-        if (squared > no_width * no_width * reach) scratch.planes.push_back(normal * (std::copysign(1.0, facing) / std::sqrt(squared)));
+        if (squared > no_width * no_width * reach)
+            scratch.planes.push_back(normal * (std::copysign(1.0, facing) / std::sqrt(squared)));
     }
     if (scratch.planes.size() < first + 3) {
         scratch.planes.resize(first);
@@ -88,7 +89,8 @@ bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratc
 }
 
 /// What a candidate hides: the pyramid over its part between the planes of the source and the receiver.
-void add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate, Workspace& scratch) {
+void add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate,
+                Workspace& scratch) {
     const ConvexPiece& piece = occluders.pieces()[candidate];
     if (piece.region == at.own || piece.region == source.region) return;
     const std::span<const Point> corners = occluders.corners(candidate);
@@ -143,7 +145,8 @@ Sides measure(std::span<const Vec3> polygon, const Vec3& plane, std::vector<doub
 }
 
 /// Adds to `out` what an occluder leaves of one lit fragment.
-void subtract(std::span<const Vec3> fragment, std::span<const Vec3> planes, Workspace& scratch, Workspace::Polygons& out) {
+void subtract(std::span<const Vec3> fragment, std::span<const Vec3> planes, Workspace& scratch,
+              Workspace::Polygons& out) {
     scratch.offcuts.clear();
     scratch.rest.assign(fragment.begin(), fragment.end());
     bool hidden = true;
@@ -179,9 +182,10 @@ double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, P
     for (PieceId candidate : candidates) add_shadow(occluders, at, occluders.pieces()[source], candidate, scratch);
     if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
     // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
-    std::sort(scratch.shadows.begin(), scratch.shadows.end(), [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
-        return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
-    });
+    std::sort(scratch.shadows.begin(), scratch.shadows.end(),
+              [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
+                  return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
+              });
     scratch.lit.clear();
     scratch.lit.corners.assign(scratch.source.begin(), scratch.source.end());
     scratch.lit.close();
@@ -199,7 +203,8 @@ double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, P
 
 }  // namespace
 
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch) {
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                           VisibilityWorkspace& scratch) {
     look_at_source(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
     find_candidates(occluders, at, source, scratch);

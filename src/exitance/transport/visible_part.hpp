@@ -7,6 +7,7 @@
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/geometry/vec.hpp"
 #include "exitance/transport/occluders.hpp"
+#include "exitance/transport/shaft.hpp"
 
 namespace exitance {
 
@@ -46,6 +47,7 @@ class VisibilityWorkspace {
     std::vector<PieceId> candidates;
     std::vector<double> heights;
     ConvexRegion region;
+    Shaft shaft;
 };
 
 /// Form factor from a receiver to the visible part of one convex piece of a source: exact but for rounding, occluders
@@ -54,7 +56,8 @@ class VisibilityWorkspace {
 ///
 /// The source is cut by the planes through x and the occluders' edges; what falls inside an occluder's pyramid goes.
 /// Source: [Nishita85], as polygon subtraction. O(f k) for k occluders in the pyramid over the source and f fragments.
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch);
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                           VisibilityWorkspace& scratch);
 
 /// The same with occluders given by the caller: all pieces that may reach into the pyramid, in any order, harmless ones
 /// included. Pieces of the receiver's and of the source's own region may be among them.

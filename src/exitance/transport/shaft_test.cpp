@@ -1,0 +1,108 @@
+#include "exitance/transport/shaft.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/transport/direct_light.hpp"
+#include "support/test_scenes.hpp"
+
+namespace exitance {
+namespace {
+
+using test::Face;
+
+std::vector<Point> random_triangle(RandomStream& random, const Point& middle, double size) {
+    return {middle + size * test::any_in_cube(random), middle + size * test::any_in_cube(random),
+            middle + size * test::any_in_cube(random)};
+}
+
+Point inside(RandomStream& random, const std::vector<Point>& t) {
+    const double u = std::sqrt(random.uniform()), v = random.uniform();
+    return t[0] + u * (1 - v) * (t[1] - t[0]) + u * v * (t[2] - t[0]);
+}
+
+TEST(Shaft, CertainClassesAreNeverContradictedByRays) {
+    RandomStream random(21, Stream::visibility);
+    int open = 0, blocked = 0, mixed = 0;
+    for (int trial = 0; trial < 600; ++trial) {
+        const double size = trial % 2 ? 3.0 : 0.5;
+        const Scene scene = test::make(test::triangle_soup(1 + trial % 5, size, 300 + trial));
+        const Occluders occluders(scene);
+        const std::vector<Point> r = random_triangle(random, {0, 0, -0.8}, 0.6),
+                                 s = random_triangle(random, {0, 0, 0.8}, 0.6);
+        const Normal nr = normalized(area_vector(r)), ns = normalized(area_vector(s));
+        Shaft shaft;
+        std::vector<PieceId> candidates;
+        shaft.set(occluders, {r, nr, {}}, {s, ns, {}});
+        const View view = shaft.classify(candidates);
+        (view == View::open ? open : view == View::none ? blocked : mixed)++;
+        EXPECT_EQ(view == View::mixed, !candidates.empty());
+        for (int ray = 0; ray < 100; ++ray) {
+            const Point x = inside(random, r), y = inside(random, s);
+            if (dot(nr, y - x) <= 0 || dot(ns, x - y) <= 0) continue;
+            double distance;
+            const SurfaceId first = test::first_on_ray(scene, x, y - x, distance);
+            const bool clear = first.is_none() || distance > 1;
+            EXPECT_FALSE(view == View::open && !clear);
+            EXPECT_FALSE(view == View::none && clear);
+            if (view != View::mixed || clear) continue;
+            bool listed = false;
+            for (PieceId p : candidates) listed |= occluders.pieces()[p].surface == first;
+            EXPECT_TRUE(listed);
+        }
+    }
+    EXPECT_GT(open, 50);
+    EXPECT_GT(blocked, 20);
+    EXPECT_GT(mixed, 50);
+}
+
+TEST(Shaft, SeesThroughNothingButWhatOnlyTouchesIt) {
+    const std::vector<Point> light = {{0, 0, 2}, {0, 1, 2}, {1, 1, 2}, {1, 0, 2}},
+                             wall = {{1, 0, 0}, {1, 1, 0}, {1, 1, 2}, {1, 0, 2}};
+    const std::vector<Point> floor = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    const std::vector<Point> shelf = {{0.2, 0.2, 1}, {0.4, 0.2, 1}, {0.4, 0.4, 1}, {0.2, 0.4, 1}};
+    std::vector<PieceId> candidates;
+    Shaft shaft;
+    for (bool with_shelf : {false, true}) {
+        std::vector<Face> faces = {{light, 1}, {wall}, {floor}};
+        if (with_shelf) faces.push_back({shelf});
+        const Scene scene = test::make(faces);
+        const Occluders occluders(scene);
+        shaft.set(occluders, {floor, {0, 0, 1}, {}}, {light, {0, 0, -1}, {}});
+        EXPECT_EQ(shaft.classify(candidates), with_shelf ? View::mixed : View::open);
+        EXPECT_EQ(candidates.size(), with_shelf ? 1u : 0u);
+        const std::vector<Point> patch = {{0.28, 0.28, 0.9}, {0.3, 0.28, 0.9}, {0.3, 0.3, 0.9}};
+        const std::vector<Point> corner = {{0.3, 0.3, 2}, {0.3, 0.35, 2}, {0.35, 0.3, 2}};
+        shaft.set(occluders, {patch, {0, 0, 1}, {}}, {corner, {0, 0, -1}, {}});
+        EXPECT_EQ(shaft.classify(candidates), with_shelf ? View::none : View::open);
+    }
+}
+
+TEST(DirectLight, OfAPreparedPolygonIsThatOfItsPoints) {
+    RandomStream random(5, Stream::direct);
+    for (int trial = 0; trial < 20; ++trial) {
+        std::vector<Face> faces = test::triangle_soup(20, 0.7, 900 + trial, {0, 0, 0.5});
+        faces.push_back({{{-1, -1, 1.2}, {-1, 1, 1.2}, {1, 1, 1.2}, {1, -1, 1.2}}, 3});
+        faces.push_back({{{-2, -1, 0.2}, {-2, 1, 0.2}, {-2, 1, 0.6}, {-2, -1, 0.6}}, 2});
+        faces.push_back({{{-1, -1, -0.3}, {1, -1, -0.3}, {1, 1, -0.3}, {-1, 1, -0.3}}});
+        const Scene scene = test::make(faces);
+        const Occluders occluders(scene);
+        const DirectLight light(scene, occluders);
+        const RegionId own = scene.surfaces()[SurfaceId(faces.size() - 1)].region;
+        VisibilityWorkspace scratch;
+        ReceiverLight whole, part;
+        const std::vector<Point> patch = {{-0.5, -0.5, -0.3}, {0.5, -0.5, -0.3}, {0.5, 0.5, -0.3}};
+        const std::vector<Point> half = {{0, -0.5, -0.3}, {0.5, -0.5, -0.3}, {0.5, 0.5, -0.3}};
+        light.prepare(patch, {0, 0, 1}, own, whole, scratch);
+        light.prepare(half, whole, part, scratch);
+        EXPECT_LE(part.candidates.size(), whole.candidates.size());
+        for (int i = 0; i < 20; ++i) {
+            const Point x = inside(random, half);
+            const double exact = light.irradiance(x, {0, 0, 1}, own, scratch)[0];
+            EXPECT_NEAR(light.irradiance(whole, x, scratch)[0], exact, 1e-13);
+            EXPECT_NEAR(light.irradiance(part, x, scratch)[0], exact, 1e-13);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace exitance
