@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "exitance/core/random.hpp"
+#include "exitance/io/probe_file.hpp"
+#include "exitance/io/scene_file.hpp"
+#include "exitance/reconstruct/compare.hpp"
+#include "exitance/scene/locator.hpp"
+#include "support/run.hpp"
+
+namespace exitance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Our error measure beside that of an independent script, on references disturbed by a known random factor.
+class CompareScript : public testing::TestWithParam<const char*> {};
+
+TEST_P(CompareScript, MeasuresTheSameErrors) {
+    const fs::path shared = EXITANCE_SHARED_DIR;
+    const std::string name = GetParam(), scene_file = (shared / "scenes" / (name + ".obj")).string();
+    const std::string reference_file = (shared / "reference" / (name + ".csv")).string();
+    const std::string script = (shared / "reference" / "compare.py").string();
+    if (!fs::exists(scene_file) || !fs::exists(reference_file) || bands != 3) return;  // nothing to compare with
+
+    const CheckedScene checked = load_scene(scene_file);
+    ASSERT_TRUE(checked.scene);
+    const Scene& scene = *checked.scene;
+    const Result<ProbeReference> reference = load_probe_reference(reference_file);
+    ASSERT_TRUE(reference) << reference.error().message;
+
+    const TemporaryFolder folder;
+    Result<ProbeWriter> writer = ProbeWriter::create(folder / "result.csv", {.radiosity = false});
+    ASSERT_TRUE(writer);
+    std::vector<Spectrum> result;
+    std::vector<SurfaceId> surfaces;
+    const Locator locator(scene);
+    RandomStream random(1, Stream::mesh);
+    for (std::size_t i = 0; i < reference->irradiance.size(); ++i) {
+        Spectrum e = reference->irradiance[i];
+        for (std::size_t b = 0; b < bands; ++b) e[b] *= 1.01 + 0.1 * (random.uniform() - 0.5);
+        const Point& x = reference->probes.points[i];
+        writer->add(x, reference->probes.normals[i], e);
+        result.push_back(e);
+        surfaces.push_back(locator.find(x, reference->probes.normals[i]));
+        EXPECT_FALSE(surfaces.back().is_none());
+    }
+    ASSERT_TRUE(writer->commit());
+    const ErrorMeasure m =
+        measure_error({result, reference->irradiance, reference->standard_errors, surfaces}, scene);
+
+    const Ran ran = run("python3 '" + script + "' '" + reference_file + "' '" + (folder / "result.csv") + "' '" +
+                        scene_file + "'");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    const auto figure = [&](const std::string& before, std::size_t from = 0) {
+        const std::size_t at = ran.output.find(before, from);
+        return at == std::string::npos ? NAN : std::stod(ran.output.substr(at + before.size())) / 100;
+    };
+    const double digits = 1e-6;  // the script prints four decimals of a percentage
+    const std::size_t e = ran.output.find("irradiance:");
+    if (m.of_irradiance) {
+        EXPECT_NEAR(m.relative_rms_error, figure("relative RMS ", e), digits) << ran.output;
+        EXPECT_NEAR(m.reference_noise, figure("(noise ", e), digits);
+        EXPECT_NEAR(m.bias, figure("mean difference ", e), digits);
+    } else {
+        EXPECT_NEAR(m.relative_rms_error, figure("relative RMS error "), digits) << ran.output;
+        EXPECT_NEAR(m.raw_relative_rms_error, figure("(raw "), digits);
+        EXPECT_NEAR(m.reference_noise, figure("reference noise "), digits);
+    }
+    EXPECT_NEAR(m.median_relative_error, figure("median "), digits);
+    EXPECT_NEAR(m.p95_relative_error, figure("p95 "), digits);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CompareScript, testing::Values("complex_m1", "cornell", "chair", "blocker_h0p7"));
+
+}  // namespace
+}  // namespace exitance
