@@ -12,13 +12,6 @@ struct Locator::Candidate {
 
 namespace {
 
-constexpr std::uint32_t faces_per_leaf = 4;
-
-bool holds(const Box& box, const Point& p) {
-    return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y && p.z >= box.lo.z &&
-           p.z <= box.hi.z;
-}
-
 double squared_distance_to_border(std::span<const Point> outline, const Point& p) {
     double best = HUGE_VAL;
     for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
@@ -37,37 +30,8 @@ Locator::Locator(const Scene& scene) : scene_(&scene), tolerance_(1e-5 * scene.s
     for (SurfaceId s : scene.surfaces().ids()) {
         for (const Point& p : scene.outline(s)) boxes[s.value].add(p);
         boxes[s.value].lo -= margin, boxes[s.value].hi += margin;
-        order_.push_back(s);
     }
-    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()), boxes);
-}
-
-/// Halves the faces at the median of their centres along the longest axis of these.
-std::uint32_t Locator::build(std::uint32_t first, std::uint32_t last, const std::vector<Box>& boxes) {
-    const auto node = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Box box, centres;
-    for (std::uint32_t i = first; i < last; ++i) {
-        box.add(boxes[order_[i].value]);
-        centres.add(boxes[order_[i].value].centre());
-    }
-    nodes_[node].box = box;
-    if (last - first <= faces_per_leaf) {
-        nodes_[node].first = first, nodes_[node].count = last - first;
-        return node;
-    }
-    const Vec3 size = centres.size();
-    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::uint32_t middle = first + (last - first) / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
-                     [&](SurfaceId a, SurfaceId b) {
-                         const double ca = boxes[a.value].centre()[axis], cb = boxes[b.value].centre()[axis];
-                         return ca != cb ? ca < cb : a < b;
-                     });
-    build(first, middle, boxes);
-    const std::uint32_t second = build(middle, last, boxes);
-    nodes_[node].first = second;
-    return node;
+    tree_ = Bvh(boxes);
 }
 
 void Locator::look_at(SurfaceId s, const Point& p, const Normal& n, Candidate& best) const {
@@ -91,21 +55,7 @@ void Locator::look_at(SurfaceId s, const Point& p, const Normal& n, Candidate& b
 
 SurfaceId Locator::find(const Point& p, const Normal& n) const {
     Candidate best;
-    if (nodes_.empty()) return best.surface;
-    std::uint32_t stack[64];  // halving never goes deeper than 32
-    int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-        const std::uint32_t i = stack[--top];
-        const Node& node = nodes_[i];
-        if (!holds(node.box, p)) continue;
-        if (node.count > 0) {
-            for (std::uint32_t k = 0; k < node.count; ++k) look_at(order_[node.first + k], p, n, best);
-            continue;
-        }
-        stack[top++] = node.first;
-        stack[top++] = i + 1;
-    }
+    tree_.visit_box({p, p}, [&](std::uint32_t i) { look_at(SurfaceId(i), p, n, best); });
     return best.surface;
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
+#include "exitance/geometry/bvh.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -22,20 +20,13 @@ class Locator {
     double tolerance() const { return tolerance_; }  ///< 1e-5 of the scene's size, metres.
 
   private:
-    struct Node {
-        Box box;
-        std::uint32_t first = 0;  ///< Of a leaf: its faces in `order_`. Of an inner node: its second child.
-        std::uint32_t count = 0;  ///< Faces of a leaf; 0 for an inner node, whose first child comes next.
-    };
     struct Candidate;
 
-    std::uint32_t build(std::uint32_t first, std::uint32_t last, const std::vector<Box>& boxes);
     void look_at(SurfaceId s, const Point& p, const Normal& n, Candidate& best) const;
 
     const Scene* scene_;
     double tolerance_;
-    std::vector<Node> nodes_;  ///< In depth-first order.
-    std::vector<SurfaceId> order_;
+    Bvh tree_;
 };
 
 }  // namespace exitance
