@@ -16,6 +16,8 @@ class Progress {
     virtual void phase(std::string_view /*name*/) {}
     /// `fraction` of the present phase is done, in [0, 1]; `detail` is a few words such as "residual 3e-4".
     virtual void advance(double /*fraction*/, std::string_view /*detail*/ = {}) {}
+    /// What a step has found, for those who ask for details (`-v`).
+    virtual void note(std::string_view /*message*/) {}
     /// A finding the user should see, once.
     virtual void warn(std::string_view /*message*/) {}
 };

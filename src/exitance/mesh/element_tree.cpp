@@ -3,6 +3,7 @@
 #include <utility>
 
 namespace exitance {
+
 Vec2 into_shape(Vec2 uv, Patch::Shape shape) {
     uv = {std::clamp(uv.x, 0.0, 1.0), std::clamp(uv.y, 0.0, 1.0)};
     if (shape == Patch::Shape::triangle && uv.x + uv.y > 1) {
@@ -29,6 +30,24 @@ std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut way, doubl
     return {(u < 0.5 ? 0u : 1u) + (v < 0.5 ? 0u : 2u), {half(u, 0.5), half(v, 0.5)}};
 }
 
+double polygon_area(const std::vector<Vec2>& p) {
+    double sum = 0;
+    for (std::size_t i = 2; i < p.size(); ++i) sum += cross(p[i - 1] - p[0], p[i] - p[0]);
+    return 0.5 * sum;
+}
+
+/// The part of a convex polygon on one side (-1: the first, +1: the second) of a line.
+std::vector<Vec2> side_of_line(const std::vector<Vec2>& polygon, const CutLine& line, int side) {
+    std::vector<Vec2> out;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+        const double dp = side * line.distance(p), dq = side * line.distance(q);
+        if (dp >= 0) out.push_back(p);
+        if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) out.push_back(p + (dp / (dp - dq)) * (q - p));
+    }
+    return out;
+}
+
 }  // namespace
 
 Vec2 Patch::corner_uv(int i) const {
@@ -41,6 +60,12 @@ Vec2 Patch::coordinates(const Point& p) const {
     const Vec3 n = cross(a, b), w = p - origin;
     const double scale = 1 / squared_norm(n);
     return {dot(cross(w, b), n) * scale, dot(cross(a, w), n) * scale};
+}
+
+Vec2 uniform_in_shape(Patch::Shape shape, double s, double t) {
+    if (shape == Patch::Shape::parallelogram) return {s, t};
+    const double root = std::sqrt(s);
+    return {1 - root, t * root};
 }
 
 std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
@@ -62,35 +87,98 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
     return {Patch{p.origin, a, b}, Patch{p.origin + a, a, b}, Patch{p.origin + b, a, b}, Patch{p.origin + a + b, a, b}};
 }
 
-ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
-    const ElementId e = patch_.add(shape);
+void ElementTree::add(RegionId region, ElementId parent, const Patch& shape, double area) {
+    patch_.add(shape);
     children_.add({});
-    parent_.add(ElementId());
+    parent_.add(parent);
     region_.add(region);
-    area_.add(shape.area());
+    area_.add(area);
     way_.add(Cut::none);
     ratio_.add(0.5);
-    roots_.push_back(e);
-    return e;
+    extra_.add({});
+}
+
+ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
+    add(region, ElementId(), shape, shape.area());
+    roots_.push_back(ElementId(patch_.size() - 1));
+    return roots_.back();
 }
 
 ElementId ElementTree::split(ElementId leaf, Cut way, double ratio) {
-    EXI_CHECK(is_leaf(leaf) && way != Cut::none);
-    const std::vector<Patch> pieces = cut(patch_[leaf], way, ratio);
+    EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && way != Cut::none && way != Cut::line);
     const std::size_t first = patch_.size();
-    for (const Patch& piece : pieces) {
-        patch_.add(piece);
-        children_.add({});
-        parent_.add(leaf);
-        region_.add(RegionId(region_[leaf]));
-        area_.add(piece.area());
-        way_.add(Cut::none);
-        ratio_.add(0.5);
-    }
+    for (const Patch& piece : cut(patch_[leaf], way, ratio)) add(RegionId(region_[leaf]), leaf, piece, piece.area());
+    children_[leaf] = {first, patch_.size()};
     way_[leaf] = patch_[leaf].is_triangle() ? Cut::both : way;
     ratio_[leaf] = ratio;
-    children_[leaf] = {first, patch_.size()};
     return ElementId(first);
+}
+
+ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least) {
+    EXI_CHECK(is_leaf(leaf));
+    const std::vector<Vec2> whole = domain(leaf);
+    const double whole_area = std::abs(polygon_area(whole));
+    const std::array<std::vector<Vec2>, 2> side = {side_of_line(whole, line, -1), side_of_line(whole, line, +1)};
+    for (const std::vector<Vec2>& polygon : side)
+        if (polygon.size() < 3 || std::abs(polygon_area(polygon)) < least * whole_area) return ElementId();
+    const std::size_t first = patch_.size();
+    const Patch parent = patch_[leaf];
+    for (std::vector<Vec2> polygon : side) {
+        Vec2 lo = polygon[0], hi = polygon[0];
+        for (const Vec2 p : polygon) {
+            lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
+            hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+        }
+        const Patch frame{parent.at(lo), (hi.x - lo.x) * parent.a, (hi.y - lo.y) * parent.b,
+                          Patch::Shape::parallelogram};
+        for (Vec2& p : polygon) p = {(p.x - lo.x) / (hi.x - lo.x), (p.y - lo.y) / (hi.y - lo.y)};
+        add(RegionId(region_[leaf]), leaf, frame, frame.area() * std::abs(polygon_area(polygon)));
+        extra_[ElementId(patch_.size() - 1)].cell = static_cast<std::uint32_t>(cells_.size());
+        cells_.push_back(std::move(polygon));
+    }
+    children_[leaf] = {first, patch_.size()};
+    way_[leaf] = Cut::line;
+    extra_[leaf].line = static_cast<std::uint32_t>(lines_.size());
+    lines_.push_back(line);
+    return ElementId(first);
+}
+
+std::vector<Vec2> ElementTree::domain(ElementId e) const {
+    if (is_cell(e)) return cells_[extra_[e].cell];
+    std::vector<Vec2> out;
+    for (int i = 0; i < patch_[e].corner_count(); ++i) out.push_back(patch_[e].corner_uv(i));
+    return out;
+}
+
+std::vector<Point> ElementTree::outline(ElementId e) const {
+    std::vector<Point> out;
+    for (const Vec2 p : domain(e)) out.push_back(patch_[e].at(p));
+    return out;
+}
+
+Vec2 ElementTree::centre(ElementId e) const {
+    if (!is_cell(e)) return patch_[e].is_triangle() ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0.5, 0.5};
+    const std::vector<Vec2>& p = cells_[extra_[e].cell];
+    Vec2 moment;
+    for (std::size_t i = 2; i < p.size(); ++i)
+        moment = moment + (cross(p[i - 1] - p[0], p[i] - p[0]) / 6) * ((p[i - 1] - p[0]) + (p[i] - p[0]));
+    return p[0] + (1 / polygon_area(p)) * moment;
+}
+
+Vec2 ElementTree::uniform(ElementId e, double s, double t) const {
+    if (!is_cell(e)) return uniform_in_shape(patch_[e].shape, s, t);
+    // A triangle of the fan around the first corner, chosen by its area with the first number, which is then stretched.
+    const std::vector<Vec2>& p = cells_[extra_[e].cell];
+    double rest = s * polygon_area(p);
+    for (std::size_t i = 2;; ++i) {
+        const double area = 0.5 * cross(p[i - 1] - p[0], p[i] - p[0]);
+        if (rest >= area && i + 1 < p.size()) {
+            rest -= area;
+            continue;
+        }
+        const Vec2 uv = uniform_in_shape(Patch::Shape::triangle, std::clamp(rest / area, 0.0, 1.0), t);
+        return p[0] + uv.x * (p[i - 1] - p[0]) + uv.y * (p[i] - p[0]);
+    }
 }
 
 std::vector<ElementId> ElementTree::leaves() const {
@@ -104,15 +192,22 @@ ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
     const Patch::Shape shape = patch_[e].shape;
     uv = into_shape(uv, shape);
     while (!is_leaf(e)) {
+        if (way_[e] == Cut::line) {
+            const ElementId child = children_[e][line(e).distance(uv) <= 0 ? 0 : 1];
+            uv = patch_[child].coordinates(patch_[e].at(uv));
+            e = child;
+            continue;
+        }
         const auto [child, inside] = descend(uv, shape, way_[e], ratio_[e]);
         e = children_[e][child];
         uv = inside;
     }
-    return {e, into_shape(uv, shape)};
+    return {e, into_shape(uv, patch_[e].shape)};
 }
 
 std::size_t ElementTree::memory_bytes() const {
-    return patch_.size() * (sizeof(Patch) + sizeof(IdRange<ElementId>) + 2 * sizeof(ElementId) + 2 * sizeof(double) + sizeof(Cut));
+    return patch_.size() * (sizeof(Patch) + sizeof(IdRange<ElementId>) + 2 * sizeof(ElementId) + 2 * sizeof(double) + sizeof(Cut) + sizeof(Extra)) +
+           cells_.size() * 8 * sizeof(Vec2);
 }
 
 }  // namespace exitance

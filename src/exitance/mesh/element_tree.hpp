@@ -36,11 +36,23 @@ struct Patch {
     Vec2 coordinates(const Point& p) const;
 };
 
-/// How a patch is cut: across its u direction, across v, or both. A triangle has one way: four, at its edges' midpoints.
-enum class Cut : std::uint8_t { none, u, v, both };
+/// How an element is cut: across its u direction, across v, or both; a triangle has one way, `both`: four, at its edges'
+/// midpoints. `line`: along any straight line, into cells.
+enum class Cut : std::uint8_t { none, u, v, both, line };
+
+/// A straight line in an element's own coordinates: its first side is normal . uv <= offset.
+struct CutLine {
+    Vec2 normal;
+    double offset = 0;
+
+    double distance(Vec2 uv) const { return dot(normal, uv) - offset; }
+};
 
 /// Coordinates that rounding left at most a little outside the reference shape, moved onto it.
 Vec2 into_shape(Vec2 uv, Patch::Shape shape);
+
+/// A place of a reference shape with uniform density, from two numbers in [0, 1).
+Vec2 uniform_in_shape(Patch::Shape shape, double s, double t);
 
 /// The pieces of a patch, in a fixed order; `ratio` in (0, 1) is where a cut across one direction stands.
 std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
@@ -48,11 +60,18 @@ std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
 /// Elements from whole pieces of a region (roots) to leaves, in one growing pool. Children lie side by side and after
 /// their parent. Hence one forward sweep pushes light down, one backward sweep pulls it up, and neither recurses.
 /// Ids survive growth; spans and references do not.
+///
+/// Where other polygons touch an element (a box on a floor), light jumps along a straight line that follows none of its
+/// directions. There an element is cut along that line into cells: convex parts of a parallelogram, their frame. A
+/// cell's patch is its frame, its domain what it really covers.
 class ElementTree {
   public:
     ElementId add_root(RegionId region, const Patch& shape);
     /// Cuts a leaf; returns the first child.
     ElementId split(ElementId leaf, Cut way, double ratio = 0.5);
+    /// Cuts a leaf along a line into two cells, the first side first; returns the first child. None, and nothing is
+    /// done, when less than `least` of the leaf's area would lie on one side.
+    ElementId split_by_line(ElementId leaf, CutLine line, double least = 1e-6);
 
     std::size_t size() const { return patch_.size(); }
     IdRange<ElementId> ids() const { return patch_.ids(); }  ///< Parents before children.
@@ -64,7 +83,17 @@ class ElementTree {
     ElementId parent(ElementId e) const { return parent_[e]; }  ///< None for a root.
     RegionId region(ElementId e) const { return region_[e]; }
     const Patch& patch(ElementId e) const { return patch_[e]; }
-    double area(ElementId e) const { return area_[e]; }  ///< m^2
+    double area(ElementId e) const { return area_[e]; }  ///< Of its domain, m^2.
+    const CutLine& line(ElementId e) const { return lines_[extra_[e].line]; }  ///< Of an element cut along a line.
+    bool is_cell(ElementId e) const { return extra_[e].cell != none; }         ///< Is its domain less than its patch?
+    /// What the element covers, as a convex polygon in its own coordinates, counter-clockwise.
+    std::vector<Vec2> domain(ElementId e) const;
+    /// The same in space, metres.
+    std::vector<Point> outline(ElementId e) const;
+    /// Mean place of the domain.
+    Vec2 centre(ElementId e) const;
+    /// A place of the domain with uniform density, from two numbers in [0, 1).
+    Vec2 uniform(ElementId e, double s, double t) const;
     std::vector<ElementId> leaves() const;               ///< In order of their ids.
 
     /// The leaf below `e` that holds the point (u, v) of `e`, and the point's coordinates there, pushed into the leaf.
@@ -78,6 +107,13 @@ class ElementTree {
     std::size_t memory_bytes() const;
 
   private:
+    static constexpr std::uint32_t none = 0xffffffffu;
+    /// What few elements have: where their cut line and their domain stand.
+    struct Extra {
+        std::uint32_t line = none, cell = none;
+    };
+    void add(RegionId region, ElementId parent, const Patch& shape, double area);
+
     Field<ElementId, Patch> patch_;
     Field<ElementId, IdRange<ElementId>> children_;
     Field<ElementId, ElementId> parent_;
@@ -85,6 +121,9 @@ class ElementTree {
     Field<ElementId, double> area_;
     Field<ElementId, Cut> way_;
     Field<ElementId, double> ratio_;
+    Field<ElementId, Extra> extra_;
+    std::vector<CutLine> lines_;
+    std::vector<std::vector<Vec2>> cells_;
     std::vector<ElementId> roots_;
 };
 

@@ -7,11 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include "exitance/solve/relaxation.hpp"
+
 namespace exitance {
 
 enum class Method { automatic, matrix, progressive, substructuring, monte_carlo };
 enum class BasisKind { constant, linear };
-enum class Relaxation { jacobi, gauss_seidel, cg, gmres, southwell };
 enum class VisibilityKind { automatic, fractional, exact };
 enum class FormFactorKind { analytic, ray_cast };
 

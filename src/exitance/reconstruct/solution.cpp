@@ -2,6 +2,12 @@
 
 namespace exitance {
 
+void ElementFunction::add_value(const Spectrum& value) {
+    std::array<float, bands> v;
+    for (std::size_t b = 0; b < bands; ++b) v[b] = static_cast<float>(value[b]);
+    values.push_back(v);
+}
+
 Spectrum ElementFunction::at(ElementTree::Place place) const {
     const auto [u, v] = place.uv;
     const bool triangle = tree.patch(place.element).is_triangle();

@@ -16,6 +16,7 @@ struct ElementFunction {
     Field<ElementId, std::uint32_t> first_value;  ///< A leaf's first corner in `values`; of inner elements: unused.
     std::vector<std::array<float, bands>> values;
 
+    void add_value(const Spectrum& value);
     /// The value at (u, v) of a leaf.
     Spectrum at(ElementTree::Place place) const;
 };
@@ -49,11 +50,14 @@ struct SolveStatistics {
 /// E_ind is `indirect`; `interpolant` stands for both together in files that hold plain elements.
 struct Solution {
     Scene scene;
-    ElementFunction indirect;     ///< E_ind: what arrives after at least one reflection.
-    ElementFunction interpolant;  ///< E_dir + E_ind on elements split until they hold three times the error asked for.
-    SolveStatistics statistics;
-    std::string options;  ///< The options in force, as JSON.
-    /// 'all' bounces, or direct light alone: then `indirect` is zero and without elements below the roots.
+    ElementFunction indirect = {};     ///< E_ind: what arrives after at least one reflection.
+    ElementFunction interpolant = {};  ///< E_dir + E_ind on elements split until they hold three times the error asked for.
+    SolveStatistics statistics = {};
+    std::string options = {};  ///< The options in force, as JSON.
+    /// True when a method carried the emitters' light through its elements, as asked for: then `indirect` holds all
+    /// light that arrives, and nothing is evaluated exactly.
+    bool direct_in_elements = false;
+    /// All bounces (-1), or direct light alone (0): then `indirect` is zero and without elements below the roots.
     int bounces = -1;
 };
 

@@ -1,0 +1,35 @@
+#include "exitance/mesh/adaptive.hpp"
+
+namespace exitance {
+namespace {
+
+/// The line through a cell's middle at right angles to its longest extent, measured in space.
+CutLine across_longest_extent(const ElementTree& tree, ElementId e) {
+    const std::vector<Vec2> domain = tree.domain(e);
+    const Patch& patch = tree.patch(e);
+    Vec3 longest;
+    for (std::size_t i = 0; i < domain.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const Vec3 d = patch.at(domain[i]) - patch.at(domain[j]);
+            if (squared_norm(d) > squared_norm(longest)) longest = d;
+        }
+    // Points p(u, v) with longest . p constant: the normal in (u, v) is (longest . a, longest . b).
+    Vec2 normal = {dot(longest, patch.a), dot(longest, patch.b)};
+    normal = (1 / std::hypot(normal.x, normal.y)) * normal;
+    return {normal, dot(normal, tree.centre(e))};
+}
+
+}  // namespace
+
+IdRange<ElementId> refine_element(ElementTree& tree, ElementId leaf) {
+    if (tree.is_cell(leaf)) {
+        tree.split_by_line(leaf, across_longest_extent(tree, leaf), 0);
+        return tree.children(leaf);
+    }
+    const Patch& patch = tree.patch(leaf);
+    const double a = norm(patch.a), b = norm(patch.b);
+    tree.split(leaf, patch.is_triangle() ? Cut::both : a > 1.5 * b ? Cut::u : b > 1.5 * a ? Cut::v : Cut::both);
+    return tree.children(leaf);
+}
+
+}  // namespace exitance

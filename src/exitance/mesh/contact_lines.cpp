@@ -1,0 +1,106 @@
+#include "exitance/mesh/contact_lines.hpp"
+
+#include <algorithm>
+
+namespace exitance {
+namespace {
+
+struct Segment {
+    Point a, b;
+};
+
+/// The edges of a face that lie in a plane, and the lines in which the face crosses it.
+void contacts_with_plane(std::span<const Point> outline, const Plane& plane, double tolerance,
+                         std::vector<Segment>& out) {
+    const std::size_t m = outline.size();
+    std::vector<Point> crossings;
+    Point lo, hi;
+    for (std::size_t i = 0; i < m; ++i) {
+        const Point &p = outline[i], &q = outline[(i + 1) % m];
+        const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
+        const bool on_p = std::abs(hp) <= tolerance, on_q = std::abs(hq) <= tolerance;
+        if (on_p && on_q) out.push_back({p, q});
+        else if (on_p) crossings.push_back(p);
+        else if (!on_q && (hp > 0) != (hq > 0)) crossings.push_back(p + (hp / (hp - hq)) * (q - p));
+    }
+    if (crossings.size() < 2) return;
+    // In order along the line; a concave face crosses the plane in several stretches, which may run into one here.
+    const Vec3 direction = crossings[1] - crossings[0];
+    std::sort(crossings.begin(), crossings.end(),
+              [&](const Point& a, const Point& b) { return dot(a, direction) < dot(b, direction); });
+    out.push_back({crossings.front(), crossings.back()});
+}
+
+/// Length of the part of a segment inside a convex polygon, as a share of the segment, and where it runs.
+bool clip_to_domain(const std::vector<Vec2>& domain, Vec2& a, Vec2& b) {
+    double first = 0, last = 1;
+    const Vec2 d = b - a;
+    for (std::size_t i = 0; i < domain.size(); ++i) {
+        const Vec2 p = domain[i], edge = domain[(i + 1) % domain.size()] - p;
+        const double at_a = cross(edge, a - p), rate = cross(edge, d);  // inside where at_a + t rate >= 0
+        if (std::abs(rate) < 1e-14) {
+            if (at_a < 0) return false;
+            continue;
+        }
+        const double t = -at_a / rate;
+        if (rate > 0) first = std::max(first, t);
+        else last = std::min(last, t);
+    }
+    if (first >= last) return false;
+    const Vec2 start = a;
+    a = start + first * d;
+    b = start + last * d;
+    return true;
+}
+
+}  // namespace
+
+ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7 * scene.size()) {
+    std::vector<Box> boxes(scene.surfaces().size());
+    for (SurfaceId s : scene.surfaces().ids())
+        for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);
+    bvh_ = Bvh(boxes);
+}
+
+std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree, ElementId e) const {
+    const Plane& plane = scene_->regions()[tree.region(e)].plane;
+    const std::vector<Vec2> domain = tree.domain(e);
+    Box box;
+    for (const Point& corner : tree.outline(e)) {
+        box.add(corner - Vec3{tolerance_, tolerance_, tolerance_});
+        box.add(corner + Vec3{tolerance_, tolerance_, tolerance_});
+    }
+    std::vector<Segment> segments;
+    bvh_.visit_box(box, [&](std::uint32_t i) {
+        const SurfaceId s(i);
+        if (scene_->surfaces()[s].region != tree.region(e))
+            contacts_with_plane(scene_->outline(s), plane, tolerance_, segments);
+    });
+    std::vector<std::pair<Vec2, Vec2>> out;
+    const Patch& patch = tree.patch(e);
+    for (const Segment& segment : segments) {
+        Vec2 a = patch.coordinates(segment.a), b = patch.coordinates(segment.b);
+        constexpr double shortest = 1e-3;  // of the element: a contact at a point alone parts nothing
+        if (clip_to_domain(domain, a, b) && std::hypot(b.x - a.x, b.y - a.y) > shortest) out.emplace_back(a, b);
+    }
+    return out;
+}
+
+void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts) {
+    std::vector<ElementId> open = from;
+    while (!open.empty()) {
+        const ElementId e = open.back();
+        open.pop_back();
+        for (const auto& [a, b] : contacts.within(tree, e)) {
+            const Vec2 d = b - a;
+            const double length = std::hypot(d.x, d.y);
+            const Vec2 normal = {-d.y / length, d.x / length};
+            // A line along the domain's border leaves nothing on one side, and cuts nothing.
+            if (tree.split_by_line(e, {normal, dot(normal, a)}, 1e-5).is_none()) continue;
+            for (ElementId child : tree.children(e)) open.push_back(child);
+            break;  // the children look for their own share of the other contacts
+        }
+    }
+}
+
+}  // namespace exitance

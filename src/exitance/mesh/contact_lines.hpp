@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/geometry/bvh.hpp"
+#include "exitance/mesh/element_tree.hpp"
+
+namespace exitance {
+
+/// Where other polygons touch a surface or pass through it. Across such a line light jumps: under a box that stands on
+/// a floor it is dark, beside it not. No polynomial follows that, so elements are cut there.
+class ContactLines {
+  public:
+    /// The scene must outlive it. O(n log n).
+    explicit ContactLines(const Scene& scene);
+
+    /// The contacts of an element's domain with faces of other regions, as pairs of points in the element's own
+    /// coordinates: edges that lie in its plane, and the lines in which faces cross it. Only those are listed that run
+    /// through the inside of the domain.
+    std::vector<std::pair<Vec2, Vec2>> within(const ElementTree& tree, ElementId e) const;
+
+  private:
+    const Scene* scene_;
+    Bvh bvh_;
+    double tolerance_;  ///< Metres; what is nearer than this to a plane touches it.
+};
+
+/// Cuts every leaf of `from` along the contacts inside it, into cells.
+void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts);
+
+}  // namespace exitance

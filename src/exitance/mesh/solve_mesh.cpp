@@ -1,0 +1,147 @@
+#include "exitance/mesh/solve_mesh.hpp"
+
+#include "exitance/geometry/bvh.hpp"
+
+namespace exitance {
+namespace {
+
+/// Cuts one piece and what comes of it until the size is met.
+class Cutter {
+  public:
+    Cutter(ElementTree& tree, MeshSize size) : tree_(tree), size_(size) {
+        strip_ = size.edge / std::pow(2.0, size.grading_levels);
+        // A triangle's cells shrink in both directions at once: a strip of them costs as many as it is long.
+        triangle_strip_ = size.edge / std::pow(2.0, std::min(size.grading_levels, 1));
+    }
+
+    /// `touches` tells which borders of the element lie on a concave border of its piece.
+    void refine(ElementId e, std::array<bool, 4> touches) {
+        if (tree_.patch(e).is_triangle()) return refine_triangle(e, touches);
+        const double a = norm(tree_.patch(e).a), b = norm(tree_.patch(e).b);
+        const bool cut_u = a > size_.edge || ((touches[1] || touches[3]) && a > strip_);
+        const bool cut_v = b > size_.edge || ((touches[0] || touches[2]) && b > strip_);
+        if (!cut_u && !cut_v) return;
+        const Cut way = cut_u && cut_v ? Cut::both : cut_u ? Cut::u : Cut::v;
+        tree_.split(e, way);
+        const IdRange<ElementId> children = tree_.children(e);
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            const bool right = way == Cut::both ? i % 2 == 1 : way == Cut::u && i == 1;
+            const bool top = way == Cut::both ? i >= 2 : way == Cut::v && i == 1;
+            std::array<bool, 4> t = touches;  // borders: bottom v = 0, right u = 1, top v = 1, left u = 0
+            if (way != Cut::v) (right ? t[3] : t[1]) = false;
+            if (way != Cut::u) (top ? t[0] : t[2]) = false;
+            refine(children[i], t);
+        }
+    }
+
+  private:
+    void refine_triangle(ElementId e, std::array<bool, 4> t) {
+        const Patch& p = tree_.patch(e);
+        const double longest = std::max({norm(p.a), norm(p.b), norm(p.b - p.a)});
+        if (longest <= size_.edge && !((t[0] || t[1] || t[2]) && longest > triangle_strip_)) return;
+        tree_.split(e, Cut::both);
+        const IdRange<ElementId> c = tree_.children(e);
+        // Borders: 0 from corner 0 to 1, 1 from corner 1 to 2, 2 from corner 2 to 0; each child keeps two of them.
+        refine(c[0], {t[0], false, t[2], false});
+        refine(c[1], {t[0], t[1], false, false});
+        refine(c[2], {false, t[1], t[2], false});
+        refine(c[3], {});
+    }
+
+    ElementTree& tree_;
+    MeshSize size_;
+    double strip_, triangle_strip_;
+};
+
+double distance_to_segment(const Point& p, const Point& a, const Point& b) {
+    const Vec3 d = b - a;
+    const double t = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
+    return norm(p - (a + t * d));
+}
+
+/// Does a surface, seen from a piece with the given plane, hold `p` or touch it within `tolerance`, and rise in front?
+bool rises_at(const Scene& scene, SurfaceId s, const Point& p, const Plane& plane, const Point& inside,
+              double tolerance) {
+    const Surface& surface = scene.surfaces()[s];
+    const std::span<const Point> outline = scene.outline(s);
+    if (std::abs(dot(surface.normal, p - outline[0])) > tolerance) return false;
+    const bool in_front = std::any_of(outline.begin(), outline.end(),
+                                      [&](const Point& q) { return plane.signed_distance(q) > 4 * tolerance; });
+    const bool faces_inside = dot(surface.normal, inside - outline[0]) > 4 * tolerance;
+    if (!in_front || !faces_inside) return false;
+    if (contains(outline, surface.normal, p)) return true;
+    for (std::size_t i = 0; i < outline.size(); ++i)
+        if (distance_to_segment(p, outline[i], outline[(i + 1) % outline.size()]) <= tolerance) return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces) {
+    std::vector<Box> boxes(scene.surfaces().size());
+    for (SurfaceId s : scene.surfaces().ids())
+        for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);
+    const Bvh bvh(boxes);
+    const double tolerance = 1e-7 * scene.size();
+    std::vector<ConcaveBorders> out(pieces.size());
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        const auto& [region, patch] = pieces[k];
+        const Plane& plane = scene.regions()[region].plane;
+        const Point inside = patch.centre();
+        out[k].assign(static_cast<std::size_t>(patch.corner_count()), false);
+        for (int border = 0; border < patch.corner_count(); ++border) {
+            const Point a = patch.corner(border), b = patch.corner((border + 1) % patch.corner_count());
+            bool concave = false;
+            for (double t : {0.5, 0.18, 0.83}) {
+                const Point p = a + t * (b - a);
+                Box box;
+                box.add(p - Vec3{tolerance, tolerance, tolerance});
+                box.add(p + Vec3{tolerance, tolerance, tolerance});
+                bvh.visit_box(box, [&](std::uint32_t i) {
+                    const SurfaceId s(i);
+                    concave = concave || (scene.surfaces()[s].region != region &&
+                                          rises_at(scene, s, p, plane, inside, tolerance));
+                });
+                if (concave) break;
+            }
+            out[k][static_cast<std::size_t>(border)] = concave;
+        }
+    }
+    return out;
+}
+
+ElementTree make_mesh(const std::vector<Piece>& pieces, const std::vector<ConcaveBorders>& concave, MeshSize size) {
+    ElementTree tree;
+    for (const auto& [region, patch] : pieces) tree.add_root(region, patch);
+    Cutter cutter(tree, size);
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        std::array<bool, 4> touches{};
+        std::copy(concave[k].begin(), concave[k].end(), touches.begin());
+        cutter.refine(tree.roots()[k], touches);
+    }
+    return tree;
+}
+
+std::size_t predict_elements(const std::vector<Piece>& pieces, double edge) {
+    double count = 0;
+    for (const auto& [region, patch] : pieces) {
+        const double a = std::exp2(std::ceil(std::max(0.0, std::log2(norm(patch.a) / edge))));
+        const double b = std::exp2(std::ceil(std::max(0.0, std::log2(norm(patch.b) / edge))));
+        count += patch.is_triangle() ? std::max(a, b) * std::max(a, b) : a * b;
+    }
+    return static_cast<std::size_t>(count);
+}
+
+double edge_for_elements(const std::vector<Piece>& pieces, std::size_t count) {
+    double longest = 0;
+    for (const auto& [region, patch] : pieces) longest = std::max({longest, norm(patch.a), norm(patch.b)});
+    double edge = 1.0001 * longest;
+    while (predict_elements(pieces, edge) < count) edge *= 0.84;  // a quarter more elements a square root of two
+    return edge;
+}
+
+LeafNumbering::LeafNumbering(const ElementTree& tree) : leaves(tree.leaves()), number(tree.size()) {
+    for (std::size_t i = 0; i < leaves.size(); ++i) number[leaves[i]] = static_cast<std::uint32_t>(i);
+}
+
+}  // namespace exitance

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "exitance/methods/solve_options.hpp"
+#include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+
+/// The inner knobs of a solve, derived from the error asked for; a knob that the user set stands as it is.
+struct Knobs {
+    MeshSize solve_mesh;       ///< Of the elements that the method solves on.
+    RayBudget solve_rays;      ///< Rays of a row, where rows are cast.
+    double direct_points = 4;  ///< Exact direct light per element of mean area.
+    double residual = 1e-3;    ///< Of the discrete system.
+    std::size_t max_iterations = 1000;
+    MeshSize gather_mesh;      ///< Of the elements that indirect light is gathered on, to begin with.
+    RayBudget gather_rays;     ///< Rays of a node.
+    double gather_tolerance = 0;  ///< Relative to the mean reflected radiosity.
+};
+
+/// Knobs for a relative error, where the pieces of the scene are these. Rules of thumb that the certificate checks:
+/// elements ~ 1/R, rays a node ~ R^(-4/3) (scrambled Sobol points), strips at concave edges until their share is R.
+Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options);
+
+/// Knobs that aim `factor` (below 1) times lower than these.
+Knobs tightened(const Knobs& knobs, double factor, const SolveOptions& options);
+
+}  // namespace exitance

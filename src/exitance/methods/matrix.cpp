@@ -1,0 +1,62 @@
+#include "exitance/methods/methods.hpp"
+#include "exitance/transport/direct_projection.hpp"
+#include "exitance/transport/patch_transfer.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr unsigned default_visibility_samples = 16;
+
+/// Solves b = rho (E_dir + F b), starting from the first reflection, and writes what arrives to `light.indirect`.
+void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& light) {
+    input.progress.phase("solve");
+    const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
+    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
+    std::vector<Spectrum> first(rho.size());
+    for (std::size_t i = 0; i < rho.size(); ++i) first[i] = rho[i] * light.direct[i];
+    light.reflected = first;
+    light.report = solve_radiosity({F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres),
+                                   light.reflected,
+                                   {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations,
+                                    .request = &input.stop});
+    light.indirect.resize(rho.size());
+    F.gather(light.reflected, light.indirect);
+    light.link_memory_bytes = F.memory_bytes();
+}
+
+}  // namespace
+
+/// Matrix radiosity [Goral84]: b = rho (E_dir + F b) on constant elements, solved by relaxation. The direct light of
+/// emitters is exact and stands apart, so that b is reflected light alone. Rows of F are cast by rays (entries are
+/// noisy, what they gather is not: O(n) rays), or computed, from elements to patches one level above them [Cohen86]
+/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each).
+GlobalLight solve_matrix(const MethodInput& input) {
+    const auto& [stage, options, knobs, progress, stop] = input;
+    progress.phase("mesh");
+    ElementTree tree = stage.make_elements(knobs.solve_mesh);
+    LeafNumbering numbering(tree);
+    GlobalLight light{.tree = std::move(tree), .numbering = std::move(numbering)};
+    progress.phase("direct light");
+    light.direct = project_direct_light(stage, light.tree, light.numbering, knobs.direct_points, options.seed);
+
+    progress.phase("link");
+    if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
+        const ElementLocator locator(light.tree, stage.scene.regions().size());
+        const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed);
+        relax(input, F, light);
+        light.rays = light.links = F.rays();
+    } else {
+        const PatchLevel patches(light.tree, light.numbering, 1);
+        const auto samples = options.visibility_samples.value_or(default_visibility_samples);
+        const PatchTransfer transfer(stage, light.tree, static_cast<unsigned>(samples), options.seed);
+        const DenseTransport F(transfer, light.numbering, patches, progress, stop);
+        relax(input, F, light);
+        light.rays = transfer.rays();
+        light.form_factors = transfer.form_factors();
+        light.links = F.entries();
+    }
+    return light;
+}
+
+}  // namespace exitance

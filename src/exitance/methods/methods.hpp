@@ -1,0 +1,37 @@
+#pragma once
+
+#include "exitance/core/progress.hpp"
+#include "exitance/methods/accuracy.hpp"
+#include "exitance/solve/global_light.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// What every method is given.
+struct MethodInput {
+    const Stage& stage;
+    const SolveOptions& options;
+    const Knobs& knobs;
+    Progress& progress;
+    const StopRequest& stop;
+};
+
+/// Finds the reflected light of every element of a mesh that it makes. One file a method.
+using SolveMethod = GlobalLight (*)(const MethodInput&);
+
+/// A row of the table of methods.
+struct MethodEntry {
+    Method id;
+    SolveMethod solve;
+    const char* basis;  ///< What its elements hold, when nothing else is asked for.
+};
+
+/// The table: one line a method.
+std::span<const MethodEntry> method_table();
+
+GlobalLight solve_matrix(const MethodInput& input);
+GlobalLight solve_progressive(const MethodInput& input);
+GlobalLight solve_substructuring(const MethodInput& input);
+GlobalLight solve_monte_carlo(const MethodInput& input);
+
+}  // namespace exitance

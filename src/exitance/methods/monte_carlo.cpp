@@ -1,0 +1,138 @@
+#include "exitance/core/parallel.hpp"
+#include "exitance/methods/methods.hpp"
+#include "exitance/transport/direct_projection.hpp"
+#include "exitance/transport/hemisphere.hpp"
+
+namespace exitance {
+namespace {
+
+/// One step of stochastic Jacobi: shoots `power` (flux that each element still has to send, W, all bands) with about
+/// `rays` rays, as many from an element as its share of the whole, and returns the flux that arrives at each element.
+class Shooter {
+  public:
+    Shooter(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed)
+        : stage_(stage), tree_(tree), numbering_(numbering), locator_(tree, stage.scene.regions().size()), seed_(seed) {}
+
+    std::vector<Spectrum> shoot(std::span<const Spectrum> power, double rays) {
+        const std::size_t n = power.size();
+        // Systematic sampling: ray k starts where the running sum of powers passes (k + offset) / rays of the whole.
+        double total = 0;
+        for (const Spectrum& p : power) total += mean(p);
+        RandomStream random(seed_, Stream::shooting, ++step_);
+        const double offset = random.uniform();
+        std::vector<std::size_t> first(n + 1, 0);
+        double sum = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            sum += mean(power[i]);
+            first[i + 1] = std::max(first[i], static_cast<std::size_t>(std::max(0.0, std::ceil(sum / total * rays - offset))));
+        }
+        std::vector<std::uint32_t> target(first[n], missed);
+        parallel_ranges(n, 16, [&](std::size_t begin, std::size_t end) { trace(first, begin, end, target); });
+        rays_shot += first[n];
+
+        // In the order of the rays, so that the sums have the same bits on any number of threads.
+        std::vector<Spectrum> arrived(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (first[i] == first[i + 1]) continue;
+            const Spectrum carried = (total / (rays * mean(power[i]))) * power[i];
+            for (std::size_t k = first[i]; k < first[i + 1]; ++k)
+                if (target[k] != missed) arrived[target[k]] += carried;
+        }
+        return arrived;
+    }
+
+    std::size_t rays_shot = 0;
+
+  private:
+    static constexpr std::uint32_t missed = 0xffffffffu;
+
+    void trace(const std::vector<std::size_t>& first, std::size_t begin, std::size_t end,
+               std::vector<std::uint32_t>& target) const {
+        std::vector<Point> origins;
+        std::vector<Vec3> directions;
+        std::vector<RayHit> hits;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t count = first[i + 1] - first[i];
+            if (count == 0) continue;
+            const ElementId e = numbering_.leaves[i];
+            const Patch& patch = tree_.patch(e);
+            const Frame frame(stage_.scene.regions()[tree_.region(e)].plane.n);
+            const ScrambledSobol points(hash(seed_, static_cast<std::uint64_t>(Stream::shooting), step_, i));
+            origins.resize(count), directions.resize(count), hits.resize(count);
+            for (std::uint32_t k = 0; k < count; ++k) {
+                origins[k] = patch.at(tree_.uniform(e, points(k, 2), points(k, 3)));
+                directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+            }
+            stage_.tracer.nearest(origins, directions, tree_.region(e), hits);
+            for (std::size_t k = 0; k < count; ++k) {
+                if (hits[k].surface.is_none() || !hits[k].front) continue;
+                const Point y = origins[k] + hits[k].distance * directions[k];
+                target[first[i] + k] = numbering_.number[locator_.find(stage_.scene.surfaces()[hits[k].surface].region, y).element];
+            }
+        }
+    }
+
+    const Stage& stage_;
+    const ElementTree& tree_;
+    const LeafNumbering& numbering_;
+    ElementLocator locator_;
+    std::uint64_t seed_, step_ = 0;
+};
+
+}  // namespace
+
+/// Stochastic Jacobi radiosity [Bekaert99], after [Neumann95]: every sweep shoots the light that the last one brought, with rays in
+/// proportion to the power that is left, and what arrives is the unbiased image of it. Independent runs are averaged;
+/// their spread is the standard error. O(rays), no form factors, memory of the elements alone.
+GlobalLight solve_monte_carlo(const MethodInput& input) {
+    const auto& [stage, options, knobs, progress, stop] = input;
+    progress.phase("mesh");
+    ElementTree tree = stage.make_elements(knobs.solve_mesh);
+    LeafNumbering numbering(tree);
+    const std::size_t n = numbering.leaves.size();
+    const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, tree, numbering);
+    progress.phase("direct light");
+    std::vector<Spectrum> direct = project_direct_light(stage, tree, numbering, knobs.direct_points, options.seed);
+
+    progress.phase("shoot");
+    Shooter shooter(stage, tree, numbering, options.seed);
+    constexpr int runs = 8;
+    std::vector<Spectrum> indirect(n), square(n);
+    std::size_t sweeps = 0;
+    double left_over = 0;
+    for (int run = 0; run < runs && !stop.requested(); ++run) {
+        std::vector<Spectrum> power(n), flux(n);
+        for (std::size_t i = 0; i < n; ++i) power[i] = tree.area(numbering.leaves[i]) * (rho[i] * direct[i]);
+        double first_power = 0, left = 0;
+        for (const Spectrum& p : power) first_power += mean(p);
+        for (left = first_power; left > knobs.residual * first_power && sweeps < runs * knobs.max_iterations; ++sweeps) {
+            const double rays = std::max(64.0, knobs.solve_rays.average * static_cast<double>(n) * left / first_power);
+            const std::vector<Spectrum> arrived = shooter.shoot(power, rays);
+            left = 0;
+            for (std::size_t i = 0; i < n; ++i) {
+                flux[i] += arrived[i];
+                power[i] = rho[i] * arrived[i];
+                left += mean(power[i]);
+            }
+        }
+        left_over = first_power > 0 ? left / first_power : 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Spectrum E = flux[i] / tree.area(numbering.leaves[i]);
+            indirect[i] += E / runs;
+            square[i] += E * E / runs;
+        }
+        progress.advance((run + 1.0) / runs);
+    }
+    std::vector<Spectrum> reflected(n), standard_error(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        reflected[i] = rho[i] * (direct[i] + indirect[i]);
+        for (std::size_t b = 0; b < bands; ++b)
+            standard_error[i][b] = std::sqrt(std::max(0.0, square[i][b] - indirect[i][b] * indirect[i][b]) / (runs - 1));
+    }
+    return {.tree = std::move(tree), .numbering = std::move(numbering), .direct = std::move(direct),
+            .indirect = std::move(indirect), .reflected = std::move(reflected), .standard_error = std::move(standard_error),
+            .report = {.iterations = sweeps, .residual = left_over, .converged = left_over <= knobs.residual},
+            .rays = shooter.rays_shot};
+}
+
+}  // namespace exitance

@@ -1,0 +1,141 @@
+#include "exitance/methods/shooting_setup.hpp"
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/mesh/adaptive.hpp"
+#include "exitance/transport/direct_projection.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr unsigned default_visibility_samples = 16;
+constexpr std::size_t column_memory = std::size_t{1} << 30;  ///< Bytes of columns that are kept for later shots.
+
+}  // namespace
+
+ShootingSetup::ShootingSetup(const MethodInput& input, ElementTree mesh)
+    : tree(std::move(mesh)),
+      patches(tree.leaves()),
+      patch_area(patches.size()),
+      unshot(patches.size()),
+      sent(patches.size()),
+      numbering(tree),
+      patch_of(patches.size()),
+      reflectance(leaf_reflectances(input.stage.scene, tree, numbering)),
+      irradiance(patches.size()),
+      area(leaf_areas(tree, numbering)),
+      input_(input),
+      transfer_(input.stage, tree,
+                static_cast<unsigned>(input.options.visibility_samples.value_or(default_visibility_samples)),
+                input.options.seed),
+      columns_(patches.size()) {
+    direct.resize(patches.size());
+    if (!shoots_direct_light())
+        direct = project_direct_light(input.stage, tree, numbering, input.knobs.direct_points, input.options.seed);
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        patch_of[p] = static_cast<std::uint32_t>(p);
+        patch_area[p] = area[p];
+        unshot[p] = shoots_direct_light() ? input.stage.scene.material(tree.region(patches[p])).exitance
+                                          : reflectance[p] * direct[p];
+        sent[p] = unshot[p];
+    }
+    first_power_ = unshot_power(unshot, patch_area);
+}
+
+std::span<const float> ShootingSetup::column(std::size_t patch) {
+    std::vector<float>& kept = columns_[patch];
+    if (kept.size() == numbering.leaves.size()) return kept;
+    const std::size_t bytes = 4 * numbering.leaves.size();
+    std::vector<float>& out = kept_bytes_ + bytes <= column_memory ? kept : fresh_;
+    if (&out == &kept) kept_bytes_ += bytes;
+    out.resize(numbering.leaves.size());
+    transfer_.column(numbering.leaves, patches[patch], out);
+    return out;
+}
+
+SolveReport ShootingSetup::run() {
+    const ShootingProblem problem{patch_of, area, patch_area, reflectance,
+                                  [&](std::size_t patch) { return column(patch); }};
+    const ShootingOptions options{.overshooting = input_.options.overshooting,
+                                  .unshot = input_.knobs.residual,
+                                  .reference = first_power_,
+                                  .max_shots = input_.options.max_iterations.value_or(1'000'000),
+                                  .request = &input_.stop,
+                                  .progress = &input_.progress};
+    const SolveReport report = shoot(problem, options, unshot, irradiance);
+    // What a patch has sent is all that it has: its reflected (and emitted) light, less what it has yet to send.
+    for (std::size_t p = 0; p < patches.size(); ++p) sent[p] = Spectrum();
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        sent[patch_of[i]] += (area[i] / patch_area[patch_of[i]]) * (reflectance[i] * (direct[i] + irradiance[i]));
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        if (shoots_direct_light()) sent[p] += input_.stage.scene.material(tree.region(patches[p])).exitance;
+        sent[p] -= unshot[p];
+    }
+    return report;
+}
+
+void ShootingSetup::split(const std::vector<ElementId>& leaves) {
+    Field<ElementId, std::uint32_t> patch_by_element(tree.size());
+    Field<ElementId, Spectrum> old_irradiance(tree.size()), old_direct(tree.size());
+    for (std::size_t i = 0; i < numbering.leaves.size(); ++i) {
+        patch_by_element[numbering.leaves[i]] = patch_of[i];
+        old_irradiance[numbering.leaves[i]] = irradiance[i];
+        old_direct[numbering.leaves[i]] = direct[i];
+    }
+    const std::size_t old_size = tree.size();
+    for (ElementId e : leaves) refine_element(tree, e);
+    numbering = LeafNumbering(tree);
+    const std::size_t n = numbering.leaves.size();
+    reflectance = leaf_reflectances(input_.stage.scene, tree, numbering);
+    area = leaf_areas(tree, numbering);
+    patch_of.resize(n);
+    irradiance.assign(n, {});
+    direct.assign(n, {});
+    if (!shoots_direct_light())
+        direct = project_direct_light(input_.stage, tree, numbering, input_.knobs.direct_points, input_.options.seed);
+    parallel_ranges(n, 8, [&](std::size_t begin, std::size_t end) {
+        PatchTransfer::Workspace workspace;
+        for (std::size_t i = begin; i < end; ++i) {
+            const ElementId e = numbering.leaves[i];
+            if (e.value < old_size) {
+                patch_of[i] = patch_by_element[e];
+                irradiance[i] = old_irradiance[e];
+                direct[i] = old_direct[e];
+                continue;
+            }
+            patch_of[i] = patch_by_element[tree.parent(e)];
+            for (std::size_t p = 0; p < patches.size(); ++p)
+                if (max(sent[p]) > 0)
+                    irradiance[i] += transfer_.form_factor(e, patches[p], workspace) * sent[p];
+        }
+        transfer_.count(workspace);
+    });
+    for (std::vector<float>& kept : columns_) kept.clear(), kept.shrink_to_fit();
+    kept_bytes_ = 0;
+}
+
+void ShootingSetup::update_patches() {
+    std::vector<Spectrum> now(patches.size());
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        now[patch_of[i]] += (area[i] / patch_area[patch_of[i]]) * (reflectance[i] * (direct[i] + irradiance[i]));
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        if (shoots_direct_light()) now[p] += input_.stage.scene.material(tree.region(patches[p])).exitance;
+        unshot[p] = now[p] - sent[p];
+    }
+}
+
+GlobalLight ShootingSetup::finish(const SolveReport& report) {
+    GlobalLight out{.tree = std::move(tree), .numbering = std::move(numbering)};
+    out.reflected.resize(irradiance.size());
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        out.reflected[i] = reflectance[i] * (direct[i] + irradiance[i]);
+    out.direct = std::move(direct);
+    out.indirect = std::move(irradiance);
+    out.holds_direct = shoots_direct_light();
+    out.report = report;
+    out.rays = transfer_.rays();
+    out.form_factors = transfer_.form_factors();
+    out.link_memory_bytes = kept_bytes_;
+    return out;
+}
+
+}  // namespace exitance

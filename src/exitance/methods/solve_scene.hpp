@@ -1,0 +1,19 @@
+#pragma once
+
+#include "exitance/core/progress.hpp"
+#include "exitance/methods/solve_options.hpp"
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+/// The whole job: scene to solution.
+///
+/// A method finds the light that each element reflects; the local pass gathers it into a function; the certificate says
+/// how far that function is from the truth. While it is farther than the error asked for, the knobs are tightened and
+/// the three run again. Direct light stands apart and is exact.
+/// Missing the error asked for is a finding in the statistics (`converged`, `stopped_by`), not an error; an Error means
+/// that there is no result at all.
+Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
+                             const StopRequest& stop);
+
+}  // namespace exitance

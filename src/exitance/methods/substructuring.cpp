@@ -1,0 +1,66 @@
+#include <algorithm>
+
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/methods/shooting_setup.hpp"
+
+namespace exitance {
+namespace {
+
+/// Largest difference of reflected light between a leaf and its neighbours in the same region, W/m^2, mean over bands.
+double steepest_step(const ShootingSetup& setup, const ElementLocator& locator, std::size_t leaf) {
+    const ElementId e = setup.numbering.leaves[leaf];
+    const Patch& patch = setup.tree.patch(e);
+    const auto light = [&](std::size_t i) {
+        return mean(setup.reflectance[i] * (setup.shoots_direct_light() ? setup.irradiance[i]
+                                                                        : setup.direct[i] + setup.irradiance[i]));
+    };
+    double steepest = 0;
+    const Point centre = patch.centre();
+    for (int i = 0; i < patch.corner_count(); ++i) {
+        const Point middle = 0.5 * (patch.corner(i) + patch.corner((i + 1) % patch.corner_count()));
+        const Point across = centre + 1.25 * (middle - centre);
+        const std::uint32_t neighbour = setup.numbering.number[locator.find(setup.tree.region(e), across).element];
+        steepest = std::max(steepest, std::abs(light(leaf) - light(neighbour)));
+    }
+    return steepest;
+}
+
+}  // namespace
+
+/// Substructuring radiosity [Cohen86], shooting form: patches shoot, and elements, cut finer where the light is steep,
+/// receive. Refining while the first shots arrive cuts for gradients that later shots fill in; so all light is solved on
+/// the patches first, then elements are cut by the converged light, at the ends of sweeps, and gather what the patches
+/// have sent; in the end the patches take their elements' means and shoot the difference [Willmott97]. One form factor
+/// per element and patch.
+GlobalLight solve_substructuring(const MethodInput& input) {
+    constexpr int sweeps = 3;
+    input.progress.phase("mesh");
+    MeshSize coarse = input.knobs.solve_mesh;
+    if (!input.options.mesh_size) coarse = {1.5 * coarse.edge, std::max(0, coarse.grading_levels - 1)};
+    ShootingSetup setup(input, input.stage.make_elements(coarse));
+    input.progress.phase("shoot");
+    SolveReport report = setup.run();
+
+    double mean_light = 0;
+    for (std::size_t p = 0; p < setup.patches.size(); ++p)
+        mean_light += setup.patch_area[p] * mean(setup.sent[p]) / input.stage.area;
+    const double threshold = 8 * input.options.error_target() * mean_light;
+    const double least_area = input.options.min_area.value_or(1e-5 * input.stage.area);
+    for (int sweep = 0; sweep < sweeps && !input.stop.requested(); ++sweep) {
+        input.progress.phase("refine");
+        const ElementLocator locator(setup.tree, input.stage.scene.regions().size());
+        std::vector<ElementId> steep;
+        for (std::size_t i = 0; i < setup.numbering.leaves.size(); ++i)
+            if (setup.area[i] > 2 * least_area && steepest_step(setup, locator, i) > threshold)
+                steep.push_back(setup.numbering.leaves[i]);
+        if (steep.empty()) break;
+        setup.split(steep);
+    }
+    setup.update_patches();
+    const std::size_t shots = report.iterations;
+    report = setup.run();
+    report.iterations += shots;
+    return setup.finish(report);
+}
+
+}  // namespace exitance

@@ -1,0 +1,132 @@
+#include "exitance/reconstruct/certificate.hpp"
+
+#include <bit>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+namespace {
+
+/// One point of the certificate: two independent estimates of the residual there.
+struct Sample {
+    RegionId region;
+    Spectrum r1, r2;
+    std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
+};
+
+/// `count` places, one in each stratum of the cumulative area of the tree's leaves.
+std::vector<ElementTree::Place> stratified_places(const ElementTree& tree, std::size_t count, std::uint64_t seed) {
+    const std::vector<ElementId> leaves = tree.leaves();
+    double area = 0;
+    for (ElementId e : leaves) area += tree.area(e);
+    const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
+    std::vector<ElementTree::Place> out;
+    double before = 0;
+    std::size_t leaf = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const double wanted = area * (k + points(k, 0)) / static_cast<double>(count);
+        while (leaf + 1 < leaves.size() && before + tree.area(leaves[leaf]) <= wanted) before += tree.area(leaves[leaf++]);
+        out.push_back({leaves[leaf], tree.uniform(leaves[leaf], points(k, 1), points(k, 2))});
+    }
+    return out;
+}
+
+/// b + rho H b + (rho H)^2 b + ..., on the coarse mesh.
+std::vector<Spectrum> respond(const RadiositySystem& system, double residual) {
+    std::vector<Spectrum> b(system.rhs.begin(), system.rhs.end());
+    solve_radiosity(system, Relaxation::gmres, b, {.residual = residual, .max_iterations = 200});
+    return b;
+}
+
+double largest(const std::vector<Spectrum>& values) {
+    double out = 1;
+    for (const Spectrum& v : values) out = std::max(out, max(v));
+    return out;
+}
+
+/// A bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit light.
+double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
+    const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
+    const std::vector<Spectrum> u = respond({H, rho, ones, area}, 0.01);
+    // The adjoint w = 1 + H rho w, by way of rho w = rho + rho H (rho w).
+    const std::vector<Spectrum> rho_w = respond({H, rho, rho, area}, 0.01);
+    std::vector<Spectrum> w(rho.size());
+    H.gather(rho_w, w);
+    for (Spectrum& v : w) v += Spectrum(1.0);
+    return std::sqrt(largest(u) * largest(w));
+}
+
+}  // namespace
+
+Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect, const RadiosityAt& b,
+                    const CertificateOptions& options) {
+    Certificate out;
+    out.mean_reflected = light.mean_reflected();
+    if (out.mean_reflected <= 0) return out;
+
+    constexpr std::size_t batches = 32;
+    out.points = options.error < 0.01 ? 64 * batches : 32 * batches;
+    const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(out.points)));
+    const unsigned rays = std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, 16.0, 2048.0)));
+    const std::vector<ElementTree::Place> places = stratified_places(indirect.tree, out.points, options.seed);
+    const ElementLocator coarse(light.tree, stage.scene.regions().size());
+    std::vector<Sample> samples(places.size());
+    parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
+        GatherWorkspace workspace;
+        DirectLight::Workspace exact;
+        for (std::size_t k = begin; k < end; ++k) {
+            const ElementTree::Place place = places[k];
+            const RegionId region = indirect.tree.region(place.element);
+            const Point x = indirect.tree.patch(place.element).at(place.uv);
+            const Normal& n = stage.scene.regions()[region].plane.n;
+            const Spectrum& rho = stage.scene.material(region).reflectance;
+            Spectrum delivered = indirect.at(place);
+            if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
+            const auto residual = [&](std::uint64_t which) {
+                const std::uint64_t key = hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
+                return rho * (gather_reflected(stage, x, n, region, rays, key, b, workspace).irradiance - delivered);
+            };
+            samples[k] = {region, residual(1), residual(2), light.numbering.number[coarse.find(region, x).element]};
+        }
+    });
+    out.rays = 2 * rays * samples.size();
+
+    // The smooth part of the error: the coarse response to the mean residual of each region.
+    const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, light.tree, light.numbering);
+    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
+    const RayRows H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1);
+    out.rays += H.rays();
+    Field<RegionId, Spectrum> mean_residual(stage.scene.regions().size());
+    Field<RegionId, double> count(stage.scene.regions().size());
+    for (const Sample& s : samples) mean_residual[s.region] += 0.5 * (s.r1 + s.r2), count[s.region] += 1;
+    std::vector<Spectrum> rhs(rho.size());
+    for (std::size_t i = 0; i < rhs.size(); ++i) {
+        const RegionId region = light.tree.region(light.numbering.leaves[i]);
+        // A mean of few samples is mostly noise: it is drawn towards zero.
+        rhs[i] = mean_residual[region] / (count[region] + 4);
+    }
+    std::vector<Spectrum> response = respond({H, rho, rhs, area}, 0.02);
+    for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
+
+    std::array<double, batches> residual_squared{};
+    double error_squared = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const Sample& s = samples[k];
+        const Spectrum& late = response[s.leaf];
+        residual_squared[k % batches] += mean(s.r1 * s.r2) * batches / static_cast<double>(samples.size());
+        error_squared += mean((s.r1 + late) * (s.r2 + late)) / static_cast<double>(samples.size());
+    }
+    double mean_square = 0, spread = 0;
+    for (double v : residual_squared) mean_square += v / batches;
+    for (double v : residual_squared) spread += (v - mean_square) * (v - mean_square) / (batches * (batches - 1.0));
+    constexpr double student_95 = 1.696;  // one-sided, 31 degrees of freedom
+    const double upper = std::max(0.0, mean_square) + student_95 * std::sqrt(spread);
+    out.constant = error_constant(H, rho, area);
+    out.residual = std::sqrt(std::max(0.0, mean_square)) / out.mean_reflected;
+    out.estimate = std::sqrt(std::max(0.0, error_squared)) / out.mean_reflected;
+    out.bound = std::max(out.estimate, out.constant * std::sqrt(upper) / out.mean_reflected);
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "exitance/transport/hemisphere.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// Reflected radiosity b at a point of a region, W/m^2: what a ray reads where it hits.
+using RadiosityAt = std::function<Spectrum(RegionId, const Point&)>;
+
+/// Room for the rays of one gather; one a thread.
+struct GatherWorkspace {
+    std::vector<Point> origins;
+    std::vector<Vec3> directions;
+    std::vector<RayHit> hits;
+};
+
+/// An estimate and how far it may be off.
+struct Gathered {
+    Spectrum irradiance;  ///< W/m^2
+    Spectrum variance;    ///< Of `irradiance`, from four independent quarters of the rays; an upper estimate.
+};
+
+/// Irradiance at x by what surfaces reflect, E(x) = int G V b dA, by `rays` rays (a power of two, at least 4) with density
+/// cos / pi around n: E = mean of b at their first hits. `own` is the region that x lies on, or none. The directions are scrambled Sobol points
+/// named by `key`. Unbiased; error ~ rays^-3/4.
+Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
+                          const RadiosityAt& b, GatherWorkspace& workspace);
+
+}  // namespace exitance

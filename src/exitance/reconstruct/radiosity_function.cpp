@@ -1,0 +1,69 @@
+#include "exitance/reconstruct/radiosity_function.hpp"
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/reconstruct/gather.hpp"
+
+namespace exitance {
+
+RadiosityFunction::RadiosityFunction(const Solution& solution)
+    : solution_(solution),
+      locator_(solution.scene),
+      indirect_locator_(solution.indirect.tree, solution.scene.regions().size()),
+      interpolant_locator_(solution.interpolant.tree, solution.scene.regions().size()),
+      stage_(std::make_unique<Stage>(solution.scene)) {}
+
+RadiosityFunction::~RadiosityFunction() = default;
+
+Light RadiosityFunction::light_from(Spectrum irradiance, SurfaceId surface) const {
+    const Material& material = solution_.scene.material(surface);
+    return {irradiance, material.exitance + material.reflectance * irradiance, true};
+}
+
+Spectrum RadiosityFunction::indirect_in_free_space(const ProbePoint& point, std::size_t index) const {
+    constexpr unsigned rays = 4096;
+    const RadiosityAt reflected = [&](RegionId region, const Point& y) {
+        return solution_.scene.material(region).reflectance *
+               solution_.interpolant.at(interpolant_locator_.find(region, y));
+    };
+    GatherWorkspace workspace;
+    const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), index);
+    return gather_reflected(*stage_, point.x, point.n, RegionId(), rays, key, reflected, workspace).irradiance;
+}
+
+std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Component component) const {
+    std::vector<Light> out(points.size());
+    parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
+        DirectLight::Workspace workspace;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& [x, n] = points[i];
+            const SurfaceId surface = locator_.find(x, n);
+            const bool free = surface.is_none();
+            const RegionId region = free ? RegionId() : solution_.scene.surfaces()[surface].region;
+            if (!free && stage_->occluders.is_covered(x, n, region)) {
+                out[i] = light_from(Spectrum(), surface);
+                continue;
+            }
+            Spectrum irradiance;
+            const bool exact_direct = !solution_.direct_in_elements || free;
+            if (component != Component::indirect && exact_direct) irradiance += stage_->direct.irradiance(x, n, region, workspace);
+            if (component != Component::direct)
+                irradiance += free ? indirect_in_free_space(points[i], i)
+                                   : solution_.indirect.at(indirect_locator_.find(region, x));
+            out[i] = free ? Light{irradiance, Spectrum(), false} : light_from(irradiance, surface);
+        }
+    });
+    return out;
+}
+
+std::vector<Light> RadiosityFunction::interpolant_at(std::span<const ProbePoint> points) const {
+    std::vector<Light> out(points.size());
+    parallel_for(points.size(), 256, [&](std::size_t i) {
+        const SurfaceId surface = locator_.find(points[i].x, points[i].n);
+        if (surface.is_none()) return;
+        const RegionId region = solution_.scene.surfaces()[surface].region;
+        out[i] = light_from(solution_.interpolant.at(interpolant_locator_.find(region, points[i].x)), surface);
+    });
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,28 @@
+#include "exitance/solve/global_light.hpp"
+
+namespace exitance {
+
+double GlobalLight::mean_reflected() const {
+    double flux = 0, area = 0;
+    for (std::size_t i = 0; i < reflected.size(); ++i) {
+        flux += tree.area(numbering.leaves[i]) * mean(reflected[i]);
+        area += tree.area(numbering.leaves[i]);
+    }
+    return area > 0 ? flux / area : 0;
+}
+
+std::vector<Spectrum> leaf_reflectances(const Scene& scene, const ElementTree& tree, const LeafNumbering& numbering) {
+    std::vector<Spectrum> rho;
+    rho.reserve(numbering.leaves.size());
+    for (ElementId e : numbering.leaves) rho.push_back(scene.material(tree.region(e)).reflectance);
+    return rho;
+}
+
+std::vector<double> leaf_areas(const ElementTree& tree, const LeafNumbering& numbering) {
+    std::vector<double> area;
+    area.reserve(numbering.leaves.size());
+    for (ElementId e : numbering.leaves) area.push_back(tree.area(e));
+    return area;
+}
+
+}  // namespace exitance

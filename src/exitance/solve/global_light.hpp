@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/solve/relaxation.hpp"
+
+namespace exitance {
+
+/// What a method hands on: the light that every element reflects, constant on each leaf of its mesh.
+struct GlobalLight {
+    ElementTree tree = {};
+    LeafNumbering numbering = {};
+    /// By leaf number, W/m^2: mean irradiance by emitters, and by everything else.
+    std::vector<Spectrum> direct = {}, indirect = {};
+    /// By leaf number, W/m^2: b = rho (E_dir + E_ind), reflected radiosity.
+    std::vector<Spectrum> reflected = {};
+    /// Of `indirect`, W/m^2, where the method is a random one; empty otherwise.
+    std::vector<Spectrum> standard_error = {};
+
+    /// True when the method carried the emitters' own light through its elements: then `indirect` is all light that
+    /// arrives, and `direct` is zero.
+    bool holds_direct = false;
+
+    SolveReport report = {};
+    std::size_t rays = 0, form_factors = 0, links = 0, link_memory_bytes = 0;
+
+    double mean_reflected() const;  ///< Over all surfaces and bands, W/m^2.
+};
+
+/// Reflectance of every leaf, by leaf number.
+std::vector<Spectrum> leaf_reflectances(const Scene& scene, const ElementTree& tree, const LeafNumbering& numbering);
+
+/// Area of every leaf, by leaf number, m^2.
+std::vector<double> leaf_areas(const ElementTree& tree, const LeafNumbering& numbering);
+
+}  // namespace exitance

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/core/progress.hpp"
+#include "exitance/transport/transport_operator.hpp"
+
+namespace exitance {
+
+/// The discrete problem b = rhs + rho F b on the elements of a mesh, W/m^2. All spans have F.size() entries.
+struct RadiositySystem {
+    const TransportOperator& F;
+    std::span<const Spectrum> reflectance;  ///< rho, in [0, 1)
+    std::span<const Spectrum> rhs;          ///< Light that enters the system, W/m^2.
+    std::span<const double> area;           ///< m^2; weights of the norms.
+};
+
+enum class Relaxation { jacobi, gauss_seidel, cg, gmres, southwell };
+
+/// When to stop: the first of these that is reached.
+struct StopRule {
+    double residual = 1e-6;  ///< L2 norm of rhs + rho F b - b over that of rhs.
+    std::size_t max_iterations = 1000;
+    const StopRequest* request = nullptr;  ///< Asked after every iteration; may be null.
+};
+
+struct SolveReport {
+    std::size_t iterations = 0;  ///< Applications of F.
+    double residual = 0;         ///< Relative, see StopRule.
+    bool converged = false;
+    bool interrupted = false;
+};
+
+/// L2 norm over the surfaces, all bands together: sqrt(sum_i A_i |b_i|^2).
+double surface_norm(std::span<const Spectrum> b, std::span<const double> area);
+
+/// Iterates from the b given until the rule stops it. Missing the tolerance is a finding in the report, not an error.
+///
+/// - jacobi: b <- rhs + rho F b. Contracts while rho < 1 and no row of F sums past 1. One gather an iteration.
+/// - gauss_seidel: the same, each element's new value used at once, in the order of elements. One gather an iteration;
+///   sequential by nature.
+/// - cg: conjugate gradients on the symmetric form (diag(A / rho) - A F) b = A rhs / rho, Jacobi-preconditioned; elements
+///   with rho = 0 are known (b = rhs) and leave the system. Wants A_i F_ij = A_j F_ji; each band has its own process.
+/// - gmres: GMRES(20) on (I - rho F) b = rhs, any F; each band has its own process. Source: [Saad86].
+/// - southwell: shooting, see solve/shooting.hpp; asked for here it stands for gauss_seidel, which visits all in turn.
+SolveReport solve_radiosity(const RadiositySystem& system, Relaxation method, std::span<Spectrum> b, StopRule stop);
+
+}  // namespace exitance

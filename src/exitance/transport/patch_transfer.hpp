@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <span>
+#include <vector>
+
+#include "exitance/core/progress.hpp"
+#include "exitance/transport/stage.hpp"
+#include "exitance/transport/transport_operator.hpp"
+
+namespace exitance {
+
+/// The elements that receive and the patches that send: two levels of one tree [Cohen86]. A patch is a leaf or an inner
+/// element; every leaf lies in exactly one patch.
+struct PatchLevel {
+    std::vector<ElementId> patches;         ///< In order of their ids.
+    std::vector<std::uint32_t> patch_of;    ///< By leaf number: the leaf's patch, as an index into `patches`.
+    std::vector<double> share;              ///< By leaf number: area of the leaf over area of its patch.
+
+    /// Patches `levels` above the leaves: 0 makes every leaf a patch of its own.
+    PatchLevel(const ElementTree& tree, const LeafNumbering& numbering, int levels);
+
+    /// Means over the patches of what the leaves hold (pull).
+    std::vector<Spectrum> pull(std::span<const Spectrum> leaf_values) const;
+};
+
+/// Form factors between elements, and how much of them is visible, computed when asked for.
+///
+/// F_ij is taken at the receiver's middle, exactly, towards the whole source polygon [Baum89], and times the share of
+/// `samples` rays between the two that meet nothing. The ends of the rays follow an orthogonal array of strength 2: each
+/// pair of the four coordinates is stratified [Owen92].
+class PatchTransfer {
+  public:
+    PatchTransfer(const Stage& stage, const ElementTree& tree, unsigned samples, std::uint64_t seed)
+        : stage_(stage), tree_(tree), samples_(std::clamp(samples, 1u, most_samples)), seed_(seed) {}
+
+    static constexpr unsigned most_samples = 256;  ///< Rays a pair; more are not asked for.
+
+    struct Workspace {
+        std::vector<Point> from, to, source;
+        std::array<bool, most_samples> blocked;
+        std::size_t rays = 0, form_factors = 0;
+    };
+
+    /// F_ij from receiver i to source j, occlusion included: E_i = sum_j F_ij B_j.
+    double form_factor(ElementId receiver, ElementId source, Workspace& workspace) const;
+
+    /// F_ij for every receiver in turn and one source. Counts go to `rays` and `form_factors`.
+    void column(std::span<const ElementId> receivers, ElementId source, std::span<float> out) const;
+
+    /// Adds what a workspace has counted to the totals.
+    void count(const Workspace& workspace) const {
+        rays_ += workspace.rays;
+        form_factors_ += workspace.form_factors;
+    }
+    std::size_t rays() const { return rays_; }
+    std::size_t form_factors() const { return form_factors_; }
+
+  private:
+    double visible_share(ElementId receiver, ElementId source, Workspace& workspace) const;
+
+    const Stage& stage_;
+    const ElementTree& tree_;
+    unsigned samples_;
+    std::uint64_t seed_;
+    mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
+};
+
+/// The matrix of form factors from elements to patches, computed at once and kept: E = F (mean of b over each patch).
+/// O(elements x patches) form factors and floats.
+class DenseTransport final : public TransportOperator {
+  public:
+    DenseTransport(const PatchTransfer& transfer, const LeafNumbering& numbering, const PatchLevel& level,
+                   Progress& progress, const StopRequest& stop);
+
+    std::size_t size() const override { return level_.patch_of.size(); }
+    void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
+    Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
+    std::size_t memory_bytes() const override { return 4 * F_.size(); }
+    std::size_t entries() const { return F_.size(); }
+
+  private:
+    const PatchLevel& level_;
+    std::vector<std::uint32_t> first_leaf_, leaves_;  ///< Leaves of each patch.
+    std::vector<float> F_;                            ///< Row of leaf i: F_[i * patches, (i + 1) * patches).
+};
+
+}  // namespace exitance

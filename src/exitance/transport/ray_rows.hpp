@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/transport/stage.hpp"
+#include "exitance/transport/transport_operator.hpp"
+
+namespace exitance {
+
+/// How many rays the things of a mesh are given: the more area (and so the more say in the error) the more rays.
+struct RayBudget {
+    double average = 64;  ///< Rays of an element of mean area.
+    unsigned least = 16;
+    unsigned most = 4096;
+
+    /// Rays of something of `area`, when the mean area of its kind is `mean_area` (both m^2): a power of two, in
+    /// proportion to the root of the area, which spends a given number of rays on the least total variance.
+    unsigned rays(double area, double mean_area) const;
+};
+
+/// Transport by rays: row i holds the elements that n_i rays, spread over element i with density cos / pi around its
+/// normal, hit first on their fronts: F_ij is the share of them that hits j. Unbiased; a row of a closed scene sums to
+/// 1 exactly. The points (four dimensions: place and direction) are scrambled Sobol points, so that the error of what
+/// is gathered falls like n^-3/4. O(n log n) a row to make, O(rays) to apply, 4 bytes a ray.
+class RayRows final : public TransportOperator {
+  public:
+    RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
+            RayBudget budget, std::uint64_t seed);
+
+    std::size_t size() const override { return first_.size() - 1; }
+    void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
+    Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
+    std::size_t memory_bytes() const override { return 4 * hits_.size() + 8 * first_.size(); }
+    std::size_t rays() const { return hits_.size(); }
+
+  private:
+    static constexpr std::uint32_t missed = 0xffffffffu;
+    std::vector<std::size_t> first_;   ///< Row i stands in hits_[first_[i], first_[i + 1]).
+    std::vector<std::uint32_t> hits_;  ///< Leaf numbers; `missed` where a ray met nothing or a back.
+};
+
+}  // namespace exitance
