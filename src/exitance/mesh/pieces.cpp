@@ -14,6 +14,8 @@ namespace {
 
 /// Below this share of the polygon's extent lengths are rounding. Well above the digits that scene files carry.
 constexpr double same_place = 1e-9;
+/// How far the corners of a parallelogram may be from one, as a share of its shortest side.
+constexpr double near_parallelogram = 1e-4;
 /// The smallest height to longest side that a triangle beside a parallelogram may have.
 constexpr double sliver = 0.15;
 /// Outlines with more corners are not searched for parallelograms at their border, which takes a time of corners^3.
@@ -21,13 +23,19 @@ constexpr std::size_t most_peeled = 40;
 
 using Loop = std::vector<Point>;
 
-Patch triangle(const Point& p, const Point& q, const Point& r) { return {p, q - p, r - p, Patch::Shape::triangle}; }
+Patch triangle(const Point& p, const Point& q, const Point& r) {
+    return {p, q - p, r - p, Patch::Shape::triangle};
+}
 
-/// Four corners as a parallelogram, if they are one but for `tolerance`. It has the corners' area exactly: a and b are
-/// means of opposite sides, and a x b is half the product of the diagonals, as for the corners.
-std::optional<Patch> as_parallelogram(std::span<const Point> p, double tolerance) {
+/// Four corners as a parallelogram, if they are one but for a small share of the shortest side: files that carry six
+/// digits round that much, and only functions live on patches, while outlines decide where light goes. It has the
+/// corners' area exactly: a and b are means of opposite sides, and a x b is half the product of the diagonals, as for
+/// the corners.
+std::optional<Patch> as_parallelogram(std::span<const Point> p) {
     const Vec3 gap = (p[0] + p[2]) - (p[1] + p[3]);
-    if (norm(gap) > tolerance) return std::nullopt;
+    double shortest = norm(p[3] - p[0]);
+    for (std::size_t i = 0; i < 3; ++i) shortest = std::min(shortest, norm(p[i + 1] - p[i]));
+    if (norm(gap) > near_parallelogram * shortest) return std::nullopt;
     const Vec3 a = 0.5 * ((p[1] - p[0]) + (p[2] - p[3])), b = 0.5 * ((p[3] - p[0]) + (p[2] - p[1]));
     return Patch{p[0] - 0.25 * gap, a, b, Patch::Shape::parallelogram};
 }
@@ -55,7 +63,7 @@ bool peel_parallelogram(Loop& loop, const Normal& n, double tolerance, std::vect
     const std::size_t m = loop.size();
     for (std::size_t i = 0; m > 4 && i < m; ++i) {
         const Point quad[4] = {loop[i], loop[(i + 1) % m], loop[(i + 2) % m], loop[(i + 3) % m]};
-        const auto patch = as_parallelogram(quad, tolerance);
+        const auto patch = as_parallelogram(quad);
         if (!patch || dot(cross(patch->a, patch->b), n) <= 0) continue;
         bool free = true;
         for (std::size_t k = 4; k < m && free; ++k) {
@@ -100,11 +108,12 @@ struct PlaneFrame {
 };
 
 /// Triangles, of which pairs that form a parallelogram are joined.
-std::vector<Patch> triangles(std::span<const Loop> loops, std::span<const std::vector<Vec2>> flat, double tolerance) {
+std::vector<Patch> triangles(std::span<const Loop> loops, std::span<const std::vector<Vec2>> flat) {
     std::vector<Point> corners;
     for (const Loop& loop : loops) corners.insert(corners.end(), loop.begin(), loop.end());
     const auto all = delaunay_triangles(flat);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::size_t>> across;  // edge -> triangle, side
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::size_t>>
+        across;  // edge -> triangle, side
     std::vector<char> joined(all.size(), 0);
     std::vector<Patch> out;
     for (std::size_t t = 0; t < all.size(); ++t)
@@ -115,7 +124,7 @@ std::vector<Patch> triangles(std::span<const Loop> loops, std::span<const std::v
             if (other == across.end() || joined[t] || joined[other->second.first]) continue;
             const auto [o, side] = other->second;
             const Point quad[4] = {corners[apex], corners[p], corners[all[o][(side + 2) % 3]], corners[q]};
-            if (const auto patch = as_parallelogram(quad, tolerance)) {
+            if (const auto patch = as_parallelogram(quad)) {
                 joined[t] = joined[o] = 1;
                 out.push_back(*patch);
             }
@@ -134,7 +143,7 @@ std::vector<Patch> tile(std::span<const Loop> loops, const Normal& n) {
     const double tolerance = same_place * box.diagonal();
     if (loops.size() == 1 && loops[0].size() == 3) return {triangle(loops[0][0], loops[0][1], loops[0][2])};
     if (loops.size() == 1 && loops[0].size() == 4) {
-        if (const auto patch = as_parallelogram(loops[0], tolerance)) return {*patch};
+        if (const auto patch = as_parallelogram(loops[0])) return {*patch};
         if (is_convex(loops[0], n))
             if (auto two = as_trapezoid(loops[0], tolerance); !two.empty()) return two;
     }
@@ -146,14 +155,16 @@ std::vector<Patch> tile(std::span<const Loop> loops, const Normal& n) {
     }
     std::vector<Patch> out;
     for (const auto& [lo, hi] : tile_by_rectangles(flat, tolerance))
-        out.push_back({frame.lifted(lo), (hi.x - lo.x) * frame.u, (hi.y - lo.y) * frame.v, Patch::Shape::parallelogram});
+        out.push_back(
+            {frame.lifted(lo), (hi.x - lo.x) * frame.u, (hi.y - lo.y) * frame.v, Patch::Shape::parallelogram});
     if (!out.empty()) return out;
-    if (Loop rest = loops[0]; loops.size() == 1 && rest.size() <= most_peeled && peel_parallelogram(rest, n, tolerance, out)) {
+    if (Loop rest = loops[0];
+        loops.size() == 1 && rest.size() <= most_peeled && peel_parallelogram(rest, n, tolerance, out)) {
         const auto others = tile(std::vector<Loop>{std::move(rest)}, n);
         out.insert(out.end(), others.begin(), others.end());
         return out;
     }
-    return triangles(loops, flat, tolerance);
+    return triangles(loops, flat);
 }
 
 std::vector<Piece> cut_into_pieces(const Scene& scene) {

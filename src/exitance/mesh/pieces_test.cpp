@@ -17,20 +17,24 @@ double area(const std::vector<Patch>& patches) {
 }
 
 std::size_t triangles(const std::vector<Patch>& patches) {
-    return static_cast<std::size_t>(std::count_if(patches.begin(), patches.end(), [](const Patch& p) { return p.is_triangle(); }));
+    return static_cast<std::size_t>(
+        std::count_if(patches.begin(), patches.end(), [](const Patch& p) { return p.is_triangle(); }));
 }
 
 /// Height over longest side, times two for triangles: 1 is a square.
 double worst_shape(const std::vector<Patch>& patches) {
     double worst = 1;
     for (const Patch& p : patches) {
-        const double longest = std::max({squared_norm(p.a), squared_norm(p.b), p.is_triangle() ? squared_norm(p.a - p.b) : 0.0});
+        const double longest =
+            std::max({squared_norm(p.a), squared_norm(p.b), p.is_triangle() ? squared_norm(p.a - p.b) : 0.0});
         worst = std::min(worst, norm(cross(p.a, p.b)) / longest);
     }
     return worst;
 }
 
-std::vector<Patch> tile_one(Loop loop) { return tile(std::vector<Loop>{std::move(loop)}, up); }
+std::vector<Patch> tile_one(Loop loop) {
+    return tile(std::vector<Loop>{std::move(loop)}, up);
+}
 
 TEST(Pieces, AParallelogramAndATriangleAreOnePieceEach) {
     const auto parallelogram = tile_one({{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {1, 1, 0}});
@@ -43,7 +47,8 @@ TEST(Pieces, AParallelogramAndATriangleAreOnePieceEach) {
 }
 
 TEST(Pieces, AWallWithADoorIsThreeRectanglesCutOnTheShortSide) {
-    const auto wall = tile_one({{0, 0, 0}, {0.45, 0, 0}, {0.45, 2.1, 0}, {1.35, 2.1, 0}, {1.35, 0, 0}, {4, 0, 0}, {4, 2.8, 0}, {0, 2.8, 0}});
+    const auto wall = tile_one(
+        {{0, 0, 0}, {0.45, 0, 0}, {0.45, 2.1, 0}, {1.35, 2.1, 0}, {1.35, 0, 0}, {4, 0, 0}, {4, 2.8, 0}, {0, 2.8, 0}});
     ASSERT_EQ(wall.size(), 3u);
     EXPECT_EQ(triangles(wall), 0u);
     EXPECT_NEAR(area(wall), 4 * 2.8 - 0.9 * 2.1, 1e-12 * 9.31);
@@ -51,7 +56,8 @@ TEST(Pieces, AWallWithADoorIsThreeRectanglesCutOnTheShortSide) {
 }
 
 TEST(Pieces, AFrameIsFourRectanglesAndAnEmptyOneNothing) {
-    const std::vector<Loop> frame = {{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}}, {{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}}};
+    const std::vector<Loop> frame = {{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}},
+                                     {{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}}};
     const auto pieces = tile(frame, up);
     EXPECT_EQ(pieces.size(), 4u);
     EXPECT_EQ(triangles(pieces), 0u);

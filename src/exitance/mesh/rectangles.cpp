@@ -119,7 +119,8 @@ std::vector<Rectangle> row_runs(const CellGrid& g) {
             now.push_back({i0, i, j});
         }
         for (const Run& r : open) {
-            const auto same = std::find_if(now.begin(), now.end(), [&](const Run& n) { return n.i0 == r.i0 && n.i1 == r.i1; });
+            const auto same =
+                std::find_if(now.begin(), now.end(), [&](const Run& n) { return n.i0 == r.i0 && n.i1 == r.i1; });
             if (same != now.end())
                 same->j0 = r.j0;
             else
