@@ -21,7 +21,8 @@ bool cancel_opposites(std::vector<BorderEdge>& edges) {
     std::vector<BorderEdge> left;
     for (std::size_t i = 0, j; i < edges.size(); i = j) {
         for (j = i; j < edges.size() && key(edges[j]) == key(edges[i]);) ++j;
-        const auto forward = std::count_if(&edges[i], &edges[i] + (j - i), [](const BorderEdge& e) { return e.from < e.to; });
+        const auto forward =
+            std::count_if(&edges[i], &edges[i] + (j - i), [](const BorderEdge& e) { return e.from < e.to; });
         const auto surplus = 2 * forward - static_cast<std::ptrdiff_t>(j - i);
         if (surplus > 1 || surplus < -1) return false;
         if (surplus != 0) left.push_back(surplus > 0 ? edges[i] : edges[j - 1]);
@@ -69,11 +70,13 @@ Vec3 loop_area(std::span<const Point> points, const Loop& loop) {
 }
 
 std::vector<Loop> walk(std::span<const Point> points, std::vector<BorderEdge>& edges, const Normal& n) {
-    std::sort(edges.begin(), edges.end(),
-              [](const BorderEdge& a, const BorderEdge& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
+    std::sort(edges.begin(), edges.end(), [](const BorderEdge& a, const BorderEdge& b) {
+        return a.from != b.from ? a.from < b.from : a.to < b.to;
+    });
     std::vector<char> used(edges.size(), 0);
     const auto leaving = [&](std::uint32_t p) {
-        return std::lower_bound(edges.begin(), edges.end(), p, [](const BorderEdge& e, std::uint32_t v) { return e.from < v; }) -
+        return std::lower_bound(edges.begin(), edges.end(), p,
+                                [](const BorderEdge& e, std::uint32_t v) { return e.from < v; }) -
                edges.begin();
     };
     std::vector<Loop> loops;
@@ -87,7 +90,8 @@ std::vector<Loop> walk(std::span<const Point> points, std::vector<BorderEdge>& e
             const Vec3 arriving = points[edges[e].to] - points[edges[e].from];
             std::size_t next = edges.size();
             double smallest = 0;
-            for (auto o = static_cast<std::size_t>(leaving(edges[e].to)); o < edges.size() && edges[o].from == edges[e].to; ++o) {
+            for (auto o = static_cast<std::size_t>(leaving(edges[e].to));
+                 o < edges.size() && edges[o].from == edges[e].to; ++o) {
                 const double angle = inside_angle(arriving, points[edges[o].to] - points[edges[o].from], n);
                 if (next == edges.size() || angle < smallest) next = o, smallest = angle;
             }
@@ -102,9 +106,10 @@ std::vector<Loop> walk(std::span<const Point> points, std::vector<BorderEdge>& e
 }
 
 void start_at_smallest(std::span<const Point> points, Loop& loop) {
-    std::rotate(loop.begin(),
-                std::min_element(loop.begin(), loop.end(), [&](auto a, auto b) { return before(points[a], points[b]); }),
-                loop.end());
+    std::rotate(
+        loop.begin(),
+        std::min_element(loop.begin(), loop.end(), [&](auto a, auto b) { return before(points[a], points[b]); }),
+        loop.end());
 }
 
 }  // namespace
@@ -119,7 +124,8 @@ std::vector<Loop> border_loops(std::span<const Point> points, std::vector<Border
     for (Loop& loop : loops) {
         drop_straight_corners(points, loop, n, tolerance);
         sum += dot(n, loop_area(points, loop));
-        for (std::size_t i = 0; i < loop.size(); ++i) round += norm(points[loop[i]] - points[loop[(i + 1) % loop.size()]]);
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            round += norm(points[loop[i]] - points[loop[(i + 1) % loop.size()]]);
     }
     std::erase_if(loops, [](const Loop& loop) { return loop.size() < 3; });
     if (loops.empty() || std::abs(sum - area) > 1e-9 * area + tolerance * round) return {};

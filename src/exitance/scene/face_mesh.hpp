@@ -10,9 +10,9 @@ namespace exitance {
 
 /// Lengths and angles below which things count as the same.
 struct Tolerances {
-    double place = 0;   ///< Metres: points nearer than this are one point.
-    double plane = 0;   ///< Metres: how far a face's corners may stand off its plane.
-    double tilt = 1e-3; ///< Radians: how far normals of faces that are meant to be coplanar may differ.
+    double place = 0;    ///< Metres: points nearer than this are one point.
+    double plane = 0;    ///< Metres: how far a face's corners may stand off its plane.
+    double tilt = 1e-3;  ///< Radians: how far normals of faces that are meant to be coplanar may differ.
 };
 
 /// Tolerances of a scene whose points lie in `box`. Places: 1e-9 of the scene's size, which exceeds the rounding of

@@ -4,7 +4,9 @@
 
 namespace exitance {
 namespace {
-bool is_error(const Finding& f) { return f.kind == Finding::Kind::error; }
+bool is_error(const Finding& f) {
+    return f.kind == Finding::Kind::error;
+}
 }  // namespace
 
 void sort_findings(std::vector<Finding>& findings) {
@@ -14,7 +16,9 @@ void sort_findings(std::vector<Finding>& findings) {
     });
 }
 
-bool has_errors(std::span<const Finding> findings) { return std::any_of(findings.begin(), findings.end(), is_error); }
+bool has_errors(std::span<const Finding> findings) {
+    return std::any_of(findings.begin(), findings.end(), is_error);
+}
 
 Error error_of(std::span<const Finding> findings) {
     const auto first = std::find_if(findings.begin(), findings.end(), is_error);
@@ -25,6 +29,8 @@ Error error_of(std::span<const Finding> findings) {
     return {ErrorCode::bad_input, message, place_of(*first), first->hint};
 }
 
-std::string place_of(const Finding& f) { return f.line > 0 ? f.file + ":" + std::to_string(f.line) : f.file; }
+std::string place_of(const Finding& f) {
+    return f.line > 0 ? f.file + ":" + std::to_string(f.line) : f.file;
+}
 
 }  // namespace exitance

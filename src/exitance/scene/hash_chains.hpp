@@ -13,8 +13,7 @@ class HashChains {
   public:
     static constexpr std::uint32_t end = 0xffffffffu;
 
-    explicit HashChains(std::size_t expected)
-        : mask_(std::bit_ceil(expected + 1) - 1), head_(mask_ + 1, end) {
+    explicit HashChains(std::size_t expected) : mask_(std::bit_ceil(expected + 1) - 1), head_(mask_ + 1, end) {
         next_.reserve(expected);
     }
 

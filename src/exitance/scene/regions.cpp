@@ -186,7 +186,8 @@ void Joiner::pair_on_line(std::span<const LineEntry> group) {
     };
     std::vector<Interval> intervals;
     for (const LineEntry& entry : group) {
-        const double s = dot(point(edges_[entry.edge].from) - origin, d), t = dot(point(edges_[entry.edge].to) - origin, d);
+        const double s = dot(point(edges_[entry.edge].from) - origin, d),
+                     t = dot(point(edges_[entry.edge].to) - origin, d);
         intervals.push_back({std::min(s, t), std::max(s, t), entry.edge});
     }
     std::sort(intervals.begin(), intervals.end(),

@@ -7,8 +7,8 @@ namespace exitance {
 /// Coplanar faces joined along edges: their numbers, ascending, and the border of their union as numbers of points.
 struct JoinedFaces {
     std::vector<std::uint32_t> faces;
-    /// Outer loops counter-clockwise, holes clockwise; corners where the border goes straight on are left out. Each loop
-    /// starts at its lexicographically smallest corner, outer loops come first, loops are ordered by their start.
+    /// Outer loops counter-clockwise, holes clockwise; corners where the border goes straight on are left out. Each
+    /// loop starts at its lexicographically smallest corner, outer loops come first, loops are ordered by their start.
     std::vector<std::vector<std::uint32_t>> loops;
 };
 

@@ -67,7 +67,8 @@ void SceneBuilder::check_materials() {
     for (const Material& m : in_.materials)
         for (std::size_t b = 0; b < bands; ++b) {
             if (!(m.reflectance[b] >= 0 && m.reflectance[b] < 1))
-                error(0, fmt::format("material '{}' has reflectance {:g} in band {}", m.name, m.reflectance[b], band(b)),
+                error(0,
+                      fmt::format("material '{}' has reflectance {:g} in band {}", m.name, m.reflectance[b], band(b)),
                       "reflectances lie in [0, 1): at 1 light would never die out");
             if (!(m.exitance[b] >= 0 && std::isfinite(m.exitance[b])))
                 error(0, fmt::format("material '{}' has exitance {:g} in band {}", m.name, m.exitance[b], band(b)),
@@ -113,13 +114,15 @@ bool SceneBuilder::check_face(const SceneDescription::Face& face) {
     const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);
     if (outline.size() < 3) {
         find(Finding::Kind::repair, face.line,
-             fmt::format("face has {} corners, {} at different places, and no area: it is left out", given, outline.size()),
+             fmt::format("face has {} corners, {} at different places, and no area: it is left out", given,
+                         outline.size()),
              "remove it or give it three corners that are not in line");
         return false;
     }
     if (dropped > 0)
-        find(Finding::Kind::repair, face.line,
-             fmt::format("{} of the face's {} corners stand where a neighbour stands: they are merged", dropped, given));
+        find(
+            Finding::Kind::repair, face.line,
+            fmt::format("{} of the face's {} corners stand where a neighbour stands: they are merged", dropped, given));
     if (!check_shape(face, outline)) return false;
     mesh_.corners.insert(mesh_.corners.end(), outline.begin(), outline.end());
     return true;
@@ -214,8 +217,8 @@ void SceneBuilder::check_light() {
     const bool lit = std::any_of(origin_.begin(), origin_.end(),
                                  [&](std::uint32_t f) { return in_.materials[in_.faces[f].material].emits(); });
     if (!lit)
-        find(Finding::Kind::warning, in_.faces.empty() ? 0 : in_.faces[0].line, "nothing emits light: all results are 0",
-             "give a material an emission (in MTL: Ke r g b)");
+        find(Finding::Kind::warning, in_.faces.empty() ? 0 : in_.faces[0].line,
+             "nothing emits light: all results are 0", "give a material an emission (in MTL: Ke r g b)");
 }
 
 /// Regions with their planes, points moved into them where they stand off by more than rounding.
@@ -299,6 +302,8 @@ CheckedScene SceneBuilder::build() {
     return {make(), std::move(findings_)};
 }
 
-CheckedScene make_scene(SceneDescription description) { return SceneBuilder(std::move(description)).build(); }
+CheckedScene make_scene(SceneDescription description) {
+    return SceneBuilder(std::move(description)).build();
+}
 
 }  // namespace exitance

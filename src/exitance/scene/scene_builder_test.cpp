@@ -39,7 +39,9 @@ int count(const CheckedScene& s, Finding::Kind kind) {
         std::count_if(s.findings.begin(), s.findings.end(), [&](const Finding& f) { return f.kind == kind; }));
 }
 
-const Region& region(const CheckedScene& s, std::size_t i) { return s.scene->regions()[RegionId(i)]; }
+const Region& region(const CheckedScene& s, std::size_t i) {
+    return s.scene->regions()[RegionId(i)];
+}
 
 TEST(Regions, AnUncutFloorIsOneRegionWithItsCornersFromTheSmallestOn) {
     const auto s = Sketch().add({{2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0, 0, 0}}).light().make();
@@ -81,7 +83,16 @@ TEST(Regions, AFrameOfFourRectanglesHasAHole) {
 
 TEST(Regions, AHoleGivenByABridgeIsTheHoleOfTheSameRegion) {
     const auto s = Sketch()
-                       .add({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0}, {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0}})
+                       .add({{0, 0, 0},
+                             {3, 0, 0},
+                             {3, 3, 0},
+                             {0, 3, 0},
+                             {0, 0, 0},
+                             {1, 1, 0},
+                             {1, 2, 0},
+                             {2, 2, 0},
+                             {2, 1, 0},
+                             {1, 1, 0}})
                        .light()
                        .make();
     ASSERT_TRUE(s.scene);
@@ -96,7 +107,8 @@ TEST(Regions, OtherMaterialsOtherSidesAndTouchingCornersStayApart) {
     EXPECT_EQ(Sketch().rectangle(0, 0, 1, 1).rectangle(1, 1, 2, 2).light().make().scene->regions().size(), 3u);
     const auto turned = Sketch().rectangle(0, 0, 1, 1).add({{1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 0, 0}}).light().make();
     EXPECT_EQ(turned.scene->regions().size(), 3u);
-    const auto folded = Sketch().rectangle(0, 0, 1, 1).add({{1, 0, 0}, {2, 0, 0.1}, {2, 1, 0.1}, {1, 1, 0}}).light().make();
+    const auto folded =
+        Sketch().rectangle(0, 0, 1, 1).add({{1, 0, 0}, {2, 0, 0.1}, {2, 1, 0.1}, {1, 1, 0}}).light().make();
     EXPECT_EQ(folded.scene->regions().size(), 3u);
 }
 
@@ -145,7 +157,12 @@ TEST(Checks, CornersAtOnePlaceAreMergedAndSaid) {
 }
 
 TEST(Checks, FacesWithoutAreaAreLeftOutAndSaid) {
-    const auto s = Sketch().rectangle(0, 0, 1, 1).add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).add({{0, 0, 0}, {1, 0, 0}}).light().make();
+    const auto s = Sketch()
+                       .rectangle(0, 0, 1, 1)
+                       .add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}})
+                       .add({{0, 0, 0}, {1, 0, 0}})
+                       .light()
+                       .make();
     ASSERT_TRUE(s.scene);
     EXPECT_EQ(s.scene->surfaces().size(), 2u);
     ASSERT_EQ(count(s, Finding::Kind::repair), 2);
@@ -171,7 +188,9 @@ TEST(Checks, AClearlyBentFaceIsAnErrorThatSaysByHowMuch) {
 
 TEST(Checks, EveryErrorIsFoundNotJustTheFirst) {
     Sketch sketch;
-    sketch.add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.4}, {0, 1, 0}}).add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.5, 0}}).light();
+    sketch.add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.4}, {0, 1, 0}})
+        .add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.5, 0}})
+        .light();
     sketch.d.materials[0].reflectance[1] = 1.25;
     const auto s = sketch.make();
     EXPECT_EQ(count(s, Finding::Kind::error), 3);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace exitance {
+
+/// MT19937 with the seeding and the draws of Python's `random.Random(seed)`, so that scene families made by either hold
+/// the same numbers. For making scenes only: everything else uses RandomStream. Source: [Matsumoto98].
+class MersenneTwister {
+  public:
+    explicit MersenneTwister(std::uint64_t seed);
+    std::uint32_t bits();
+    double uniform(double low, double high);   ///< 53 bits, in [low, high).
+    std::uint32_t below(std::uint32_t count);  ///< 0 to count - 1, by rejection.
+
+  private:
+    void seed_with(std::uint32_t seed);
+    std::array<std::uint32_t, 624> state_{};
+    std::size_t next_ = 624;
+};
+
+}  // namespace exitance
