@@ -26,7 +26,8 @@ Spectrum spread(const std::vector<double>& values) {
 
 class MtlReader {
   public:
-    MtlReader(std::string_view text, const std::string& file, std::vector<Material>& materials, std::vector<Finding>& findings)
+    MtlReader(std::string_view text, const std::string& file, std::vector<Material>& materials,
+              std::vector<Finding>& findings)
         : lines_(text), file_(file), materials_(materials), findings_(findings) {}
     void read();
 
@@ -75,7 +76,8 @@ void MtlReader::end_material() {
     if (!open_) return;
     const auto same = [&](const Material& m) { return m.name == material_.name; };
     if (std::any_of(materials_.begin(), materials_.end(), same)) {
-        find(Finding::Kind::warning, line_, fmt::format("material '{}' is there already: the first one holds", material_.name),
+        find(Finding::Kind::warning, line_,
+             fmt::format("material '{}' is there already: the first one holds", material_.name),
              "give it another name");
         return;
     }
@@ -97,7 +99,8 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
     while (!lines_.rest().empty())
         if (!read_number(key, lines_.word(), values)) return;
     if (values.size() != 1 && values.size() != 3 && values.size() != bands)
-        return error(fmt::format("material '{}': {} has {} values", material_.name, key, values.size()), "give one or three");
+        return error(fmt::format("material '{}': {} has {} values", material_.name, key, values.size()),
+                     "give one or three");
     for (std::size_t b = 0; b < values.size(); ++b) {
         const double v = values[b];
         if (reflectance && !(v >= 0 && v < 1))

@@ -19,7 +19,9 @@ constexpr long long most_points = 0xfffffffe;
 
 class ObjReader {
   public:
-    ObjReader(const std::string& path, std::string_view text) : path_(path), lines_(text) { out_.description.file = path; }
+    ObjReader(const std::string& path, std::string_view text) : path_(path), lines_(text) {
+        out_.description.file = path;
+    }
     ReadScene read();
 
   private:
@@ -84,8 +86,9 @@ void ObjReader::read_point() {
         if (word.empty())
             error(fmt::format("vertex has {} coordinates, not three", i));
         else
-            error(fmt::format("coordinate '{}' is not a {}number", word, kind == NumberKind::not_finite ? "finite " : ""),
-                  word.find(',') != word.npos ? "write decimals with a point" : "");
+            error(
+                fmt::format("coordinate '{}' is not a {}number", word, kind == NumberKind::not_finite ? "finite " : ""),
+                word.find(',') != word.npos ? "write decimals with a point" : "");
         broken_.push_back(static_cast<std::uint32_t>(points.size()));
         p = {};
         break;
@@ -111,7 +114,8 @@ void ObjReader::read_face() {
     if (!has_use_) {
         use_material(default_material);
         find(Finding::Kind::warning, face.line,
-             fmt::format("face comes before any 'usemtl': it gets the material '{}', with reflectance 0.5", default_material),
+             fmt::format("face comes before any 'usemtl': it gets the material '{}', with reflectance 0.5",
+                         default_material),
              "name a material with 'usemtl'");
     }
     if (!has_group_) use_group("");
@@ -156,9 +160,11 @@ void ObjReader::use_group(std::string_view name) {
 void ObjReader::check_indices() {
     auto& [file, points, materials, groups, faces] = out_.description;
     std::erase_if(faces, [&](const SceneDescription::Face& face) {
-        const auto beyond = std::find_if(face.corners.begin(), face.corners.end(), [&](auto c) { return c >= points.size(); });
+        const auto beyond =
+            std::find_if(face.corners.begin(), face.corners.end(), [&](auto c) { return c >= points.size(); });
         if (beyond != face.corners.end())
-            find(Finding::Kind::error, face.line, fmt::format("face names vertex {} of {}", *beyond + 1, points.size()));
+            find(Finding::Kind::error, face.line,
+                 fmt::format("face names vertex {} of {}", *beyond + 1, points.size()));
         return beyond != face.corners.end() || std::any_of(face.corners.begin(), face.corners.end(), [&](auto c) {
                    return std::binary_search(broken_.begin(), broken_.end(), c);
                });

@@ -14,9 +14,9 @@ struct ReadScene {
 };
 
 /// Reads Wavefront OBJ with its MTL files: faces with any number of corners, 'g' and 'o' names, 'usemtl', several
-/// 'mtllib' (relative to the file), relative indices, indices of texture and normal (ignored), comments, continued lines.
-/// Faces before any 'usemtl' get a grey material named 'default', with a warning. Every error is reported, with file
-/// and line, not just the first. O(size of the file).
+/// 'mtllib' (relative to the file), relative indices, indices of texture and normal (ignored), comments, continued
+/// lines. Faces before any 'usemtl' get a grey material named 'default', with a warning. Every error is reported, with
+/// file and line, not just the first. O(size of the file).
 ReadScene read_obj(const std::string& path);
 
 /// The same for a caller who needs it whole: the first error, or the description.

@@ -53,8 +53,9 @@ TEST_F(ObjFiles, ReflectanceIsKeptAndRadianceBecomesExitance) {
 }
 
 TEST_F(ObjFiles, SlashesCommentsCarriageReturnsContinuedLinesAndRelativeNumbersAreUnderstood) {
-    const auto s = load("# c\r\nmtllib m.mtl # here\r\nv 0 0 0\r\nv +1 0 0 1.0\r\nv 1 1e0 0\r\nv 0 \\\r\n 1 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
-                        "usemtl grey\r\nf 1/1/1 2//1 \\\r\n 3/1 4\r\nusemtl light\r\nf -1 -2 -3 -4");
+    const auto s = load(
+        "# c\r\nmtllib m.mtl # here\r\nv 0 0 0\r\nv +1 0 0 1.0\r\nv 1 1e0 0\r\nv 0 \\\r\n 1 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
+        "usemtl grey\r\nf 1/1/1 2//1 \\\r\n 3/1 4\r\nusemtl light\r\nf -1 -2 -3 -4");
     ASSERT_TRUE(s.scene);
     ASSERT_EQ(s.scene->surfaces().size(), 2u);
     EXPECT_EQ(s.scene->surfaces()[SurfaceId(0)].line, 11);
@@ -86,8 +87,9 @@ TEST_F(ObjFiles, EveryErrorNamesItsFileAndLine) {
               "s.obj:7: face names '99999999999999999999', which is not a vertex number");
     EXPECT_EQ(first_error(head + "usemtl red\nf 1 2 3\n"), "s.obj:7: material 'red' is in no material file");
     EXPECT_EQ(first_error(""), "s.obj:1: there are no polygons");
-    EXPECT_NE(first_error("mtllib none.mtl\nusemtl grey\n" + points + "f 1 2 3\n").find("s.obj:1: material file 'none.mtl'"),
-              std::string::npos);
+    EXPECT_NE(
+        first_error("mtllib none.mtl\nusemtl grey\n" + points + "f 1 2 3\n").find("s.obj:1: material file 'none.mtl'"),
+        std::string::npos);
 }
 
 TEST_F(ObjFiles, EveryErrorOfAMaterialNamesItBandValueAndLine) {
@@ -96,8 +98,10 @@ TEST_F(ObjFiles, EveryErrorOfAMaterialNamesItBandValueAndLine) {
         return first_error("mtllib bad.mtl\nusemtl red\n" + points + "f 1 2 3\n");
     };
     EXPECT_EQ(error_of_material("Kd 1 1 1\n"), "bad.mtl:2: material 'red': reflectance Kd of red is 1, not in [0, 1)");
-    EXPECT_EQ(error_of_material("\nKd 0.5 0.5 1.2\n"), "bad.mtl:3: material 'red': reflectance Kd of blue is 1.2, not in [0, 1)");
-    EXPECT_EQ(error_of_material("Kd -0.5\n"), "bad.mtl:2: material 'red': reflectance Kd of all bands is -0.5, not in [0, 1)");
+    EXPECT_EQ(error_of_material("\nKd 0.5 0.5 1.2\n"),
+              "bad.mtl:3: material 'red': reflectance Kd of blue is 1.2, not in [0, 1)");
+    EXPECT_EQ(error_of_material("Kd -0.5\n"),
+              "bad.mtl:2: material 'red': reflectance Kd of all bands is -0.5, not in [0, 1)");
     EXPECT_EQ(error_of_material("Kd 0\nKe 0 -1 0\n"), "bad.mtl:3: material 'red': emission Ke of green is -1, below 0");
     EXPECT_EQ(error_of_material("Kd 0\nKe 0 inf 0\n"), "bad.mtl:3: material 'red': 'inf' in Ke is not a finite number");
     EXPECT_EQ(error_of_material("Kd 0 0\n"), "bad.mtl:2: material 'red': Kd has 2 values");

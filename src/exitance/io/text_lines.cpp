@@ -7,7 +7,9 @@
 namespace exitance {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v' || c == '\0'; }
+bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v' || c == '\0';
+}
 
 std::string_view trimmed(std::string_view s) {
     while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
@@ -65,7 +67,8 @@ std::string_view TextLines::word() {
 NumberKind parse_number(std::string_view word, double& value) {
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (word.empty() || end != word.data() + word.size() || error == std::errc::invalid_argument) return NumberKind::not_a_number;
+    if (word.empty() || end != word.data() + word.size() || error == std::errc::invalid_argument)
+        return NumberKind::not_a_number;
     // Out of range is also what is too small: that is zero for every purpose here.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
     return std::isfinite(value) ? NumberKind::finite : NumberKind::not_finite;

@@ -22,7 +22,8 @@ Error cannot(ErrorCode code, const std::string& path, const char* what, int reas
 
 Result<std::string> read_whole_file(const std::string& path) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) return cannot(ErrorCode::cannot_read, path, "cannot be read", EISDIR);
+    if (std::filesystem::is_directory(path, ignored))
+        return cannot(ErrorCode::cannot_read, path, "cannot be read", EISDIR);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) return cannot(ErrorCode::cannot_read, path, "cannot be opened", errno);
     std::string content;
@@ -59,7 +60,8 @@ std::string beside(const std::string& path, std::string_view name) {
 
 std::string ending(const std::string& path) {
     std::string out = std::filesystem::path(path).extension().string();
-    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(out.begin(), out.end(), out.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return out;
 }
 
