@@ -9,18 +9,28 @@ struct Segment {
     Point a, b;
 };
 
-/// The edges of a face that lie in a plane, and the lines in which the face crosses it.
-void contacts_with_plane(std::span<const Point> outline, const Plane& plane, double tolerance,
+/// The edges of a face that lie in a plane or hover over it by less than `gap`, the latter with a line on either side as
+/// far away as the edge is high: so wide is the strip in which light changes; and the lines in which the face crosses it.
+void contacts_with_plane(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
                          std::vector<Segment>& out) {
     const std::size_t m = outline.size();
     std::vector<Point> crossings;
-    Point lo, hi;
     for (std::size_t i = 0; i < m; ++i) {
         const Point &p = outline[i], &q = outline[(i + 1) % m];
         const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
         const bool on_p = std::abs(hp) <= tolerance, on_q = std::abs(hq) <= tolerance;
-        if (on_p && on_q) out.push_back({p, q});
-        else if (on_p) crossings.push_back(p);
+        const bool hovers = std::min(hp, hq) >= -tolerance && std::max(hp, hq) <= gap;
+        if (hovers) {
+            out.push_back({p, q});
+            const double height = std::max(hp, hq);
+            if (height > 10 * tolerance) {
+                const Vec3 across = (height / norm(q - p)) * cross(plane.n, q - p);
+                out.push_back({p + across, q + across});
+                out.push_back({p - across, q - across});
+            }
+        }
+        if (hovers) continue;
+        if (on_p) crossings.push_back(p);
         else if (!on_q && (hp > 0) != (hq > 0)) crossings.push_back(p + (hp / (hp - hq)) * (q - p));
     }
     if (crossings.size() < 2) return;
@@ -65,16 +75,21 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
 std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree, ElementId e) const {
     const Plane& plane = scene_->regions()[tree.region(e)].plane;
     const std::vector<Vec2> domain = tree.domain(e);
+    // Under an edge this near the light changes within a strip as narrow as the gap: for the element that is a jump.
+    constexpr double narrow = 0.05;
+    const double gap = std::max(tolerance_, narrow * std::sqrt(tree.area(e)));
     Box box;
     for (const Point& corner : tree.outline(e)) {
-        box.add(corner - Vec3{tolerance_, tolerance_, tolerance_});
-        box.add(corner + Vec3{tolerance_, tolerance_, tolerance_});
+        box.add(corner - tolerance_ * plane.n);
+        box.add(corner + gap * plane.n);
     }
+    box.lo -= Vec3{tolerance_, tolerance_, tolerance_};
+    box.hi += Vec3{tolerance_, tolerance_, tolerance_};
     std::vector<Segment> segments;
     bvh_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
         if (scene_->surfaces()[s].region != tree.region(e))
-            contacts_with_plane(scene_->outline(s), plane, tolerance_, segments);
+            contacts_with_plane(scene_->outline(s), plane, tolerance_, gap, segments);
     });
     std::vector<std::pair<Vec2, Vec2>> out;
     const Patch& patch = tree.patch(e);

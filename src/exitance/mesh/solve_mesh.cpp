@@ -11,7 +11,7 @@ class Cutter {
     Cutter(ElementTree& tree, MeshSize size) : tree_(tree), size_(size) {
         strip_ = size.edge / std::pow(2.0, size.grading_levels);
         // A triangle's cells shrink in both directions at once: a strip of them costs as many as it is long.
-        triangle_strip_ = size.edge / std::pow(2.0, std::min(size.grading_levels, 1));
+        triangle_strip_ = size.edge / std::pow(2.0, std::min(size.grading_levels, 2));
     }
 
     /// `touches` tells which borders of the element lie on a concave border of its piece.

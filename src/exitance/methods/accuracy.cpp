@@ -18,11 +18,11 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     Knobs knobs;
     knobs.solve_mesh = {edge_for_elements(pieces, count(16)), strips};
     knobs.solve_rays = {.average = std::clamp(1.5 / error, 32.0, 256.0), .least = 16, .most = 1024};
-    knobs.direct_points = std::clamp(0.08 / error, 2.0, 16.0);
+    knobs.direct_tolerance = 2.5 * error;
     knobs.residual = 0.05 * error;
     knobs.gather_mesh = {edge_for_elements(pieces, count(5)), std::max(0, strips - 1)};
-    knobs.gather_rays = {.average = std::pow(0.8 / error, 4.0 / 3), .least = 16, .most = 8192};
-    knobs.gather_rays.least = static_cast<unsigned>(std::max(16.0, knobs.gather_rays.average / 4));
+    knobs.gather_rays = {.average = std::pow(0.5 / error, 4.0 / 3), .least = 16, .most = 16384};
+    knobs.gather_noise = 0.5 * error;
     knobs.gather_tolerance = 0.4 * error;
     apply_user_knobs(knobs, options);
     return knobs;
@@ -33,10 +33,10 @@ Knobs tightened(const Knobs& knobs, double factor, const SolveOptions& options) 
     out.solve_mesh.edge *= std::sqrt(factor);
     out.solve_mesh.grading_levels += 1;
     out.solve_rays.average = std::min(out.solve_rays.average / factor, 1024.0);
-    out.direct_points = std::min(out.direct_points / factor, 64.0);
+    out.direct_tolerance *= factor;
     out.residual *= factor;
     out.gather_rays.average *= std::pow(factor, -4.0 / 3);
-    out.gather_rays.least = static_cast<unsigned>(out.gather_rays.least / factor);
+    out.gather_noise *= factor;
     out.gather_tolerance *= factor;
     apply_user_knobs(out, options);
     return out;

@@ -10,12 +10,13 @@ namespace exitance {
 struct Knobs {
     MeshSize solve_mesh;       ///< Of the elements that the method solves on.
     RayBudget solve_rays;      ///< Rays of a row, where rows are cast.
-    double direct_points = 4;  ///< Exact direct light per element of mean area.
+    double direct_tolerance = 0.1;  ///< Misfit of the projected direct light, relative to its mean.
     double residual = 1e-3;    ///< Of the discrete system.
     std::size_t max_iterations = 1000;
     MeshSize gather_mesh;      ///< Of the elements that indirect light is gathered on, to begin with.
     RayBudget gather_rays;     ///< Rays of a node.
-    double gather_tolerance = 0;  ///< Relative to the mean reflected radiosity.
+    double gather_tolerance = 0;  ///< Error of interpolation, relative to the mean reflected radiosity.
+    double gather_noise = 0;      ///< Error of the rays, likewise.
 };
 
 /// Knobs for a relative error, where the pieces of the scene are these. Rules of thumb that the certificate checks:

@@ -1,5 +1,4 @@
 #include "exitance/methods/methods.hpp"
-#include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -32,13 +31,9 @@ void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& li
 /// noisy, what they gather is not: O(n) rays), or computed, from elements to patches one level above them [Cohen86]
 /// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each).
 GlobalLight solve_matrix(const MethodInput& input) {
-    const auto& [stage, options, knobs, progress, stop] = input;
-    progress.phase("mesh");
-    ElementTree tree = stage.make_elements(knobs.solve_mesh);
-    LeafNumbering numbering(tree);
-    GlobalLight light{.tree = std::move(tree), .numbering = std::move(numbering)};
-    progress.phase("direct light");
-    light.direct = project_direct_light(stage, light.tree, light.numbering, knobs.direct_points, options.seed);
+    const auto& [stage, options, knobs, direct, progress, stop] = input;
+    GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};
+    light.direct = leaf_means(direct, light.numbering);
 
     progress.phase("link");
     if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {

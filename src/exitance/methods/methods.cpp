@@ -2,6 +2,13 @@
 
 namespace exitance {
 
+std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbering& numbering) {
+    std::vector<Spectrum> out;
+    out.reserve(numbering.leaves.size());
+    for (ElementId e : numbering.leaves) out.push_back(direct.mean[e]);
+    return out;
+}
+
 std::span<const MethodEntry> method_table() {
     static constexpr MethodEntry table[] = {
         {Method::matrix, solve_matrix, "constant"},

@@ -3,6 +3,7 @@
 #include "exitance/core/progress.hpp"
 #include "exitance/methods/accuracy.hpp"
 #include "exitance/solve/global_light.hpp"
+#include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -12,6 +13,8 @@ struct MethodInput {
     const Stage& stage;
     const SolveOptions& options;
     const Knobs& knobs;
+    /// Direct light on elements that follow its shadows: the mesh that methods solve on, unless they make their own.
+    const DirectProjection& direct;
     Progress& progress;
     const StopRequest& stop;
 };
@@ -25,6 +28,9 @@ struct MethodEntry {
     SolveMethod solve;
     const char* basis;  ///< What its elements hold, when nothing else is asked for.
 };
+
+/// Mean direct light of every leaf of the projection's mesh, by leaf number, W/m^2.
+std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbering& numbering);
 
 /// The table: one line a method.
 std::span<const MethodEntry> method_table();

@@ -1,6 +1,5 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/methods.hpp"
-#include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/hemisphere.hpp"
 
 namespace exitance {
@@ -85,14 +84,12 @@ class Shooter {
 /// proportion to the power that is left, and what arrives is the unbiased image of it. Independent runs are averaged;
 /// their spread is the standard error. O(rays), no form factors, memory of the elements alone.
 GlobalLight solve_monte_carlo(const MethodInput& input) {
-    const auto& [stage, options, knobs, progress, stop] = input;
-    progress.phase("mesh");
-    ElementTree tree = stage.make_elements(knobs.solve_mesh);
+    const auto& [stage, options, knobs, direct_light, progress, stop] = input;
+    ElementTree tree = direct_light.tree;
     LeafNumbering numbering(tree);
     const std::size_t n = numbering.leaves.size();
     const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, tree, numbering);
-    progress.phase("direct light");
-    std::vector<Spectrum> direct = project_direct_light(stage, tree, numbering, knobs.direct_points, options.seed);
+    std::vector<Spectrum> direct = leaf_means(direct_light, numbering);
 
     progress.phase("shoot");
     Shooter shooter(stage, tree, numbering, options.seed);

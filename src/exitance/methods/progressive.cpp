@@ -6,9 +6,7 @@ namespace exitance {
 /// left. Form factors are taken at the receivers' points [Wallace89], so that none is larger than it can be. A column of
 /// n form factors a shot, computed when it is first wanted.
 GlobalLight solve_progressive(const MethodInput& input) {
-    input.progress.phase("mesh");
-    ElementTree tree = input.stage.make_elements(input.knobs.solve_mesh);
-    ShootingSetup setup(input, std::move(tree));
+    ShootingSetup setup(input, input.direct);
     input.progress.phase("shoot");
     const SolveReport report = setup.run();
     return setup.finish(report);

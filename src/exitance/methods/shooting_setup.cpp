@@ -1,8 +1,8 @@
 #include "exitance/methods/shooting_setup.hpp"
 
+#include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
-#include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
 namespace {
@@ -12,8 +12,8 @@ constexpr std::size_t column_memory = std::size_t{1} << 30;  ///< Bytes of colum
 
 }  // namespace
 
-ShootingSetup::ShootingSetup(const MethodInput& input, ElementTree mesh)
-    : tree(std::move(mesh)),
+ShootingSetup::ShootingSetup(const MethodInput& input, const DirectProjection& first)
+    : tree(first.tree),
       patches(tree.leaves()),
       patch_area(patches.size()),
       unshot(patches.size()),
@@ -29,8 +29,7 @@ ShootingSetup::ShootingSetup(const MethodInput& input, ElementTree mesh)
                 input.options.seed),
       columns_(patches.size()) {
     direct.resize(patches.size());
-    if (!shoots_direct_light())
-        direct = project_direct_light(input.stage, tree, numbering, input.knobs.direct_points, input.options.seed);
+    if (!shoots_direct_light()) direct = leaf_means(first, numbering);
     for (std::size_t p = 0; p < patches.size(); ++p) {
         patch_of[p] = static_cast<std::uint32_t>(p);
         patch_area[p] = area[p];
@@ -90,10 +89,9 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     patch_of.resize(n);
     irradiance.assign(n, {});
     direct.assign(n, {});
-    if (!shoots_direct_light())
-        direct = project_direct_light(input_.stage, tree, numbering, input_.knobs.direct_points, input_.options.seed);
     parallel_ranges(n, 8, [&](std::size_t begin, std::size_t end) {
         PatchTransfer::Workspace workspace;
+        DirectLight::Workspace exact;
         for (std::size_t i = begin; i < end; ++i) {
             const ElementId e = numbering.leaves[i];
             if (e.value < old_size) {
@@ -103,6 +101,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
                 continue;
             }
             patch_of[i] = patch_by_element[tree.parent(e)];
+            if (!shoots_direct_light()) direct[i] = mean_direct_light(e, exact);
             for (std::size_t p = 0; p < patches.size(); ++p)
                 if (max(sent[p]) > 0)
                     irradiance[i] += transfer_.form_factor(e, patches[p], workspace) * sent[p];
@@ -111,6 +110,15 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     });
     for (std::vector<float>& kept : columns_) kept.clear(), kept.shrink_to_fit();
     kept_bytes_ = 0;
+}
+
+Spectrum ShootingSetup::mean_direct_light(ElementId e, DirectLight::Workspace& workspace) const {
+    const RegionId region = tree.region(e);
+    const Normal& n = input_.stage.scene.regions()[region].plane.n;
+    Spectrum mean;
+    for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::nodes))
+        mean += place.weight * input_.stage.direct.irradiance(tree.patch(e).at(place.uv), n, region, workspace);
+    return mean;
 }
 
 void ShootingSetup::update_patches() {

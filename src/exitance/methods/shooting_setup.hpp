@@ -10,8 +10,8 @@ namespace exitance {
 /// light that is there before the first shot.
 class ShootingSetup {
   public:
-    /// `tree` becomes the mesh; each of its leaves a patch.
-    ShootingSetup(const MethodInput& input, ElementTree tree);
+    /// The mesh of `first` is taken over; each of its leaves is a patch.
+    ShootingSetup(const MethodInput& input, const DirectProjection& first);
 
     /// Shoots until little is left; adds what arrives to the irradiance of the leaves.
     SolveReport run();
@@ -38,6 +38,7 @@ class ShootingSetup {
     void update_patches();
 
   private:
+    Spectrum mean_direct_light(ElementId e, DirectLight::Workspace& workspace) const;
     std::span<const float> column(std::size_t patch);
 
     const MethodInput& input_;

@@ -88,12 +88,17 @@ class Solver {
 
     void solve_once(const Knobs& knobs) {
         Stopwatch watch;
-        light_ = find_method(options_.method).solve({stage_, options_, knobs, progress_, stop_});
+        progress_.phase("direct light");
+        direct_ = project_direct_light(stage_, {.mesh = knobs.solve_mesh, .tolerance = knobs.direct_tolerance}, stop_);
+        statistics().seconds["mesh"] += watch.restart();
+        light_ = find_method(options_.method).solve({stage_, options_, knobs, direct_, progress_, stop_});
         statistics().seconds["solve"] += watch.restart();
 
         const ElementLocator locator(light_.tree, stage_.scene.regions().size());
+        const ElementLocator direct_locator(direct_.tree, stage_.scene.regions().size());
         const RadiosityAt reflected = [&](RegionId region, const Point& y) {
-            return light_.reflected[light_.numbering.number[locator.find(region, y).element]];
+            const Spectrum& late = light_.indirect[light_.numbering.number[locator.find(region, y).element]];
+            return stage_.scene.material(region).reflectance * (direct_.at(direct_locator.find(region, y)) + late);
         };
         LocalPassReport gathered;
         solution_.direct_in_elements = light_.holds_direct;
@@ -104,6 +109,7 @@ class Solver {
             solution_.indirect = gather_indirect_light(
                 stage_, reflected,
                 {.mesh = knobs.gather_mesh, .rays = knobs.gather_rays,
+                 .noise = knobs.gather_noise * light_.mean_reflected(),
                  .tolerance = knobs.gather_tolerance * light_.mean_reflected(), .seed = options_.seed},
                 gathered, stop_);
         }
@@ -112,12 +118,13 @@ class Solver {
         progress_.phase("certify");
         const ElementLocator indirect(solution_.indirect.tree, stage_.scene.regions().size());
         const RadiosityAt delivered = [&](RegionId region, const Point& y) {
-            const Spectrum& direct = light_.direct[light_.numbering.number[locator.find(region, y).element]];
-            return stage_.scene.material(region).reflectance * (direct + solution_.indirect.at(indirect.find(region, y)));
+            return stage_.scene.material(region).reflectance *
+                   (direct_.at(direct_locator.find(region, y)) + solution_.indirect.at(indirect.find(region, y)));
         };
         certificate_ = certify(stage_, light_, solution_.indirect, delivered,
                                {.error = options_.error_target(), .seed = options_.seed,
-                                .direct_in_elements = light_.holds_direct});
+                                .direct_in_elements = light_.holds_direct,
+                                .expected_error = light_.holds_direct ? nullptr : &gathered.expected_error});
         statistics().seconds["certify"] += watch.restart();
         statistics().iterations += light_.report.iterations;
         statistics().residual = light_.report.residual;
@@ -171,6 +178,7 @@ class Solver {
     const StopRequest& stop_;
     Solution solution_;
     Stage stage_;
+    DirectProjection direct_;
     GlobalLight light_;
     Certificate certificate_;
 };

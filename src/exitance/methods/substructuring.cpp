@@ -37,7 +37,9 @@ GlobalLight solve_substructuring(const MethodInput& input) {
     input.progress.phase("mesh");
     MeshSize coarse = input.knobs.solve_mesh;
     if (!input.options.mesh_size) coarse = {1.5 * coarse.edge, std::max(0, coarse.grading_levels - 1)};
-    ShootingSetup setup(input, input.stage.make_elements(coarse));
+    const DirectProjection direct = project_direct_light(
+        input.stage, {.mesh = coarse, .tolerance = 2 * input.knobs.direct_tolerance}, input.stop);
+    ShootingSetup setup(input, direct);
     input.progress.phase("shoot");
     SolveReport report = setup.run();
 

@@ -8,26 +8,41 @@
 namespace exitance {
 namespace {
 
+/// A place to measure the residual at, and its share in the mean over all surfaces.
+struct WeightedSample {
+    ElementTree::Place place;
+    double weight;
+};
+
 /// One point of the certificate: two independent estimates of the residual there.
 struct Sample {
     RegionId region;
+    double weight = 0;
     Spectrum r1, r2;
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
 };
 
-/// `count` places, one in each stratum of the cumulative area of the tree's leaves.
-std::vector<ElementTree::Place> stratified_places(const ElementTree& tree, std::size_t count, std::uint64_t seed) {
+/// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x expected error.
+std::vector<WeightedSample> stratified_places(const ElementTree& tree, const Field<ElementId, double>* expected,
+                                              std::size_t count, std::uint64_t seed) {
     const std::vector<ElementId> leaves = tree.leaves();
-    double area = 0;
-    for (ElementId e : leaves) area += tree.area(e);
+    double area = 0, error = 0;
+    for (ElementId e : leaves) {
+        area += tree.area(e);
+        error += expected ? tree.area(e) * (*expected)[e] : 0;
+    }
+    const double mean_error = error / area;
+    const auto density = [&](ElementId e) { return mean_error > 0 ? 0.5 + 0.5 * (*expected)[e] / mean_error : 1.0; };
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
-    std::vector<ElementTree::Place> out;
+    std::vector<WeightedSample> out;
     double before = 0;
     std::size_t leaf = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
         const double wanted = area * (k + points(k, 0)) / static_cast<double>(count);
-        while (leaf + 1 < leaves.size() && before + tree.area(leaves[leaf]) <= wanted) before += tree.area(leaves[leaf++]);
-        out.push_back({leaves[leaf], tree.uniform(leaves[leaf], points(k, 1), points(k, 2))});
+        const auto share = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
+        while (leaf + 1 < leaves.size() && before + share() <= wanted) before += share(), ++leaf;
+        const ElementId e = leaves[leaf];
+        out.push_back({{e, tree.uniform(e, points(k, 1), points(k, 2))}, 1 / (density(e) * static_cast<double>(count))});
     }
     return out;
 }
@@ -66,17 +81,18 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     if (out.mean_reflected <= 0) return out;
 
     constexpr std::size_t batches = 32;
-    out.points = options.error < 0.01 ? 64 * batches : 32 * batches;
+    out.points = (options.error < 0.03 ? 128 : 64) * batches;
     const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(out.points)));
     const unsigned rays = std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, 16.0, 2048.0)));
-    const std::vector<ElementTree::Place> places = stratified_places(indirect.tree, out.points, options.seed);
+    const std::vector<WeightedSample> places =
+        stratified_places(indirect.tree, options.expected_error, out.points, options.seed);
     const ElementLocator coarse(light.tree, stage.scene.regions().size());
     std::vector<Sample> samples(places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         GatherWorkspace workspace;
         DirectLight::Workspace exact;
         for (std::size_t k = begin; k < end; ++k) {
-            const ElementTree::Place place = places[k];
+            const auto& [place, weight] = places[k];
             const RegionId region = indirect.tree.region(place.element);
             const Point x = indirect.tree.patch(place.element).at(place.uv);
             const Normal& n = stage.scene.regions()[region].plane.n;
@@ -87,7 +103,7 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
                 const std::uint64_t key = hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
                 return rho * (gather_reflected(stage, x, n, region, rays, key, b, workspace).irradiance - delivered);
             };
-            samples[k] = {region, residual(1), residual(2), light.numbering.number[coarse.find(region, x).element]};
+            samples[k] = {region, weight, residual(1), residual(2), light.numbering.number[coarse.find(region, x).element]};
         }
     });
     out.rays = 2 * rays * samples.size();
@@ -99,7 +115,11 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     out.rays += H.rays();
     Field<RegionId, Spectrum> mean_residual(stage.scene.regions().size());
     Field<RegionId, double> count(stage.scene.regions().size());
-    for (const Sample& s : samples) mean_residual[s.region] += 0.5 * (s.r1 + s.r2), count[s.region] += 1;
+    for (const Sample& s : samples) {
+        const double n = s.weight * static_cast<double>(samples.size());
+        mean_residual[s.region] += 0.5 * n * (s.r1 + s.r2);
+        count[s.region] += n;
+    }
     std::vector<Spectrum> rhs(rho.size());
     for (std::size_t i = 0; i < rhs.size(); ++i) {
         const RegionId region = light.tree.region(light.numbering.leaves[i]);
@@ -114,8 +134,8 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
         const Spectrum& late = response[s.leaf];
-        residual_squared[k % batches] += mean(s.r1 * s.r2) * batches / static_cast<double>(samples.size());
-        error_squared += mean((s.r1 + late) * (s.r2 + late)) / static_cast<double>(samples.size());
+        residual_squared[k % batches] += s.weight * batches * mean(s.r1 * s.r2);
+        error_squared += s.weight * mean((s.r1 + late) * (s.r2 + late));
     }
     double mean_square = 0, spread = 0;
     for (double v : residual_squared) mean_square += v / batches;

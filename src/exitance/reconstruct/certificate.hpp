@@ -10,6 +10,8 @@ struct CertificateOptions {
     double error = 0.02;  ///< The relative error that is to be resolved: it sets the number of points and rays.
     std::uint64_t seed = 1;
     bool direct_in_elements = false;  ///< Does the delivered function hold the emitters' light too?
+    /// Of every leaf of the delivered function, where the error is expected to be; points gather there. May be null.
+    const Field<ElementId, double>* expected_error = nullptr;
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -26,7 +28,7 @@ struct Certificate {
 ///
 ///     r = M + rho H B - B = rho (E_dir + H b - E_dir - E_ind),     b = B - M,
 ///
-/// at points stratified over the area of all surfaces. At each, two independent ray gathers over `b` give r1 and r2,
+/// at points stratified over all surfaces, denser where the error is expected, and weighted accordingly. At each, two independent ray gathers over `b` give r1 and r2,
 /// so that E[r1 r2] = r^2 without the rays' noise. Error e = (I - rho H)^-1 r: its rough part is r itself, its smooth
 /// part is the response of a coarse solve to the regions' mean residuals. The bound takes the norm of (I - rho H)^-1,
 /// sqrt(C_1 C_inf) from two coarse solves with unit light, and Student's upper limit of ||r||.

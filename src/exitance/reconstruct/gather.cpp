@@ -21,7 +21,7 @@ Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, R
         q *= 4.0 / rays;
         out.irradiance += 0.25 * q;
     }
-    for (const Spectrum& q : quarter) out.variance += (q - out.irradiance) * (q - out.irradiance) / 12;
+    for (const Spectrum& q : quarter) out.variance += 0.5 / 12 * ((q - out.irradiance) * (q - out.irradiance));
     return out;
 }
 

@@ -1,5 +1,7 @@
 #include "exitance/reconstruct/local_pass.hpp"
 
+#include <bit>
+
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -41,12 +43,25 @@ class LocalPass {
     }
 
   private:
+    /// Gathers with the rays that the element's area suggests, and once more with as many as the noise then asks for.
     Sampled sample(ElementId e, GatherWorkspace& workspace) const {
+        const unsigned rays = std::max(4u, options_.rays.rays(out_.tree.area(e), mean_area_));
+        Sampled out = sample(e, rays, workspace);
+        const double allowed = options_.noise * std::pow(mean_area_ / out_.tree.area(e), 0.25);
+        const double excess = std::sqrt(out.noise_squared) / allowed;
+        if (!(excess > 1.5)) return out;
+        const double factor = std::min(64.0, std::pow(excess, 4.0 / 3));
+        const unsigned spent = out.rays;
+        out = sample(e, std::min(options_.rays.most, std::bit_ceil(static_cast<unsigned>(rays * factor))), workspace);
+        out.rays += spent;
+        return out;
+    }
+
+    Sampled sample(ElementId e, unsigned rays, GatherWorkspace& workspace) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
         const Normal& n = stage_.scene.regions()[region].plane.n;
         const Spectrum& rho = stage_.scene.material(region).reflectance;
-        const unsigned rays = std::max(4u, options_.rays.rays(out_.tree.area(e), mean_area_));
         const auto gather = [&](Vec2 uv, std::uint64_t node) {
             const std::uint64_t key = hash(options_.seed, static_cast<std::uint64_t>(Stream::gather), e.value, node);
             return gather_reflected(stage_, patch.at(uv), n, region, rays, key, b_, workspace);
@@ -85,12 +100,14 @@ class LocalPass {
     void finish(LocalPassReport& report) {
         out_.first_value.resize(out_.tree.size());
         double noise = 0, interpolation = 0;
+        report.expected_error.resize(out_.tree.size());
         for (ElementId e : out_.tree.leaves()) {
             const Sampled& s = sampled_[e];
             out_.first_value[e] = static_cast<std::uint32_t>(out_.values.size());
             for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i) {
                 out_.add_value(s.corners[static_cast<std::size_t>(i)]);
             }
+            report.expected_error[e] = std::sqrt(s.departure * s.departure + s.noise_squared);
             noise += out_.tree.area(e) * s.noise_squared;
             interpolation += out_.tree.area(e) * std::max(0.0, s.departure * s.departure - 1.25 * s.noise_squared);
         }

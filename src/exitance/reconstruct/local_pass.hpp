@@ -10,7 +10,8 @@ namespace exitance {
 /// How finely indirect light is gathered.
 struct LocalPassOptions {
     MeshSize mesh;               ///< Of the elements to begin with.
-    RayBudget rays;              ///< Of one node.
+    RayBudget rays;              ///< Of one node, to begin with; more where they turn out too noisy.
+    double noise = 0;            ///< RMS error of rho E_ind that the rays may leave, W/m^2.
     double tolerance = 0;        ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
     int max_depth = 6;           ///< Cuts below the first mesh.
     std::uint64_t seed = 1;
@@ -20,6 +21,8 @@ struct LocalPassReport {
     std::size_t rays = 0;
     double noise = 0;          ///< RMS over the surfaces of the rays' error in rho E_ind, W/m^2.
     double interpolation = 0;  ///< Estimated RMS of the interpolation's error in rho E_ind, W/m^2.
+    /// Of every leaf: what the pass expects the error of rho E_ind to be, W/m^2; of inner elements: unused.
+    Field<ElementId, double> expected_error;
     bool interrupted = false;
 };
 

@@ -1,32 +1,80 @@
 #include "exitance/transport/direct_projection.hpp"
 
+#include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/transport/hemisphere.hpp"
-#include "exitance/transport/ray_rows.hpp"
+#include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
+namespace {
 
-std::vector<Spectrum> project_direct_light(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                                           double points, std::uint64_t seed) {
-    const std::size_t n = numbering.leaves.size();
-    const RayBudget budget{.average = points, .least = 1, .most = 64};
-    const double mean_area = stage.area / static_cast<double>(n);
-    std::vector<Spectrum> mean(n);
-    parallel_ranges(n, 16, [&](std::size_t begin, std::size_t end) {
-        DirectLight::Workspace workspace;
-        for (std::size_t i = begin; i < end; ++i) {
-            const ElementId e = numbering.leaves[i];
-            const Patch& patch = tree.patch(e);
-            const Normal n = stage.scene.regions()[tree.region(e)].plane.n;
-            const unsigned count = budget.rays(tree.area(e), mean_area);
-            const ScrambledSobol places(hash(seed, static_cast<std::uint64_t>(Stream::direct), i));
-            for (std::uint32_t k = 0; k < count; ++k) {
-                const Point x = patch.at(tree.uniform(e, places(k, 0), places(k, 1)));
-                mean[i] += stage.direct.irradiance(x, n, tree.region(e), workspace) / count;
-            }
+/// Exact values on one leaf, and what the polynomial makes of them.
+void fit_leaf(const Stage& stage, ElementId e, DirectLight::Workspace& workspace, DirectProjection& out) {
+    const Patch& patch = out.tree.patch(e);
+    const RegionId region = out.tree.region(e);
+    const Normal& n = stage.scene.regions()[region].plane.n;
+    const std::vector<WeightedPlace> rule = element_rule(out.tree, e, RuleOrder::fine);
+    std::vector<Spectrum> value(rule.size());
+    Spectrum mean;
+    for (std::size_t i = 0; i < rule.size(); ++i) {
+        value[i] = stage.direct.irradiance(patch.at(rule[i].uv), n, region, workspace);
+        mean += rule[i].weight * value[i];
+    }
+    const ElementFit fit(out.tree, e, rule, value);
+    for (int i = 0; i < patch.corner_count(); ++i) out.corners[e][static_cast<std::size_t>(i)] = fit.corner(i);
+    const Spectrum w = light_weight(stage.scene.material(region));
+    double misfit = 0;
+    for (std::size_t i = 0; i < rule.size(); ++i)
+        misfit += rule[i].weight * squared(w * (value[i] - fit.at(rule[i].uv))) / static_cast<double>(bands);
+    out.mean[e] = mean;
+    out.misfit_squared[e] = misfit;
+}
+
+}  // namespace
+
+Spectrum DirectProjection::at(ElementTree::Place place) const {
+    const auto [u, v] = place.uv;
+    const std::array<Spectrum, 4>& c = corners[place.element];
+    if (tree.patch(place.element).is_triangle()) return (1 - u - v) * c[0] + u * c[1] + v * c[2];
+    return (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
+}
+
+Spectrum light_weight(const Material& material) {
+    constexpr double least = 0.1;
+    Spectrum w = material.reflectance;
+    for (double& v : w.value) v = std::max(v, least);
+    return w;
+}
+
+DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
+                                      const StopRequest& stop) {
+    DirectProjection out{stage.make_elements(options.mesh), {}, {}, {}};
+    std::vector<ElementId> active = out.tree.leaves();
+    const double mean_area = stage.area / static_cast<double>(active.size());
+    double share = 0;  // of the squared error that one element may have
+    for (int depth = 0; !active.empty(); ++depth) {
+        out.corners.resize(out.tree.size());
+        out.mean.resize(out.tree.size());
+        out.misfit_squared.resize(out.tree.size());
+        parallel_ranges(active.size(), 8, [&](std::size_t begin, std::size_t end) {
+            DirectLight::Workspace workspace;
+            for (std::size_t i = begin; i < end; ++i) fit_leaf(stage, active[i], workspace, out);
+        });
+        if (depth == 0) {
+            double flux = 0;
+            for (ElementId e : active)
+                flux += out.tree.area(e) * mean(light_weight(stage.scene.material(out.tree.region(e))) * out.mean[e]);
+            const double allowed = options.tolerance * flux / stage.area;
+            share = allowed * allowed * mean_area;
         }
-    });
-    return mean;
+        if (depth == options.max_depth || stop.requested()) break;
+        std::vector<ElementId> fresh;
+        for (ElementId e : active) {
+            if (out.tree.area(e) * out.misfit_squared[e] <= share) continue;
+            for (ElementId child : refine_element(out.tree, e)) fresh.push_back(child);
+        }
+        active = std::move(fresh);
+    }
+    return out;
 }
 
 }  // namespace exitance
