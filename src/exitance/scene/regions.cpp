@@ -1,12 +1,12 @@
 #include "exitance/scene/regions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "exitance/core/random.hpp"
 #include "exitance/scene/border.hpp"
+#include "exitance/scene/cell_keys.hpp"
 #include "exitance/scene/hash_chains.hpp"
 
 namespace exitance {
@@ -126,28 +126,15 @@ void Joiner::add_line_keys(std::uint32_t edge, const Point& centre, double size,
     d = d / length;
     if (dot(d, Vec3{0.5377, 0.7323, 0.4181}) < 0) d = -d;  // no line of a practical scene is at a right angle to this
     const Vec3 foot = (p - centre) - dot(p - centre, d) * d;
-    const double direction_error = 2 * tol_.place / length;
-    const double direction_cell = std::max(1e-3, 8 * direction_error);
+    const double direction_error = 2 * tol_.place / length, direction_cell = std::max(1e-3, 8 * direction_error);
     const double foot_error = tol_.place + size * direction_error, foot_cell = std::max(1e-4 * size, 8 * foot_error);
-    std::array<std::int64_t, 6> cell;
-    std::array<std::int64_t, 6> other;
-    for (std::size_t i = 0; i < 6; ++i) {
-        const double width = i < 3 ? direction_cell : foot_cell, error = i < 3 ? direction_error : foot_error;
-        const double x = (i < 3 ? d[i] : foot[i - 3]) / width;
-        cell[i] = std::llround(x);
-        const auto above = std::llround(x + error / width), below = std::llround(x - error / width);
-        other[i] = above != cell[i] ? above : below;
-    }
-    for (unsigned mask = 0; mask < 64; ++mask) {
-        std::uint64_t key = material(edges_[edge].face);
-        bool distinct = true;
-        for (std::size_t i = 0; i < 6; ++i) {
-            const bool use_other = mask >> i & 1u;
-            if (use_other && other[i] == cell[i]) distinct = false;
-            key = hash(key, static_cast<std::uint64_t>(use_other ? other[i] : cell[i]));
-        }
-        if (distinct) out.push_back({key, edge});
-    }
+    const auto direction = [&](double x) { return CellCoordinate{x, direction_cell, direction_error}; };
+    const auto place = [&](double x) { return CellCoordinate{x, foot_cell, foot_error}; };
+    each_cell_key<6>(material(edges_[edge].face),
+                     {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)},
+                     [&](std::uint64_t key) {
+                         out.push_back({key, edge});
+                     });
 }
 
 /// Marks where the ends of `other` lie inside edge e, whose unit direction is d.

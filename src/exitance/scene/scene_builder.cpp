@@ -5,9 +5,11 @@
 #include <limits>
 
 #include "exitance/core/random.hpp"
+#include "exitance/scene/border.hpp"
 #include "exitance/scene/findings.hpp"
 #include "exitance/scene/hash_chains.hpp"
 #include "exitance/scene/outline.hpp"
+#include "exitance/scene/overlaps.hpp"
 #include "exitance/scene/regions.hpp"
 #include "exitance/scene/scene.hpp"
 #include "exitance/scene/weld.hpp"
@@ -38,6 +40,8 @@ class SceneBuilder {
     void report_flattened();
     void drop_duplicates();
     void check_light();
+    void check_overlaps(const Scene& scene);
+    bool is_one_polygon(std::span<const std::uint32_t> outline, const Vec3& area) const;
     Scene make();
     void add_regions(Scene& scene, const std::vector<JoinedFaces>& joined);
 
@@ -114,9 +118,8 @@ bool SceneBuilder::check_face(const SceneDescription::Face& face) {
     const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);
     if (outline.size() < 3) {
         find(Finding::Kind::repair, face.line,
-             fmt::format("face has {} corners, {} at different places, and no area: it is left out", given,
-                         outline.size()),
-             "remove it or give it three corners that are not in line");
+             fmt::format("face of {} corners goes to and fro and has no area: it is left out", given),
+             "remove it, or give it three corners that are not in line");
         return false;
     }
     if (dropped > 0)
@@ -157,6 +160,10 @@ bool SceneBuilder::check_shape(const SceneDescription::Face& face, std::span<con
               fmt::format("face crosses itself: the edge from corner {} to {} meets the edge from corner {} to {}",
                           where.first + 1, (where.first + 1) % m + 1, where.second + 1, (where.second + 1) % m + 1),
               "order its corners counter-clockwise, or split it");
+        return false;
+    }
+    if (!is_one_polygon(outline, area)) {
+        error(face.line, "face crosses itself in a corner: a part of it is turned over", "split it there");
         return false;
     }
     if (off > tol_.place) {
@@ -219,6 +226,47 @@ void SceneBuilder::check_light() {
     if (!lit)
         find(Finding::Kind::warning, in_.faces.empty() ? 0 : in_.faces[0].line,
              "nothing emits light: all results are 0", "give a material an emission (in MTL: Ke r g b)");
+}
+
+/// Warns of faces that cover each other, in the order of the file; beyond the first ones only how many there are.
+void SceneBuilder::check_overlaps(const Scene& scene) {
+    constexpr std::size_t most_listed = 20;
+    // Rays that start this near a face cannot tell the two apart.
+    const std::vector<Overlap> overlaps = find_overlaps(scene, 100 * tol_.place);
+    const auto line = [&](SurfaceId s) { return scene.surfaces()[s].line; };
+    for (std::size_t i = 0; i < std::min(overlaps.size(), most_listed); ++i)
+        find(
+            Finding::Kind::warning, line(overlaps[i].second),
+            fmt::format("face covers {:.3g} m^2 of the face of line {}, in the same plane: which of the two is seen is "
+                        "left to chance",
+                        overlaps[i].area, line(overlaps[i].first)),
+            "cut the one from the other, or move it a little off");
+    if (overlaps.size() > most_listed)
+        find(Finding::Kind::warning, line(overlaps[most_listed].second),
+             fmt::format("{} more pairs of faces cover each other", overlaps.size() - most_listed));
+}
+
+/// An outline that comes back to a corner bounds one polygon with holes, not lobes of opposite sense.
+bool SceneBuilder::is_one_polygon(std::span<const std::uint32_t> outline, const Vec3& area) const {
+    std::vector<std::uint32_t> sorted(outline.begin(), outline.end());
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return true;
+    std::vector<BorderEdge> edges;
+    for (std::size_t i = 0; i < outline.size(); ++i) edges.push_back({outline[i], outline[(i + 1) % outline.size()]});
+    const auto loops = border_loops(in_.points, std::move(edges), area, tol_.place);
+    if (loops.empty()) return false;
+    std::vector<Point> outer, hole;
+    for (std::uint32_t c : loops[0]) outer.push_back(in_.points[c]);
+    for (std::size_t i = 1; i < loops.size(); ++i) {
+        hole.clear();
+        for (std::uint32_t c : loops[i]) hole.push_back(in_.points[c]);
+        if (dot(area_vector(hole), area) > 0) continue;  // a second outer loop
+        for (std::uint32_t c : loops[i])
+            if (std::find(loops[0].begin(), loops[0].end(), c) == loops[0].end() &&
+                !contains(outer, normalized(area), in_.points[c]))
+                return false;
+    }
+    return true;
 }
 
 /// Regions with their planes, points moved into them where they stand off by more than rounding.
@@ -299,7 +347,10 @@ CheckedScene SceneBuilder::build() {
         Error first = error_of(findings_);
         return {std::move(first), std::move(findings_)};
     }
-    return {make(), std::move(findings_)};
+    Scene scene = make();
+    check_overlaps(scene);
+    sort_findings(findings_);
+    return {std::move(scene), std::move(findings_)};
 }
 
 CheckedScene make_scene(SceneDescription description) {

@@ -206,6 +206,33 @@ TEST(Checks, ARepeatedFaceIsLeftOutNamingBothLines) {
     EXPECT_NE(s.findings[0].message.find("line 1"), std::string::npos);
 }
 
+TEST(Checks, AFaceThatCoversAnotherIsWarnedOfNamingBothLines) {
+    const auto s = Sketch().rectangle(0, 0, 2, 2).light().rectangle(1, 1, 3, 3, 2).make();
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(count(s, Finding::Kind::warning), 1);
+    EXPECT_EQ(s.findings[0].line, 3);
+    EXPECT_NE(s.findings[0].message.find("line 1"), std::string::npos);
+    EXPECT_NE(s.findings[0].message.find("1 m^2"), std::string::npos) << s.findings[0].message;
+}
+
+TEST(Checks, FacesBackToBackBesideEachOtherOrInAHoleAreNoOverlap) {
+    Sketch sketch =
+        Sketch().rectangle(0, 0, 3, 1).rectangle(0, 2, 3, 3).rectangle(0, 1, 1, 2).rectangle(2, 1, 3, 2).light();
+    sketch.rectangle(1, 1, 2, 2, 2).rectangle(3, 0, 4, 3, 2).add({{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}});
+    const auto s = sketch.make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_TRUE(s.findings.empty()) << s.findings[0].message;
+}
+
+TEST(Checks, LobesOfOppositeSenseThatMeetInACornerAreAnError) {
+    const Point v{0, 0, 0};
+    const auto s = Sketch().add({v, {2, -1, 0}, {2, 1, 0}, v, {-1, -0.5, 0}, {-1, 0.5, 0}}).light().make();
+    ASSERT_FALSE(s.scene);
+    EXPECT_NE(s.scene.error().message.find("crosses itself"), std::string::npos);
+    const auto proper = Sketch().add({v, {2, -1, 0}, {2, 1, 0}, v, {-1, 0.5, 0}, {-1, -0.5, 0}}).light().make();
+    EXPECT_TRUE(proper.scene);
+}
+
 TEST(Checks, ASceneWithoutLightIsWarnedOfAndOneWithoutFacesIsNone) {
     const auto dark = Sketch().rectangle(0, 0, 1, 1).make();
     EXPECT_TRUE(dark.scene);

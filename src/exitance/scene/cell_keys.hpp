@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "exitance/core/random.hpp"
+
+namespace exitance {
+
+/// A coordinate by which things are put into cells, and how uncertain it is; `error` at most an eighth of `cell`.
+struct CellCoordinate {
+    double value, cell, error;
+};
+
+/// Calls take(key) for the cell of a point of N coordinates, and for the cells beyond any wall that lies within the
+/// error. Hence two things whose coordinates agree within their errors have a key in common. Different cells may share
+/// a key, and most things get just one. `kind` separates things that are never to meet.
+template <std::size_t N, class Take>
+void each_cell_key(std::uint64_t kind, const std::array<CellCoordinate, N>& coordinates, const Take& take) {
+    std::array<std::int64_t, N> own, other;
+    unsigned near = 0;  // coordinates that have a neighbour's cell too
+    for (unsigned i = 0; i < N; ++i) {
+        // Rounded, not floored: exact zeros, which abound in scenes, lie amid their cell.
+        const double x = coordinates[i].value / coordinates[i].cell, e = coordinates[i].error / coordinates[i].cell;
+        own[i] = std::llround(x);
+        const auto above = std::llround(x + e), below = std::llround(x - e);
+        other[i] = above != own[i] ? above : below;
+        if (other[i] != own[i]) near |= 1u << i;
+    }
+    for (unsigned chosen = near;; chosen = (chosen - 1) & near) {  // every subset of them
+        std::uint64_t key = kind;
+        for (unsigned i = 0; i < N; ++i)
+            key = hash(key, static_cast<std::uint64_t>((chosen >> i & 1u) != 0 ? other[i] : own[i]));
+        take(key);
+        if (chosen == 0) return;
+    }
+}
+
+}  // namespace exitance
