@@ -51,6 +51,13 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
     for (const Point& p : corners) scratch.source.push_back(p - at.x);
     clip_in_place(scratch.source, at.n, 0, scratch);
+    scratch.source_pyramid.clear();
+    for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {
+        const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
+        const Vec3 inward = cross(b - a, a);
+        const double length = norm(inward);
+        if (length > no_width * norm(a) * norm(b)) scratch.source_pyramid.push_back(inward / length);
+    }
 }
 
 /// The pieces whose boxes reach into the pyramid from x over the source, between the planes of both.
@@ -61,12 +68,7 @@ void find_candidates(const Occluders& occluders, const Receiver& at, PieceId sou
     const Normal& ns = occluders.pieces()[source].plane.n;
     scratch.region.add(above(ns, dot(ns, scratch.source[0]) + slack));
     scratch.region.add(above(at.n, slack));
-    for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {
-        const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
-        const Vec3 inward = cross(b - a, a);
-        const double length = norm(inward);
-        if (length > no_width * norm(a) * norm(b)) scratch.region.add(above(inward / length, -slack));
-    }
+    for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
     scratch.candidates.clear();
     occluders.bvh().visit_region(scratch.region, [&](std::uint32_t i) { scratch.candidates.push_back(PieceId(i)); });
 }
@@ -88,44 +90,69 @@ bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratc
     return true;
 }
 
-/// What a candidate hides: the pyramid over its part between the planes of the source and the receiver.
-void add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate,
-                Workspace& scratch) {
+/// Does the pyramid over an occluder miss the source, or hide all of it?
+enum class Hides { nothing, some, everything };
+Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
+    bool everything = true;
+    for (const Vec3& plane : planes) {
+        bool any_in = false;
+        for (const Vec3& r : source) {
+            const double h = dot(plane, r), noise = on_plane * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
+            any_in |= h > noise;
+            everything &= h >= -noise;
+        }
+        if (!any_in) return Hides::nothing;
+    }
+    return everything ? Hides::everything : Hides::some;
+}
+
+/// The solid angle of a small polygon (relative to x) whose plane passes x at the given distance; rough for large ones.
+double rough_solid_angle(std::span<const Vec3> polygon, double distance_of_plane) {
+    Vec3 twice_area, sum;
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+        twice_area += cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+    for (const Vec3& r : polygon) sum += r;
+    const double distance = norm(sum) / static_cast<double>(polygon.size());
+    return 0.5 * std::abs(distance_of_plane) * norm(twice_area) / (distance * distance * distance);
+}
+
+/// What a candidate hides: the pyramid over its part between the planes of the source and the receiver, added to the
+/// shadows if it hides some of the source.
+Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate,
+                 Workspace& scratch) {
     const ConvexPiece& piece = occluders.pieces()[candidate];
-    if (piece.region == at.own || piece.region == source.region) return;
+    if (piece.region == at.own || piece.region == source.region) return Hides::nothing;
     const std::span<const Point> corners = occluders.corners(candidate);
     const double facing = dot(piece.plane.n, at.x - corners[0]);
-    if (std::abs(facing) <= occluders.rounding()) return;  // seen edge-on
-    scratch.clipped.clear();
+    if (std::abs(facing) <= occluders.rounding()) return Hides::nothing;  // seen edge-on
     const double source_height = dot(source.plane.n, scratch.source[0]);
-    double highest = -HUGE_VAL, nearest_source = -HUGE_VAL;
+    double highest = -HUGE_VAL, lowest = HUGE_VAL, nearest = -HUGE_VAL, farthest = HUGE_VAL;
+    scratch.clipped.clear();
     for (const Point& p : corners) {
-        scratch.clipped.push_back(p - at.x);
-        highest = std::max(highest, dot(at.n, scratch.clipped.back()));
-        nearest_source = std::max(nearest_source, dot(source.plane.n, scratch.clipped.back()) - source_height);
+        const Vec3 r = p - at.x;
+        const double over_horizon = dot(at.n, r), over_source = dot(source.plane.n, r) - source_height;
+        highest = std::max(highest, over_horizon), lowest = std::min(lowest, over_horizon);
+        nearest = std::max(nearest, over_source), farthest = std::min(farthest, over_source);
+        scratch.clipped.push_back(r);
     }
-    if (highest <= occluders.rounding() || nearest_source <= piece.thickness) return;
-    for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {  // outside one side of the source's pyramid?
-        const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
-        const Vec3 inward = cross(b - a, a);
-        bool outside = true;
-        for (const Vec3& r : scratch.clipped) outside &= dot(inward, r) <= 0;
-        if (outside && squared_norm(inward) > 0) return;
+    if (highest <= occluders.rounding() || nearest <= piece.thickness) return Hides::nothing;
+    for (const Vec3& inward : scratch.source_pyramid) {
+        double inmost = -HUGE_VAL;
+        for (const Vec3& r : scratch.clipped) inmost = std::max(inmost, dot(inward, r));
+        if (inmost <= 0) return Hides::nothing;
     }
-    clip_in_place(scratch.clipped, source.plane.n, source_height, scratch);
-    clip_in_place(scratch.clipped, at.n, 0, scratch);
-    if (scratch.clipped.size() < 3) return;
-    Workspace::Shadow shadow;
-    shadow.first_plane = static_cast<std::uint32_t>(scratch.planes.size());
-    if (!add_pyramid(scratch.clipped, facing, scratch)) return;
-    shadow.plane_count = static_cast<std::uint32_t>(scratch.planes.size()) - shadow.first_plane;
-    Vec3 twice_area, middle;
-    for (std::size_t i = 2; i < scratch.clipped.size(); ++i)
-        twice_area += cross(scratch.clipped[i - 1] - scratch.clipped[0], scratch.clipped[i] - scratch.clipped[0]);
-    for (const Vec3& r : scratch.clipped) middle += r;
-    const double distance = norm(middle) / static_cast<double>(scratch.clipped.size());
-    shadow.solid_angle = std::abs(facing) * norm(twice_area) / (distance * distance * distance);
-    scratch.shadows.push_back(shadow);
+    if (farthest < 0) clip_in_place(scratch.clipped, source.plane.n, source_height, scratch);
+    if (lowest < 0) clip_in_place(scratch.clipped, at.n, 0, scratch);
+    if (scratch.clipped.size() < 3) return Hides::nothing;
+    const std::size_t first = scratch.planes.size();
+    if (!add_pyramid(scratch.clipped, facing, scratch)) return Hides::nothing;
+    const Hides hides = compare(scratch.source, std::span(scratch.planes).subspan(first));
+    if (hides == Hides::nothing) scratch.planes.resize(first);
+    if (hides == Hides::some)
+        scratch.shadows.push_back({static_cast<std::uint32_t>(first),
+                                   static_cast<std::uint32_t>(scratch.planes.size() - first),
+                                   rough_solid_angle(scratch.clipped, facing)});
+    return hides;
 }
 
 /// Heights of a polygon's corners over a plane through x, as sines; rounding counts as zero.
@@ -179,7 +206,8 @@ double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, P
                                std::span<const PieceId> candidates, Workspace& scratch) {
     scratch.planes.clear();
     scratch.shadows.clear();
-    for (PieceId candidate : candidates) add_shadow(occluders, at, occluders.pieces()[source], candidate, scratch);
+    for (PieceId candidate : candidates)
+        if (add_shadow(occluders, at, occluders.pieces()[source], candidate, scratch) == Hides::everything) return 0;
     if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
     // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
     std::sort(scratch.shadows.begin(), scratch.shadows.end(),

@@ -40,7 +40,7 @@ class VisibilityWorkspace {
         double solid_angle = 0;  ///< Roughly; orders the occluders.
     };
 
-    std::vector<Vec3> source, clipped, rest, side;
+    std::vector<Vec3> source, source_pyramid, clipped, rest, side;
     std::vector<Vec3> planes;
     std::vector<Shadow> shadows;
     Polygons lit, next, offcuts;
