@@ -27,7 +27,8 @@ struct Facet {
 /// Certain answers about all segments between two convex polygons at once, from the convex hull of both (the shaft):
 /// its supporting planes pass through an edge of one and a corner of the other and have both on one side.
 /// Source: [Haines91] with the polygons' own planes in place of boxes; blocking by one convex occluder follows from the
-/// segments between corners, since for fixed x the points whose segment to x meets a convex set form a convex set.
+/// segments between corners, since for fixed x the points whose segment to x meets a convex set form a convex set. A
+/// region with openings blocks as the convex hull of those segments' crossings does, where that misses the openings.
 /// "Certain" is up to slivers as thin as rounding.
 class Shaft {
   public:
@@ -46,13 +47,16 @@ class Shaft {
     void clip_by(const Plane& plane, std::vector<Point>& polygon);
     void add_supporting_planes(std::span<const Point> edges, std::span<const Point> corners);
     bool reaches_in(PieceId p);
-    bool blocks_all(PieceId p) const;
+    bool blocks_all(PieceId p);
+    bool blocks_all(RegionId r);
 
     const Occluders* occluders_ = nullptr;
     RegionId receiver_region_, source_region_;
     std::vector<Point> receiver_, source_, buffer_, part_;  ///< The parts that face each other; scratch.
     Plane receiver_plane_, source_plane_;
     std::vector<Plane> planes_;
+    std::vector<Vec2> crossings_, hull_;
+    std::vector<RegionId> in_vain_;  ///< Regions of several pieces that do not block everything.
     ConvexRegion region_;
 };
 

@@ -77,6 +77,27 @@ TEST(Shaft, SeesThroughNothingButWhatOnlyTouchesIt) {
     }
 }
 
+TEST(Shaft, IsBlockedByAWallBesideItsDoorAndNotThroughIt) {
+    const std::vector<Point> wall = {{0, -3, 0}, {0, -1, 0}, {0, -1, 2}, {0, 1, 2},
+                                     {0, 1, 0},  {0, 3, 0},  {0, 3, 3},  {0, -3, 3}};
+    const Scene scene = test::make({{wall}});
+    const Occluders occluders(scene);
+    Shaft shaft;
+    std::vector<PieceId> candidates;
+    const auto look = [&](double y, double width) {
+        const std::vector<Point> r = {{-1, y, 1}, {-1, y, 1.5}, {-1, y + width, 1.5}, {-1, y + width, 1}};
+        const std::vector<Point> s = {{1, y, 1}, {1, y + width, 1}, {1, y + width, 1.5}, {1, y, 1.5}};
+        shaft.set(occluders, {r, {1, 0, 0}, {}}, {s, {-1, 0, 0}, {}});
+        return shaft.classify(candidates);
+    };
+    EXPECT_EQ(look(-2.5, 1), View::none);
+    EXPECT_EQ(look(-2, 1), View::none);  // up to the door's edge
+    EXPECT_EQ(look(-2, 1.01), View::mixed);
+    EXPECT_EQ(look(-1, 2), View::open);
+    EXPECT_EQ(look(-2, 4), View::mixed);  // all around the door
+    EXPECT_EQ(look(1, 2), View::none);
+}
+
 TEST(DirectLight, OfAPreparedPolygonIsThatOfItsPoints) {
     RandomStream random(5, Stream::direct);
     for (int trial = 0; trial < 20; ++trial) {
