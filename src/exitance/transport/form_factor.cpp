@@ -16,54 +16,15 @@ double arc_shortfall(double t) {
     return t * (1.0 / 3 - t * (1.0 / 5 - t * (1.0 / 7 - t * (1.0 / 9 - t * (1.0 / 11 - t * (1.0 / 13 - t / 15))))));
 }
 
-/// The sum over edges as it stands in the header; accurate unless the polygon looks small.
-class NearSum {
-  public:
-    explicit NearSum(const Normal& n) : n_(n) {}
-
-    void add(const Vec3& a, const Vec3& b) {
-        const Vec3 c = cross(a, b - a);
-        const double squared = squared_norm(c), d = dot(a, b);
-        if (squared == 0) return;  // the edge points at x
-        sum_ += angle_over_sine(squared, d) * dot(c, n_);
-    }
-    double total() const { return sum_; }
-
-  private:
-    static double angle_over_sine(double squared, double d) {
-        if (d > 0 && squared < 0.01 * d * d) return (1 - arc_shortfall(squared / (d * d))) / d;
-        const double sine = std::sqrt(squared);
-        return std::atan2(sine, d) / sine;
-    }
-    Normal n_;
-    double sum_ = 0;
-};
-
-/// The same sum when the polygon looks small: its edges' terms nearly cancel there. With C the polygon's middle and
-/// g_i = 1/C.C + u_i, the first parts sum to twice the polygon's area vector over C.C, which is formed from short
-/// vectors, and what u_i keeps is as small as the polygon, with all its digits.
-class FarSum {
-  public:
-    FarSum(const Normal& n, const Vec3& middle) : n_(n), c_(middle), cc_(dot(middle, middle)) {}
-
-    void add(const Vec3& a, const Vec3& b) {
-        const Vec3 ra = a - c_, rb = b - c_, e = b - a, c = cross(a, e);
-        const double delta = dot(c_, ra + rb) + dot(ra, rb), d = cc_ + delta;
-        const double u = -(delta / cc_ + arc_shortfall(squared_norm(c) / (d * d))) / d;
-        twice_area_ += dot(cross(ra, e), n_);
-        rest_ += u * dot(c, n_);
-    }
-    double total() const { return twice_area_ / cc_ + rest_; }
-
-  private:
-    Normal n_;
-    Vec3 c_;
-    double cc_, twice_area_ = 0, rest_ = 0;
-};
+double angle_over_sine(double squared_sine, double cosine) {
+    if (cosine > 0 && squared_sine < 0.01 * cosine * cosine)
+        return (1 - arc_shortfall(squared_sine / (cosine * cosine))) / cosine;
+    const double sine = std::sqrt(squared_sine);
+    return std::atan2(sine, cosine) / sine;
+}
 
 /// Hands the edges of the part above the horizon to `sum`, those along the horizon included.
-template <class Sum>
-void add_edges(const Normal& n, std::span<const Vec3> corners, Sum& sum) {
+void add_edges(const Normal& n, std::span<const Vec3> corners, EdgeSum& sum) {
     const auto crossing = [](const Vec3& a, double ha, const Vec3& b, double hb) {  // from below, so that it is unique
         const bool forward = ha < hb;
         return forward ? a + (ha / (ha - hb)) * (b - a) : b + (hb / (hb - ha)) * (a - b);
@@ -92,22 +53,36 @@ void add_edges(const Normal& n, std::span<const Vec3> corners, Sum& sum) {
 
 }  // namespace
 
-double contour_sum(const Normal& n, std::span<const Vec3> corners) {
-    Vec3 middle;
-    double highest = -HUGE_VAL;
-    for (const Vec3& r : corners) middle += r, highest = std::max(highest, dot(n, r));
-    if (highest <= 0) return 0;
-    middle *= 1.0 / static_cast<double>(corners.size());
+EdgeSum::EdgeSum(const Normal& n, std::span<const Vec3> corners) : n_(n) {
+    for (const Vec3& r : corners) middle_ += r;
+    middle_ *= 1.0 / static_cast<double>(corners.size());
+    cc_ = squared_norm(middle_);
     double squared_radius = 0;
-    for (const Vec3& r : corners) squared_radius = std::max(squared_radius, squared_norm(r - middle));
-    if (squared_radius < 1e-3 * squared_norm(middle)) {
-        FarSum sum(n, middle);
-        add_edges(n, corners, sum);
-        return sum.total() / (-2 * pi);
-    }
-    NearSum sum(n);
+    for (const Vec3& r : corners) squared_radius = std::max(squared_radius, squared_norm(r - middle_));
+    is_small_ = squared_radius < 1e-3 * cc_;
+}
+
+void EdgeSum::add_to_large(const Vec3& a, const Vec3& b) {
+    const Vec3 c = cross(a, b - a);
+    const double squared = squared_norm(c);
+    if (squared > 0) sum_ += angle_over_sine(squared, dot(a, b)) * dot(c, n_);  // else the edge points at x
+}
+
+void EdgeSum::add_to_small(const Vec3& a, const Vec3& b) {
+    const Vec3 ra = a - middle_, rb = b - middle_, e = b - a, c = cross(a, e);
+    const double delta = dot(middle_, ra + rb) + dot(ra, rb), d = cc_ + delta;
+    const double u = -(delta / cc_ + arc_shortfall(squared_norm(c) / (d * d))) / d;
+    twice_area_ += dot(cross(ra, e), n_);
+    sum_ += u * dot(c, n_);
+}
+
+double contour_sum(const Normal& n, std::span<const Vec3> corners) {
+    double highest = -HUGE_VAL;
+    for (const Vec3& r : corners) highest = std::max(highest, dot(n, r));
+    if (highest <= 0) return 0;
+    EdgeSum sum(n, corners);
     add_edges(n, corners, sum);
-    return sum.total() / (-2 * pi);
+    return sum.total();
 }
 
 double point_to_polygon(const Point& x, const Normal& n, std::span<const Point> source) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/transport/edge_sum.hpp"
 #include "exitance/transport/form_factor.hpp"
 
 namespace exitance {
@@ -10,6 +11,9 @@ namespace {
 
 constexpr double on_plane = 1e-14;  ///< Sine of an angle that rounding alone may make.
 constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle are points.
+
+constexpr std::size_t edges_from = 4;  ///< Occluders in view from which edge sums can be faster than cutting,
+constexpr double sparse = 1;           ///< if they hide less than this share of the source, overlaps counted twice.
 
 using Workspace = VisibilityWorkspace;
 
@@ -148,10 +152,12 @@ Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPie
     if (!add_pyramid(scratch.clipped, facing, scratch)) return Hides::nothing;
     const Hides hides = compare(scratch.source, std::span(scratch.planes).subspan(first));
     if (hides == Hides::nothing) scratch.planes.resize(first);
-    if (hides == Hides::some)
-        scratch.shadows.push_back({static_cast<std::uint32_t>(first),
-                                   static_cast<std::uint32_t>(scratch.planes.size() - first),
-                                   rough_solid_angle(scratch.clipped, facing)});
+    if (hides != Hides::some) return hides;
+    scratch.shadows.push_back(
+        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(scratch.planes.size() - first),
+         rough_solid_angle(scratch.clipped, facing), static_cast<std::uint32_t>(scratch.outlines.size()), facing < 0});
+    scratch.outlines.corners.insert(scratch.outlines.corners.end(), scratch.clipped.begin(), scratch.clipped.end());
+    scratch.outlines.close();
     return hides;
 }
 
@@ -202,18 +208,8 @@ void subtract(std::span<const Vec3> fragment, std::span<const Vec3> planes, Work
     }
 }
 
-double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, PieceId source,
-                               std::span<const PieceId> candidates, Workspace& scratch) {
-    scratch.planes.clear();
-    scratch.shadows.clear();
-    for (PieceId candidate : candidates)
-        if (add_shadow(occluders, at, occluders.pieces()[source], candidate, scratch) == Hides::everything) return 0;
-    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
-    // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
-    std::sort(scratch.shadows.begin(), scratch.shadows.end(),
-              [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
-                  return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
-              });
+/// Cuts the source by one occluder after the other and sums over what is left.
+double subtraction(const Normal& n, Workspace& scratch) {
     scratch.lit.clear();
     scratch.lit.corners.assign(scratch.source.begin(), scratch.source.end());
     scratch.lit.close();
@@ -225,25 +221,56 @@ double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, P
         if (scratch.lit.size() == 0) return 0;
     }
     double sum = 0;
-    for (std::size_t i = 0; i < scratch.lit.size(); ++i) sum += contour_sum(at.n, scratch.lit[i]);
-    return std::clamp(sum, 0.0, 1.0);
+    for (std::size_t i = 0; i < scratch.lit.size(); ++i) sum += contour_sum(n, scratch.lit[i]);
+    return sum;
+}
+
+/// Do many occluders hide little, so that each edge meets few others? Then the boundary is quicker than cutting.
+bool shadows_are_sparse(const Occluders& occluders, const Receiver& at, PieceId source, const Workspace& scratch) {
+    if (scratch.shadows.size() < edges_from) return false;
+    double hidden = 0;
+    for (const Workspace::Shadow& shadow : scratch.shadows) hidden += shadow.solid_angle;
+    const ConvexPiece& piece = occluders.pieces()[source];
+    return hidden < sparse * rough_solid_angle(scratch.source, dot(piece.plane.n, at.x - occluders.corners(source)[0]));
+}
+
+double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, PieceId source,
+                               std::span<const PieceId> candidates, Workspace& scratch, VisiblePartMethod method) {
+    scratch.planes.clear();
+    scratch.shadows.clear();
+    scratch.outlines.clear();
+    for (PieceId candidate : candidates)
+        if (add_shadow(occluders, at, occluders.pieces()[source], candidate, scratch) == Hides::everything) return 0;
+    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
+    // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
+    std::sort(scratch.shadows.begin(), scratch.shadows.end(),
+              [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
+                  return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
+              });
+    const bool by_edges =
+        method == VisiblePartMethod::edge_sums ||
+        (method == VisiblePartMethod::automatic && shadows_are_sparse(occluders, at, source, scratch));
+    double f = by_edges ? edge_sum(at.n, scratch) : subtraction(at.n, scratch);
+    if (std::isnan(f)) f = subtraction(at.n, scratch);
+    return std::clamp(f, 0.0, 1.0);
 }
 
 }  // namespace
 
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
-                           VisibilityWorkspace& scratch) {
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
+                           VisiblePartMethod method) {
     look_at_source(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
     find_candidates(occluders, at, source, scratch);
-    return form_factor_of_lit_part(occluders, at, source, scratch.candidates, scratch);
+    return form_factor_of_lit_part(occluders, at, source, scratch.candidates, scratch, method);
 }
 
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
-                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch) {
+                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch,
+                           VisiblePartMethod method) {
     look_at_source(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
-    return form_factor_of_lit_part(occluders, at, source, candidates, scratch);
+    return form_factor_of_lit_part(occluders, at, source, candidates, scratch, method);
 }
 
 }  // namespace exitance
