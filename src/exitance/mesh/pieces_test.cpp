@@ -110,7 +110,8 @@ TEST(Pieces, ACombWithManyTeethIsRectanglesOnly) {
     }
     const auto pieces = tile_one(comb);
     EXPECT_EQ(triangles(pieces), 0u);
-    EXPECT_EQ(pieces.size(), 41u);
+    EXPECT_LE(pieces.size(), 41u + 10);  // cut into blocks first, each tooth and each block's back a piece
+    EXPECT_GT(worst_shape(pieces), 0.05);
     EXPECT_NEAR(area(pieces), 80 + 40, 1e-10);
 }
 

@@ -20,10 +20,37 @@ class CellGrid {
     double y(std::size_t j) const { return ys_[j]; }
     bool inside(std::size_t i, std::size_t j) const { return inside_[j * columns() + i] != 0; }
 
-    /// Turns over every cell to the left of a vertical edge, which in the end leaves the insides.
-    void flip_left_of(std::size_t i, std::size_t j0, std::size_t j1) {
+    /// Notes a vertical edge; resolve() then turns over every cell to its left, which leaves the insides.
+    void add_edge(std::size_t i, std::size_t j0, std::size_t j1) {
+        for (std::size_t j = j0; i > 0 && j < j1; ++j) inside_[j * columns() + i - 1] ^= 1;
+    }
+    void resolve() {
+        for (std::size_t j = 0; j < rows(); ++j)
+            for (std::size_t i = columns() - 1; i-- > 0;) inside_[j * columns() + i] ^= inside_[j * columns() + i + 1];
+    }
+
+    /// A block of cells by itself.
+    CellGrid block(std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) const {
+        const auto part = [](const std::vector<double>& v, std::size_t first, std::size_t last) {
+            return std::vector<double>(&v[first], &v[last] + 1);
+        };
+        CellGrid out(part(xs_, i0, i1), part(ys_, j0, j1));
         for (std::size_t j = j0; j < j1; ++j)
-            for (std::size_t k = 0; k < i; ++k) inside_[j * columns() + k] ^= 1;
+            std::copy_n(&inside_[j * columns() + i0], i1 - i0, &out.inside_[(j - j0) * (i1 - i0)]);
+        return out;
+    }
+    /// How much of the line between two columns (rows) lies inside.
+    double length_between_columns(std::size_t i, std::size_t j0, std::size_t j1) const {
+        double length = 0;
+        for (std::size_t j = j0; j < j1; ++j)
+            if (inside(i - 1, j) && inside(i, j)) length += ys_[j + 1] - ys_[j];
+        return length;
+    }
+    double length_between_rows(std::size_t j, std::size_t i0, std::size_t i1) const {
+        double length = 0;
+        for (std::size_t i = i0; i < i1; ++i)
+            if (inside(i, j - 1) && inside(i, j)) length += xs_[i + 1] - xs_[i];
+        return length;
     }
 
   private:
@@ -82,17 +109,13 @@ class ShortestCuts {
         if (filled == static_cast<int>((i1 - i0) * (j1 - j0))) return choice.kind = Kind::full, choice;
         Choice best{Kind::unknown, 0, std::numeric_limits<double>::infinity()};
         for (std::size_t i = i0 + 1; i < i1; ++i) {
-            double length = 0;
-            for (std::size_t j = j0; j < j1; ++j)
-                if (g_.inside(i - 1, j) && g_.inside(i, j)) length += g_.y(j + 1) - g_.y(j);
-            length += solve(i0, i, j0, j1).length + solve(i, i1, j0, j1).length;
+            const double length =
+                g_.length_between_columns(i, j0, j1) + solve(i0, i, j0, j1).length + solve(i, i1, j0, j1).length;
             if (length < best.length) best = {Kind::column, i, length};
         }
         for (std::size_t j = j0 + 1; j < j1; ++j) {
-            double length = 0;
-            for (std::size_t i = i0; i < i1; ++i)
-                if (g_.inside(i, j - 1) && g_.inside(i, j)) length += g_.x(i + 1) - g_.x(i);
-            length += solve(i0, i1, j0, j).length + solve(i0, i1, j, j1).length;
+            const double length =
+                g_.length_between_rows(j, i0, i1) + solve(i0, i1, j0, j).length + solve(i0, i1, j, j1).length;
             if (length < best.length) best = {Kind::row, j, length};
         }
         return choice = best;
@@ -103,38 +126,27 @@ class ShortestCuts {
     std::vector<int> count_;  ///< Inside cells left of and below a grid point.
 };
 
-/// Runs of inside cells in every row, a run joined to the one below when both have the same ends.
-std::vector<Rectangle> row_runs(const CellGrid& g) {
-    struct Run {
-        std::size_t i0, i1, j0;
-    };
-    std::vector<Rectangle> out;
-    std::vector<Run> open;
-    for (std::size_t j = 0; j <= g.rows(); ++j) {
-        std::vector<Run> now;
-        for (std::size_t i = 0; j < g.rows() && i < g.columns(); ++i) {
-            if (!g.inside(i, j)) continue;
-            const std::size_t i0 = i;
-            while (i < g.columns() && g.inside(i, j)) ++i;
-            now.push_back({i0, i, j});
-        }
-        for (const Run& r : open) {
-            const auto same =
-                std::find_if(now.begin(), now.end(), [&](const Run& n) { return n.i0 == r.i0 && n.i1 == r.i1; });
-            if (same != now.end())
-                same->j0 = r.j0;
-            else
-                out.push_back({{g.x(r.i0), g.y(r.j0)}, {g.x(r.i1), g.y(j)}});
-        }
-        open = std::move(now);
+/// Tiles a grid of any size: one too large for the table is cut in two first, along the shortest line in its middle
+/// half.
+void tile(const CellGrid& g, std::vector<Rectangle>& out) {
+    constexpr std::size_t most = 12;  // columns and rows; the table takes a time of most^5
+    const std::size_t m = g.columns(), n = g.rows();
+    if (m <= most && n <= most) return ShortestCuts(g).rectangles(0, m, 0, n, out);
+    const bool across = m >= n;
+    const std::size_t count = across ? m : n;
+    std::size_t where = 0;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = count / 4 + 1; k <= count - count / 4 - 1; ++k) {
+        const double length = across ? g.length_between_columns(k, 0, n) : g.length_between_rows(k, 0, m);
+        if (length < shortest) shortest = length, where = k;
     }
-    return out;
+    tile(across ? g.block(0, where, 0, n) : g.block(0, m, 0, where), out);
+    tile(across ? g.block(where, m, 0, n) : g.block(0, m, where, n), out);
 }
 
 }  // namespace
 
 std::vector<Rectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance) {
-    constexpr std::size_t most_lines = 16;
     constexpr std::size_t most_cells = 4'000'000;
     std::vector<double> xs, ys;
     for (const auto& loop : loops)
@@ -151,11 +163,11 @@ std::vector<Rectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loo
             const Vec2 &p = loop[i], &q = loop[(i + 1) % loop.size()];
             if (std::abs(p.x - q.x) > std::abs(p.y - q.y)) continue;
             const auto [lo, hi] = std::minmax({nearest(ys, p.y), nearest(ys, q.y)});
-            grid.flip_left_of(nearest(xs, p.x), lo, hi);
+            grid.add_edge(nearest(xs, p.x), lo, hi);
         }
-    if (xs.size() > most_lines || ys.size() > most_lines) return row_runs(grid);
+    grid.resolve();
     std::vector<Rectangle> out;
-    ShortestCuts(grid).rectangles(0, grid.columns(), 0, grid.rows(), out);
+    tile(grid, out);
     return out;
 }
 

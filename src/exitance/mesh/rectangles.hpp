@@ -12,9 +12,8 @@ struct Rectangle {
 };
 
 /// Tiles a polygon whose edges are all parallel to the axes by rectangles.
-/// Up to 16 different coordinates an axis: the guillotine cuts of least total length, by dynamic programming
-/// (O(k^5) for k coordinates an axis). Beyond: slabs between all corners' coordinates along one axis, joined where
-/// neighbours match.
+/// Up to 12 cells between different coordinates an axis: the guillotine cuts of least total length, by dynamic
+/// programming (O(k^5) for k coordinates an axis). Larger ones are cut in two first, where the cut is short.
 /// loops      any order and direction; their union by parity is tiled
 /// tolerance  coordinates nearer than this are one; an edge that is tilted by more makes the result empty
 std::vector<Rectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance);

@@ -71,7 +71,7 @@ class Joiner {
     bool coplanar(std::uint32_t f, std::uint32_t g) const;
     void add_line_keys(std::uint32_t edge, const Point& centre, double size, std::vector<LineEntry>& out) const;
     void pair_on_line(std::span<const LineEntry> group);
-    bool pair_parts(std::uint32_t e, std::uint32_t f);
+    void pair_parts(std::uint32_t e, std::uint32_t f);
     void split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length);
     std::vector<BorderEdge> border(std::span<const std::uint32_t> set) const;
     bool is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector) const;
@@ -146,25 +146,33 @@ void Joiner::split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, 
 }
 
 /// Pairs two edges of one line that run against each other and overlap.
-bool Joiner::pair_parts(std::uint32_t e, std::uint32_t f) {
+void Joiner::pair_parts(std::uint32_t e, std::uint32_t f) {
     const Point &p = point(edges_[e].from), &r = point(edges_[f].from);
     const Vec3 a = point(edges_[e].to) - p, b = point(edges_[f].to) - r;
     const double length = norm(a);
-    if (dot(a, b) >= 0) return false;
+    if (dot(a, b) >= 0) return;
     const Vec3 d = a / length;
     const Vec3 w0 = r - p, w1 = point(edges_[f].to) - p;
     const double t0 = dot(w0, d), t1 = dot(w1, d);
-    if (std::min(length, t0) - std::max(0.0, t1) <= 2 * tol_.place) return false;
+    if (std::min(length, t0) - std::max(0.0, t1) <= 2 * tol_.place) return;
     const double off = std::max(squared_norm(w0 - t0 * d), squared_norm(w1 - t1 * d));
-    if (off > tol_.place * tol_.place || !coplanar(edges_[e].face, edges_[f].face)) return false;
+    if (off > tol_.place * tol_.place || !coplanar(edges_[e].face, edges_[f].face)) return;
     sets_.unite(edges_[e].face, edges_[f].face);
     split_at_ends(e, f, d, length);
     split_at_ends(f, e, normalized(b), norm(b));
-    return true;
 }
 
 /// Sweeps along a line over the edges on it (and a few that only share its cell).
 void Joiner::pair_on_line(std::span<const LineEntry> group) {
+    constexpr std::size_t few = 8;  // most lines carry the two edges of a box's corner: not worth sorting
+    const auto pair = [&](std::uint32_t e, std::uint32_t f) {
+        if (material(edges_[e].face) == material(edges_[f].face)) pair_parts(e, f);
+    };
+    if (group.size() <= few) {
+        for (std::size_t i = 0; i < group.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) pair(group[j].edge, group[i].edge);
+        return;
+    }
     const Point origin = point(edges_[group[0].edge].from);
     const Vec3 d = normalized(point(edges_[group[0].edge].to) - origin);
     struct Interval {
@@ -182,8 +190,7 @@ void Joiner::pair_on_line(std::span<const LineEntry> group) {
     std::vector<Interval> open;
     for (const Interval& i : intervals) {
         std::erase_if(open, [&](const Interval& o) { return o.hi <= i.lo; });
-        for (const Interval& o : open)
-            if (material(edges_[o.edge].face) == material(edges_[i.edge].face)) pair_parts(o.edge, i.edge);
+        for (const Interval& o : open) pair(o.edge, i.edge);
         open.push_back(i);
     }
 }
