@@ -26,21 +26,22 @@ std::vector<WeightedPlace> triangle_rule(RuleOrder order) {
             {{b, b}, wb},                   {{1 - 2 * b, b}, wb}, {{b, 1 - 2 * b}, wb}};
 }
 
-/// The fan of triangles around the centre, each with the rule of three places, or with its own centre alone.
+/// On the way from the centre to each corner, where Gauss's nodes of a parallelogram would stand; or the fan of triangles
+/// around the centre, each with the rule of three places.
 std::vector<WeightedPlace> cell_rule(const std::vector<Vec2>& domain, Vec2 centre, RuleOrder order) {
+    const std::size_t n = domain.size();
     std::vector<WeightedPlace> rule;
     double whole = 0;
-    for (std::size_t i = 0; i < domain.size(); ++i) {
-        const Vec2 a = domain[i], b = domain[(i + 1) % domain.size()];
-        const double area = 0.5 * cross(a - centre, b - centre);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec2 before = domain[(i + n - 1) % n] - centre, a = domain[i] - centre, b = domain[(i + 1) % n] - centre;
+        const double area = 0.5 * cross(a, b);
         whole += area;
-        const auto inside = [&](double p, double q) { return centre + p * (a - centre) + q * (b - centre); };
         if (order == RuleOrder::nodes) {
-            rule.push_back({inside(1.0 / 3, 1.0 / 3), area});
+            const double reach = n == 3 ? 0.5 : 1 / std::sqrt(3.0);
+            rule.push_back({centre + reach * a, 0.5 * (area + 0.5 * cross(before, a))});
         } else {
-            rule.push_back({inside(1.0 / 6, 1.0 / 6), area / 3});
-            rule.push_back({inside(2.0 / 3, 1.0 / 6), area / 3});
-            rule.push_back({inside(1.0 / 6, 2.0 / 3), area / 3});
+            for (const auto& [p, q] : {std::pair{1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}})
+                rule.push_back({centre + p * a + q * b, area / 3});
         }
     }
     for (WeightedPlace& place : rule) place.weight /= whole;

@@ -19,8 +19,8 @@ enum class RuleOrder {
     fine,   ///< Enough to judge the polynomial by: 3 x 3 Gauss, 7 on triangles [Radon48], 3 a corner on cells.
 };
 
-/// A quadrature rule over the domain of an element, in the element's own coordinates. `nodes` is exact for polynomials
-/// of degree 2, and `fine` of degree 5 (on cells 2).
+/// A quadrature rule over the domain of an element, in the element's own coordinates. On parallelograms and
+/// triangles `nodes` is exact for polynomials of degree 2 or more and `fine` of degree 5; on cells of degree 0 and 2.
 std::vector<WeightedPlace> element_rule(const ElementTree& tree, ElementId e, RuleOrder order);
 
 /// The polynomial of an element that is nearest, in the weighted mean square, to values at places of its domain: linear

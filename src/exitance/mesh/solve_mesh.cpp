@@ -1,22 +1,44 @@
 #include "exitance/mesh/solve_mesh.hpp"
 
 #include "exitance/geometry/bvh.hpp"
+#include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
 namespace {
 
+/// Cuts every leaf below `root` that a line, given in the root's coordinates, runs through.
+void cut_leaves(ElementTree& tree, ElementId root, const CutLine& line) {
+    const Patch frame = tree.patch(root);
+    std::vector<ElementId> open = {root};
+    while (!open.empty()) {
+        const ElementId e = open.back();
+        open.pop_back();
+        for (ElementId child : tree.children(e)) open.push_back(child);
+        if (!tree.is_leaf(e)) continue;
+        // Frames of cells are parallel to their root's: (u, v) of the root = o + (s u', t v').
+        const Patch& patch = tree.patch(e);
+        const Vec2 o = frame.coordinates(patch.origin);
+        const Vec2 corner = frame.coordinates(patch.origin + patch.a + patch.b) - o;
+        const CutLine own{{line.normal.x * corner.x, line.normal.y * corner.y}, line.offset - dot(line.normal, o)};
+        tree.split_by_line(e, own, 1e-4);
+    }
+}
+
 /// Cuts one piece and what comes of it until the size is met.
 class Cutter {
   public:
-    Cutter(ElementTree& tree, MeshSize size) : tree_(tree), size_(size) {
-        strip_ = size.edge / std::pow(2.0, size.grading_levels);
-        // A triangle's cells shrink in both directions at once: a strip of them costs as many as it is long.
-        triangle_strip_ = size.edge / std::pow(2.0, std::min(size.grading_levels, 2));
-    }
+    Cutter(ElementTree& tree, MeshSize size)
+        : tree_(tree), size_(size), strip_(size.edge / std::pow(2.0, size.grading_levels)) {}
 
     /// `touches` tells which borders of the element lie on a concave border of its piece.
     void refine(ElementId e, std::array<bool, 4> touches) {
-        if (tree_.patch(e).is_triangle()) return refine_triangle(e, touches);
+        if (!tree_.patch(e).is_triangle()) return refine_parallelogram(e, touches);
+        if (touches[0] || touches[1] || touches[2]) grade_triangle(e, touches);
+        else refine_triangle(e);
+    }
+
+  private:
+    void refine_parallelogram(ElementId e, std::array<bool, 4> touches) {
         const double a = norm(tree_.patch(e).a), b = norm(tree_.patch(e).b);
         const bool cut_u = a > size_.edge || ((touches[1] || touches[3]) && a > strip_);
         const bool cut_v = b > size_.edge || ((touches[0] || touches[2]) && b > strip_);
@@ -30,27 +52,47 @@ class Cutter {
             std::array<bool, 4> t = touches;  // borders: bottom v = 0, right u = 1, top v = 1, left u = 0
             if (way != Cut::v) (right ? t[3] : t[1]) = false;
             if (way != Cut::u) (top ? t[0] : t[2]) = false;
-            refine(children[i], t);
+            refine_parallelogram(children[i], t);
         }
     }
 
-  private:
-    void refine_triangle(ElementId e, std::array<bool, 4> t) {
+    void refine_triangle(ElementId e) {
         const Patch& p = tree_.patch(e);
-        const double longest = std::max({norm(p.a), norm(p.b), norm(p.b - p.a)});
-        if (longest <= size_.edge && !((t[0] || t[1] || t[2]) && longest > triangle_strip_)) return;
+        if (std::max({norm(p.a), norm(p.b), norm(p.b - p.a)}) <= size_.edge) return;
         tree_.split(e, Cut::both);
-        const IdRange<ElementId> c = tree_.children(e);
-        // Borders: 0 from corner 0 to 1, 1 from corner 1 to 2, 2 from corner 2 to 0; each child keeps two of them.
-        refine(c[0], {t[0], false, t[2], false});
-        refine(c[1], {t[0], t[1], false, false});
-        refine(c[2], {false, t[1], t[2], false});
-        refine(c[3], {});
+        for (ElementId child : tree_.children(e)) refine_triangle(child);
+    }
+
+    /// Strips along the concave borders, each twice as wide as the one before it; then all cells to size.
+    void grade_triangle(ElementId e, std::array<bool, 4> touches) {
+        const Patch p = tree_.patch(e);
+        const double edge[3] = {norm(p.a), norm(p.b - p.a), norm(p.b)};
+        for (std::size_t border = 0; border < 3; ++border) {
+            if (!touches[border]) continue;
+            const double height = 2 * p.area() / edge[border];
+            for (double d = strip_; d <= std::min(0.5 * size_.edge, 0.4 * height); d *= 2) {
+                const double t = d / height;  // the coordinate that is 0 on the border and 1 at the corner opposite
+                const CutLine lines[3] = {{{0, 1}, t}, {{-1, -1}, t - 1}, {{1, 0}, t}};
+                cut_leaves(tree_, e, lines[border]);
+            }
+        }
+        shorten(e);
+    }
+
+    void shorten(ElementId e) {
+        for (ElementId child : tree_.children(e)) shorten(child);
+        if (!tree_.is_leaf(e)) return;
+        const std::vector<Point> outline = tree_.outline(e);
+        double longest = 0;
+        for (const Point& a : outline)
+            for (const Point& b : outline) longest = std::max(longest, norm(a - b));
+        if (longest <= 1.3 * size_.edge) return;
+        for (ElementId child : refine_element(tree_, e)) shorten(child);
     }
 
     ElementTree& tree_;
     MeshSize size_;
-    double strip_, triangle_strip_;
+    double strip_;  ///< Width of the narrowest elements along concave borders, metres.
 };
 
 double distance_to_segment(const Point& p, const Point& a, const Point& b) {

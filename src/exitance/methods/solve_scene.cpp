@@ -124,7 +124,7 @@ class Solver {
         certificate_ = certify(stage_, light_, solution_.indirect, delivered,
                                {.error = options_.error_target(), .seed = options_.seed,
                                 .direct_in_elements = light_.holds_direct,
-                                .expected_error = light_.holds_direct ? nullptr : &gathered.expected_error});
+                                .leaves = light_.holds_direct ? nullptr : &gathered.leaves});
         statistics().seconds["certify"] += watch.restart();
         statistics().iterations += light_.report.iterations;
         statistics().residual = light_.report.residual;

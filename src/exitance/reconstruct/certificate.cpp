@@ -20,19 +20,20 @@ struct Sample {
     double weight = 0;
     Spectrum r1, r2;
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
+    std::uint32_t rays = 0;
 };
 
 /// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x expected error.
-std::vector<WeightedSample> stratified_places(const ElementTree& tree, const Field<ElementId, double>* expected,
+std::vector<WeightedSample> stratified_places(const ElementTree& tree, const Field<ElementId, LocalPassReport::Leaf>* known,
                                               std::size_t count, std::uint64_t seed) {
     const std::vector<ElementId> leaves = tree.leaves();
     double area = 0, error = 0;
     for (ElementId e : leaves) {
         area += tree.area(e);
-        error += expected ? tree.area(e) * (*expected)[e] : 0;
+        error += known ? tree.area(e) * (*known)[e].expected_error : 0;
     }
     const double mean_error = error / area;
-    const auto density = [&](ElementId e) { return mean_error > 0 ? 0.5 + 0.5 * (*expected)[e] / mean_error : 1.0; };
+    const auto density = [&](ElementId e) { return mean_error > 0 ? 0.5 + 0.5 * (*known)[e].expected_error / mean_error : 1.0; };
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
     double before = 0;
@@ -81,11 +82,14 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     if (out.mean_reflected <= 0) return out;
 
     constexpr std::size_t batches = 32;
-    out.points = (options.error < 0.03 ? 128 : 64) * batches;
+    out.points = 48 * batches;
     const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(out.points)));
-    const unsigned rays = std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, 16.0, 2048.0)));
+    const auto rays_at = [&](ElementId leaf) {
+        const double known = options.leaves ? 0.5 * (*options.leaves)[leaf].rays : wanted;
+        return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
+    };
     const std::vector<WeightedSample> places =
-        stratified_places(indirect.tree, options.expected_error, out.points, options.seed);
+        stratified_places(indirect.tree, options.leaves, out.points, options.seed);
     const ElementLocator coarse(light.tree, stage.scene.regions().size());
     std::vector<Sample> samples(places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -99,14 +103,16 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
             const Spectrum& rho = stage.scene.material(region).reflectance;
             Spectrum delivered = indirect.at(place);
             if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
+            const unsigned rays = rays_at(place.element);
             const auto residual = [&](std::uint64_t which) {
                 const std::uint64_t key = hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
                 return rho * (gather_reflected(stage, x, n, region, rays, key, b, workspace).irradiance - delivered);
             };
             samples[k] = {region, weight, residual(1), residual(2), light.numbering.number[coarse.find(region, x).element]};
+            samples[k].rays = 2 * rays;
         }
     });
-    out.rays = 2 * rays * samples.size();
+    for (const Sample& s : samples) out.rays += s.rays;
 
     // The smooth part of the error: the coarse response to the mean residual of each region.
     const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, light.tree, light.numbering);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/reconstruct/gather.hpp"
+#include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/solve/global_light.hpp"
 
@@ -10,8 +10,9 @@ struct CertificateOptions {
     double error = 0.02;  ///< The relative error that is to be resolved: it sets the number of points and rays.
     std::uint64_t seed = 1;
     bool direct_in_elements = false;  ///< Does the delivered function hold the emitters' light too?
-    /// Of every leaf of the delivered function, where the error is expected to be; points gather there. May be null.
-    const Field<ElementId, double>* expected_error = nullptr;
+    /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
+    /// rays in proportion to those that it took. Null when there was none.
+    const Field<ElementId, LocalPassReport::Leaf>* leaves = nullptr;
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.

@@ -14,7 +14,8 @@ struct Sampled {
     std::array<Spectrum, 4> corners;
     double noise_squared = 0;  ///< Of rho E at a node, mean over bands, (W/m^2)^2.
     double departure = 0;      ///< |rho (E - polynomial)| at the centre, mean over bands, W/m^2.
-    unsigned rays = 0;
+    unsigned rays = 0;       ///< Spent in all.
+    unsigned node_rays = 0;  ///< Of one node, in the end.
 };
 
 class LocalPass {
@@ -79,6 +80,7 @@ class LocalPass {
         const Vec2 centre = out_.tree.centre(e);
         const Spectrum departure = rho * (gather(centre, nodes.size()).irradiance - fit.at(centre));
         out.departure = std::sqrt(squared(departure) / static_cast<double>(bands));
+        out.node_rays = rays;
         out.rays = rays * static_cast<unsigned>(nodes.size() + 1);
         return out;
     }
@@ -100,14 +102,14 @@ class LocalPass {
     void finish(LocalPassReport& report) {
         out_.first_value.resize(out_.tree.size());
         double noise = 0, interpolation = 0;
-        report.expected_error.resize(out_.tree.size());
+        report.leaves.resize(out_.tree.size());
         for (ElementId e : out_.tree.leaves()) {
             const Sampled& s = sampled_[e];
             out_.first_value[e] = static_cast<std::uint32_t>(out_.values.size());
             for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i) {
                 out_.add_value(s.corners[static_cast<std::size_t>(i)]);
             }
-            report.expected_error[e] = std::sqrt(s.departure * s.departure + s.noise_squared);
+            report.leaves[e] = {std::sqrt(s.departure * s.departure + s.noise_squared), s.node_rays};
             noise += out_.tree.area(e) * s.noise_squared;
             interpolation += out_.tree.area(e) * std::max(0.0, s.departure * s.departure - 1.25 * s.noise_squared);
         }

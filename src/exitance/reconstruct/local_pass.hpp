@@ -21,8 +21,12 @@ struct LocalPassReport {
     std::size_t rays = 0;
     double noise = 0;          ///< RMS over the surfaces of the rays' error in rho E_ind, W/m^2.
     double interpolation = 0;  ///< Estimated RMS of the interpolation's error in rho E_ind, W/m^2.
-    /// Of every leaf: what the pass expects the error of rho E_ind to be, W/m^2; of inner elements: unused.
-    Field<ElementId, double> expected_error;
+    /// What is known of every leaf; of inner elements: unused.
+    struct Leaf {
+        double expected_error = 0;  ///< Of rho E_ind, W/m^2.
+        unsigned rays = 0;          ///< That a node took to bring its noise down to what is allowed.
+    };
+    Field<ElementId, Leaf> leaves;
     bool interrupted = false;
 };
 
