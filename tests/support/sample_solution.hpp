@@ -62,6 +62,11 @@ inline ElementFunction sample_function(const Scene& scene, std::uint64_t seed, i
     for (int i = 0; i < cuts; ++i) {
         const auto leaves = f.tree.leaves();
         const ElementId leaf = leaves[random.bits() % leaves.size()];
+        if (i % 7 == 3 || f.tree.is_cell(leaf)) {
+            const Vec2 n = {random.uniform() - 0.5, random.uniform() - 0.5};
+            f.tree.split_by_line(leaf, {n, dot(n, f.tree.centre(leaf))});
+            continue;
+        }
         f.tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), 0.2 + 0.6 * random.uniform());
     }
     f.first_value.resize(f.tree.size(), 0);

@@ -2,29 +2,30 @@
 
 #include <optional>
 
-#include "exitance/io/solution_groups.hpp"
 #include "exitance/scene/locator.hpp"
 
 namespace exitance {
 namespace {
 
-/// The face at the centre of each leaf.
-std::vector<std::int32_t> faces_of(const Scene& scene, const ElementTree& tree, const std::vector<ElementId>& leaves) {
-    std::optional<Locator> locator;  // only cut-up regions need one
-    std::vector<std::int32_t> out;
-    out.reserve(leaves.size());
-    for (ElementId e : leaves) {
-        const Region& region = scene.regions()[tree.region(e)];
-        SurfaceId face = region.surfaces.empty() ? SurfaceId(0u) : region.surfaces.front();
+/// Which face a leaf shows; only regions of several faces need a search.
+class FaceFinder {
+  public:
+    explicit FaceFinder(const Scene& scene) : scene_(scene) {}
+
+    SurfaceId find(RegionId r, const Point& centre) {
+        const Region& region = scene_.regions()[r];
         if (region.surfaces.size() > 1) {
-            if (!locator) locator.emplace(scene);
-            const SurfaceId found = locator->find(tree.patch(e).centre(), region.plane.n);
-            if (!found.is_none() && scene.surfaces()[found].region == tree.region(e)) face = found;
+            if (!locator_) locator_.emplace(scene_);
+            const SurfaceId found = locator_->find(centre, region.plane.n);
+            if (!found.is_none() && scene_.surfaces()[found].region == r) return found;
         }
-        out.push_back(static_cast<std::int32_t>(face.value));
+        return region.surfaces.front();
     }
-    return out;
-}
+
+  private:
+    const Scene& scene_;
+    std::optional<Locator> locator_;
+};
 
 }  // namespace
 
@@ -32,26 +33,35 @@ ElementMesh make_element_mesh(const Solution& solution) {
     const Scene& scene = solution.scene;
     const ElementTree& tree = solution.interpolant.tree;
     ElementMesh mesh;
-    mesh.leaves = tree.leaves();
-    mesh.irradiance = leaf_values(solution.interpolant);
-    mesh.surface = faces_of(scene, tree, mesh.leaves);
-    mesh.points.reserve(mesh.irradiance.size() / bands * 3);
-    mesh.radiosity.reserve(mesh.irradiance.size());
-    for (std::size_t i = 0; i < mesh.leaves.size(); ++i) {
-        const ElementId e = mesh.leaves[i];
+    mesh.points.reserve(solution.interpolant.values.size());
+    mesh.irradiance.reserve(solution.interpolant.values.size());
+    mesh.radiosity.reserve(solution.interpolant.values.size());
+    FaceFinder finder(scene);
+    for (ElementId e : tree.ids()) {
+        if (!tree.is_leaf(e)) continue;
+        const RegionId region = tree.region(e);
+        const Material& material = scene.material(region);
         const Patch& patch = tree.patch(e);
-        const Material& material = scene.material(tree.region(e));
-        for (int corner = 0; corner < patch.corner_count(); ++corner) {
-            const Point p = patch.corner(corner);
-            mesh.points.insert(mesh.points.end(), {p.x, p.y, p.z});
-            for (std::size_t b = 0; b < bands; ++b)
-                mesh.radiosity.push_back(static_cast<float>(
-                    material.exitance[b] +
-                    material.reflectance[b] * static_cast<double>(mesh.irradiance[mesh.radiosity.size()])));
-        }
-        mesh.region.push_back(static_cast<std::int32_t>(tree.region(e).value));
-        mesh.material.push_back(static_cast<std::int32_t>(scene.regions()[tree.region(e)].material.value));
-        const SurfaceId face(static_cast<std::size_t>(mesh.surface[i]));
+        const auto add_point = [&](Vec2 uv) {
+            const Spectrum irradiance = solution.interpolant.at({e, uv});
+            mesh.points.push_back(patch.at(uv));
+            mesh.irradiance.emplace_back(), mesh.radiosity.emplace_back();
+            for (std::size_t b = 0; b < bands; ++b) {
+                mesh.irradiance.back()[b] = static_cast<float>(irradiance[b]);
+                mesh.radiosity.back()[b] =
+                    static_cast<float>(material.exitance[b] + material.reflectance[b] * irradiance[b]);
+            }
+        };
+        if (tree.is_cell(e))
+            for (const Vec2 uv : tree.domain(e)) add_point(uv);
+        else
+            for (int i = 0; i < patch.corner_count(); ++i) add_point(patch.corner_uv(i));
+        mesh.first_point.push_back(static_cast<std::uint32_t>(mesh.points.size()));
+
+        const SurfaceId face = finder.find(region, patch.at(tree.centre(e)));
+        mesh.surface.push_back(static_cast<std::int32_t>(face.value));
+        mesh.region.push_back(static_cast<std::int32_t>(region.value));
+        mesh.material.push_back(static_cast<std::int32_t>(scene.regions()[region].material.value));
         mesh.group.push_back(static_cast<std::int32_t>(scene.surfaces()[face].group.value));
     }
     return mesh;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -9,23 +10,36 @@
 
 namespace exitance {
 
-inline constexpr std::uint8_t vtk_triangle = 5, vtk_quad = 9;
-
-/// The leaves of a solution's interpolant as cells for other programs; every cell has points of its own, its corners
-/// counter-clockwise seen from the front.
+/// The leaves of a solution's interpolant as polygons for other programs. Every polygon has points of its own, since
+/// light may jump from one to the next; they go counter-clockwise seen from its front.
 struct ElementMesh {
-    std::vector<ElementId> leaves;
-    std::vector<double> points;  ///< x, y, z of each corner of each leaf; metres
-    std::vector<float> irradiance, radiosity;  ///< `bands` values a point, W/m^2
-    /// Per leaf. A region of many faces may have leaves that lie on several of them: the face at the leaf's centre.
+    std::vector<std::uint32_t> first_point = {0};  ///< Per polygon, and one past the last.
+    std::vector<Point> points;
+    std::vector<std::array<float, bands>> irradiance, radiosity;  ///< Per point, W/m^2.
+    /// Per polygon. A region of many faces may have leaves that lie on several of them: the face at the leaf's centre.
     std::vector<std::int32_t> surface, region, material, group;
 
-    std::size_t point_count() const { return points.size() / 3; }
+    std::size_t size() const { return surface.size(); }
+    std::size_t corner_count(std::size_t polygon) const { return first_point[polygon + 1] - first_point[polygon]; }
     std::array<std::pair<const char*, const std::vector<std::int32_t>*>, 4> cell_ids() const {
         return {{{"surface", &surface}, {"region", &region}, {"material", &material}, {"group", &group}}};
     }
 };
 
 ElementMesh make_element_mesh(const Solution& solution);
+
+/// VTK's type of a polygon of so many corners: triangle, quadrilateral or polygon.
+constexpr std::uint8_t vtk_cell_type(std::size_t corners) { return corners == 3 ? 5 : corners == 4 ? 9 : 7; }
+
+/// Numbers in rows, one row after the other.
+template <class T, std::size_t n>
+std::span<const T> flat(const std::vector<std::array<T, n>>& rows) {
+    static_assert(sizeof(std::array<T, n>) == n * sizeof(T));
+    return {rows.empty() ? nullptr : rows.front().data(), rows.size() * n};
+}
+inline std::span<const double> flat(const std::vector<Point>& points) {
+    static_assert(sizeof(Point) == 3 * sizeof(double));
+    return {points.empty() ? nullptr : &points.front().x, points.size() * 3};
+}
 
 }  // namespace exitance

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/io/solution_groups.hpp"
@@ -14,6 +15,8 @@ class Replay {
         : parent_(file.read<std::uint32_t>(group + "/parent")),
           cut_(file.read<std::uint8_t>(group + "/cut", 1, parent_.size())),
           ratio_(file.read<double>(group + "/ratio", 1, parent_.size())),
+          line_element_(file.read<std::uint32_t>(group + "/line_element")),
+          line_(file.read<double>(group + "/line", 3, line_element_.size())),
           region_(file.read<std::uint32_t>(group + "/root_region")),
           shape_(file.read<std::uint8_t>(group + "/root_shape", 1, region_.size())),
           patch_(file.read<double>(group + "/root_patch", 9, region_.size())),
@@ -44,9 +47,10 @@ class Replay {
     bool split(ElementTree& tree) {
         const std::size_t first = tree.size();
         const std::uint32_t p = parent_[first];
-        if (p >= first || !tree.is_leaf(ElementId(p)) || cut_[p] == 0 || cut_[p] > 3) return false;
-        if (!(ratio_[p] > 0 && ratio_[p] < 1)) return false;
+        if (p >= first || !tree.is_leaf(ElementId(p)) || cut_[p] == 0 || cut_[p] > 4) return false;
         const Cut way = static_cast<Cut>(cut_[p]);
+        if (way == Cut::line) return split_by_line(tree, ElementId(p));
+        if (!(ratio_[p] > 0 && ratio_[p] < 1) || tree.is_cell(ElementId(p))) return false;
         const std::size_t pieces = way == Cut::both || tree.patch(ElementId(p)).is_triangle() ? 4 : 2;
         if (pieces > parent_.size() - first) return false;
         for (std::size_t k = 0; k < pieces; ++k)
@@ -55,17 +59,28 @@ class Replay {
         return true;
     }
 
+    bool split_by_line(ElementTree& tree, ElementId e) {
+        const std::size_t first = tree.size();
+        const auto found = std::lower_bound(line_element_.begin(), line_element_.end(), e.value);
+        if (found == line_element_.end() || *found != e.value || parent_.size() - first < 2) return false;
+        if (parent_[first] != e.value || parent_[first + 1] != e.value) return false;
+        const double* line = &line_[3 * static_cast<std::size_t>(found - line_element_.begin())];
+        if (tree.split_by_line(e, {{line[0], line[1]}, line[2]}, 0).is_none()) return false;
+        return tree.area(ElementId(first)) > 0 && tree.area(ElementId(first + 1)) > 0;
+    }
+
     std::vector<std::uint32_t> parent_;
     std::vector<std::uint8_t> cut_;
     std::vector<double> ratio_;
+    std::vector<std::uint32_t> line_element_;  ///< Ascending.
+    std::vector<double> line_;
     std::vector<std::uint32_t> region_;
     std::vector<std::uint8_t> shape_;
     std::vector<double> patch_;
     std::size_t region_count_;
 };
 
-}  // namespace
-
+/// The values of a function, those of its leaves in the order of their ids.
 std::vector<float> leaf_values(const ElementFunction& function) {
     const ElementTree& tree = function.tree;
     std::vector<float> out;
@@ -80,16 +95,20 @@ std::vector<float> leaf_values(const ElementFunction& function) {
     return out;
 }
 
-void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function,
-                    const std::string& values_in) {
+}  // namespace
+
+void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function) {
     const ElementTree& tree = function.tree;
-    std::vector<std::uint32_t> parent, region;
+    std::vector<std::uint32_t> parent, line_element, region;
     std::vector<std::uint8_t> way, shape;
-    std::vector<double> ratio, patches;
+    std::vector<double> ratio, line, patches;
     for (ElementId e : tree.ids()) {
         parent.push_back(tree.parent(e).value);
         way.push_back(static_cast<std::uint8_t>(tree.way(e)));
         ratio.push_back(tree.ratio(e));
+        if (tree.way(e) != Cut::line) continue;
+        line_element.push_back(e.value);
+        line.insert(line.end(), {tree.line(e).normal.x, tree.line(e).normal.y, tree.line(e).offset});
     }
     for (ElementId e : tree.roots()) {
         const Patch& p = tree.patch(e);
@@ -100,15 +119,15 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
     const auto in = [&](const char* name) { return group + "/" + name; };
     file.make_group(group);
     file.write(in("parent"), parent, 1, {"1", "parent of an element; 4294967295 for a root"});
-    file.write(in("cut"), way, 1, {"1", "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both"});
+    file.write(in("cut"), way, 1, {"1", "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line"});
     file.write(in("ratio"), ratio, 1, {"1", "where a cut across one direction stands, in (0, 1)"});
+    file.write(in("line_element"), line_element, 1, {"1", "elements that are cut along a line, ascending"});
+    file.write(in("line"), line, 3, {"1", "n and d of a cut n . (u, v) = d in the element's coordinates"});
     file.write(in("root_region"), region, 1, {"1", "region of a root"});
     file.write(in("root_shape"), shape, 1, {"1", "shape of a root: 0 parallelogram, 1 triangle"});
     file.write(in("root_patch"), patches, 9, {"m", "origin, a and b of a root: its points are origin + u a + v b"});
-    if (values_in.empty())
-        file.write(in("values"), leaf_values(function), bands, {"W/m^2", "irradiance at the corners of the leaves"});
-    else
-        file.link(values_in, in("values"));
+    file.write(in("values"), leaf_values(function), bands,
+               {"W/m^2", "irradiance at the corners of the leaves' patches, leaf after leaf"});
 }
 
 ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count) {

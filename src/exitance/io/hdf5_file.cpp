@@ -240,11 +240,6 @@ void Hdf5Writer::set_numbers(const std::string& object, const char* name, const 
     set(target, name, data, native(type), space);
 }
 
-void Hdf5Writer::link(const std::string& present, const std::string& name) {
-    if (!failure_.empty()) return;
-    if (H5Lcreate_hard(file_, present.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0) fail("link " + name);
-}
-
 Result<void> Hdf5Writer::write_file(const std::string& path) {
     std::string image;
     if (failure_.empty()) {

@@ -70,9 +70,6 @@ class Hdf5Writer {
         set_numbers(object, name, &value, hdf5_type<T>(), 1, false);
     }
 
-    /// A second name for an object, at no cost.
-    void link(const std::string& present, const std::string& name);
-
     Result<void> write_file(const std::string& path);
 
   private:

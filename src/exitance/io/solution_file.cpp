@@ -17,10 +17,11 @@ Result<void> write_solution(const std::string& path, const Solution& solution) {
     file.set_attribute("exitance", "program_version", std::string_view(EXITANCE_VERSION));
     file.set_attribute("exitance", "bands", static_cast<std::int64_t>(bands));
     file.set_attribute("exitance", "bounces", static_cast<std::int64_t>(solution.bounces));
+    file.set_attribute("exitance", "direct_in_elements", static_cast<std::int64_t>(solution.direct_in_elements));
     file.write_text("exitance/options", solution.options, {"1", "options in force, as JSON"});
     StoredScene::write(file, "exitance/scene", solution.scene);
     write_function(file, "exitance/indirect", solution.indirect);
-    write_function(file, "exitance/interpolant", solution.interpolant, "VTKHDF/PointData/irradiance");
+    write_function(file, "exitance/interpolant", solution.interpolant);
     write_statistics(file, "exitance/statistics", solution.statistics);
     return file.write_file(path);
 }
@@ -42,6 +43,7 @@ Result<Solution> load_solution(const std::string& path) {
 
     Solution solution;
     solution.bounces = static_cast<int>(file.integer_attribute("exitance", "bounces").value_or(-1));
+    solution.direct_in_elements = file.integer_attribute("exitance", "direct_in_elements").value_or(0) != 0;
     solution.options = file.read_text("exitance/options");
     solution.scene = StoredScene::read(file, "exitance/scene");
     const std::size_t regions = solution.scene.regions().size();

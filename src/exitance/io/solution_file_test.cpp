@@ -70,11 +70,16 @@ void expect_same(const ElementFunction& a, const ElementFunction& b) {
         ASSERT_EQ(a.tree.region(e), b.tree.region(e));
         ASSERT_EQ(a.tree.way(e), b.tree.way(e));
         ASSERT_EQ(a.tree.children(e).size(), b.tree.children(e).size());
+        ASSERT_EQ(a.tree.domain(e), b.tree.domain(e));
+        ASSERT_EQ(a.tree.area(e), b.tree.area(e));
         if (a.tree.is_leaf(e)) {
             const ElementTree::Place place = {e, {0.3, 0.4}};
             ASSERT_EQ(a.at(place), b.at(place));
         } else {
             ASSERT_EQ(a.tree.ratio(e), b.tree.ratio(e));
+            if (a.tree.way(e) == Cut::line) {
+                ASSERT_TRUE(a.tree.line(e).normal == b.tree.line(e).normal && a.tree.line(e).offset == b.tree.line(e).offset);
+            }
             ASSERT_EQ(a.tree.children(e).front(), b.tree.children(e).front());
         }
     }
@@ -91,6 +96,7 @@ TEST_F(SolutionFiles, BringASolutionBackBitForBit) {
     expect_same(s.interpolant, t->interpolant);
     EXPECT_EQ(s.options, t->options);
     EXPECT_EQ(s.bounces, t->bounces);
+    EXPECT_EQ(s.direct_in_elements, t->direct_in_elements);
     EXPECT_EQ(s.statistics.method, t->statistics.method);
     EXPECT_EQ(s.statistics.links, t->statistics.links);
     EXPECT_EQ(s.statistics.converged, t->statistics.converged);

@@ -18,21 +18,16 @@ class StoredScene {
 };
 
 /// A tree as its roots' patches and how every element was cut, which gives all patches back bit for bit; values in the
-/// order of the leaves and their corners. `values_in` names a set that already holds these values, or is empty.
-void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function,
-                    const std::string& values_in = {});
+/// order of the leaves and their patches' corners.
+void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function);
 ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count);
-
-/// The values of a function, those of its leaves in the order of their ids.
-std::vector<float> leaf_values(const ElementFunction& function);
 
 /// Everything that may differ from run to run.
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics);
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);
 
-/// The group /VTKHDF that ParaView opens: the leaves of the interpolant as triangles and quadrilaterals, each with
-/// points of its own, since light may jump from one to the next. Irradiance lands in "VTKHDF/PointData/irradiance" as
-/// leaf_values() of the interpolant.
+/// The group /VTKHDF that ParaView opens: the leaves of the interpolant as polygons, each with points of its own,
+/// since light may jump from one to the next.
 void write_vtkhdf(Hdf5Writer& file, const Solution& solution);
 
 }  // namespace exitance
