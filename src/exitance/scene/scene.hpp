@@ -27,6 +27,8 @@ struct Material {
 
 /// Emitted radiance L_e (W/(m^2 sr)) as exitance M = pi L_e (W/m^2). The one place where radiance becomes exitance.
 inline Spectrum exitance_of_radiance(const Spectrum& radiance) { return pi * radiance; }
+/// And back, for files that hold radiance.
+inline Spectrum radiance_of_exitance(const Spectrum& exitance) { return exitance / pi; }
 
 /// One planar face of the input: one-sided, its corners counter-clockwise seen from the front.
 struct Surface {

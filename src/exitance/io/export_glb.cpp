@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "exitance/io/atomic_file.hpp"
+#include "exitance/io/element_mesh.hpp"
+#include "exitance/io/export_formats.hpp"
+#include "exitance/io/tone_map.hpp"
+
+namespace exitance {
+namespace {
+
+using Float3 = std::array<float, 3>;
+
+/// glTF has Y up where scenes have Z up.
+Float3 y_up(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)}; }
+
+/// Polygons of one group and one material, as a range of all vertices and of all indices.
+struct Primitive {
+    std::size_t group = 0, material = 0;
+    std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
+    Float3 lo = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, hi = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+};
+
+/// The arrays of the binary chunk, and what they are divided into.
+struct Triangles {
+    std::vector<Float3> position, normal, radiosity, irradiance, colour;
+    std::vector<std::uint32_t> index;  ///< Counted from the first vertex of its primitive.
+    std::vector<Primitive> primitives;
+};
+
+Triangles make_triangles(const Solution& solution, const ElementMesh& mesh, const ToneMap& tone) {
+    std::vector<std::size_t> order(mesh.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto key = [&](std::size_t i) { return std::pair(mesh.group[i], mesh.material[i]); };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+
+    Triangles out;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const std::size_t i = order[k];
+        if (k == 0 || key(i) != key(order[k - 1]))
+            out.primitives.push_back({static_cast<std::size_t>(mesh.group[i]), static_cast<std::size_t>(mesh.material[i]),
+                                      out.position.size(), 0, out.index.size(), 0});
+        Primitive& primitive = out.primitives.back();
+        const Normal& n = solution.scene.regions()[RegionId(static_cast<std::size_t>(mesh.region[i]))].plane.n;
+        for (std::uint32_t c = 2; c < mesh.corner_count(i); ++c)
+            for (const std::size_t corner : {std::size_t(0), std::size_t(c - 1), std::size_t(c)})
+                out.index.push_back(static_cast<std::uint32_t>(primitive.vertices + corner));
+        for (std::uint32_t p = mesh.first_point[i]; p < mesh.first_point[i + 1]; ++p) {
+            Spectrum light;
+            Float3 radiosity, irradiance;
+            for (std::size_t b = 0; b < bands; ++b) light[b] = static_cast<double>(mesh.irradiance[p][b]);
+            for (std::size_t b = 0; b < 3; ++b) {
+                const std::size_t band = bands == 3 ? b : b * (bands - 1) / 2;  // as the tone map chooses them
+                radiosity[b] = mesh.radiosity[p][band], irradiance[b] = mesh.irradiance[p][band];
+            }
+            const DisplayColour colour = tone(light);
+            out.position.push_back(y_up(mesh.points[p]));
+            out.normal.push_back(y_up(n));
+            out.radiosity.push_back(radiosity);
+            out.irradiance.push_back(irradiance);
+            out.colour.push_back({static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])});
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                primitive.lo[axis] = std::min(primitive.lo[axis], out.position.back()[axis]);
+                primitive.hi[axis] = std::max(primitive.hi[axis], out.position.back()[axis]);
+            }
+        }
+        primitive.vertices = out.position.size() - primitive.first_vertex;
+        primitive.indices = out.index.size() - primitive.first_index;
+    }
+    return out;
+}
+
+std::string json_text(const std::string& text) {
+    std::string out(1, '"');
+    for (char c : text) {
+        if (c == '"' || c == '\\') out += '\\', out += c;
+        else if (static_cast<unsigned char>(c) < 0x20) out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else out += c;
+    }
+    out += '"';
+    return out;
+}
+
+std::string json_triple(const auto& v) { return fmt::format("[{},{},{}]", v[0], v[1], v[2]); }
+
+/// The bands that stand for red, green and blue.
+std::array<double, 3> triple(const Spectrum& s) {
+    return {s[0], s[bands == 3 ? 1 : (bands - 1) / 2], s[bands == 3 ? 2 : bands - 1]};
+}
+
+std::string material_json(const Material& material) {
+    std::array<double, 3> rho = triple(material.reflectance), radiance = triple(radiance_of_exitance(material.exitance));
+    const std::string out = fmt::format("{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{},{},{},1],"
+                                        "\"metallicFactor\":0,\"roughnessFactor\":1}}", json_text(material.name),
+                                        rho[0], rho[1], rho[2]);
+    if (!material.emits()) return out + ",\"extensions\":{\"KHR_materials_unlit\":{}}}";
+    const double strength = std::max({radiance[0], radiance[1], radiance[2], 1e-30});
+    for (double& value : radiance) value /= strength;
+    return fmt::format("{},\"emissiveFactor\":{},\"extensions\":{{\"KHR_materials_emissive_strength\":{{\"emissiveStrength\":{}}}}}}}",
+                       out, json_triple(radiance), strength);
+}
+
+/// Byte ranges of the binary chunk: five vertex arrays of one length, then the indices.
+constexpr const char* attribute_names[] = {"POSITION", "NORMAL", "_RADIOSITY", "_IRRADIANCE", "COLOR_0"};
+constexpr std::size_t attributes = std::size(attribute_names);
+
+std::string make_json(const Scene& scene, const Triangles& triangles, const ToneMap& tone) {
+    fmt::memory_buffer text;
+    const auto out = std::back_inserter(text);
+    const std::size_t array_bytes = triangles.position.size() * sizeof(Float3), index_bytes = triangles.index.size() * 4;
+    bool unlit = false, emits = false;
+    for (const Material& m : scene.materials()) (m.emits() ? emits : unlit) = true;
+    const std::string used = fmt::format("{}{}{}", unlit ? "\"KHR_materials_unlit\"" : "", unlit && emits ? "," : "",
+                                         emits ? "\"KHR_materials_emissive_strength\"" : "");
+    fmt::format_to(out, "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"W/m^2\","
+                   "\"radianceUnit\":\"W/(m^2 sr)\",\"exposure\":{},\"white\":{}}}}},\"extensionsUsed\":[{}],\"scene\":0,",
+                   EXITANCE_VERSION, tone.scale, tone.white, used);
+
+    // A node and a mesh a group; a primitive a material in it.
+    std::string nodes, meshes, scene_nodes, accessors;
+    std::size_t node = 0, accessor = 0;
+    for (std::size_t first = 0, last = 0; first < triangles.primitives.size(); first = last, ++node) {
+        const std::size_t group = triangles.primitives[first].group;
+        while (last < triangles.primitives.size() && triangles.primitives[last].group == group) ++last;
+        const char* comma = node == 0 ? "" : ",";
+        const std::string name = json_text(scene.groups()[GroupId(group)]);
+        scene_nodes += fmt::format("{}{}", comma, node);
+        nodes += fmt::format("{}{{\"mesh\":{},\"name\":{}}}", comma, node, name);
+        meshes += fmt::format("{}{{\"name\":{},\"primitives\":[", comma, name);
+        for (std::size_t k = first; k < last; ++k) {
+            const Primitive& p = triangles.primitives[k];
+            meshes += k == first ? "{\"attributes\":{" : ",{\"attributes\":{";
+            for (std::size_t a = 0; a < attributes; ++a) {
+                meshes += fmt::format("{}\"{}\":{}", a == 0 ? "" : ",", attribute_names[a], accessor);
+                accessors += fmt::format("{}{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
+                                         accessor == 0 ? "" : ",", a, p.first_vertex * sizeof(Float3), p.vertices);
+                if (a == 0) accessors += fmt::format(",\"min\":{},\"max\":{}", json_triple(p.lo), json_triple(p.hi));
+                accessors += "}", ++accessor;
+            }
+            accessors += fmt::format(",{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
+                                     attributes, p.first_index * 4, p.indices);
+            meshes += fmt::format("}},\"indices\":{},\"material\":{}}}", accessor++, p.material);
+        }
+        meshes += "]}";
+    }
+    std::string materials, views;
+    for (const Material& m : scene.materials()) materials += fmt::format("{}{}", materials.empty() ? "" : ",", material_json(m));
+    for (std::size_t a = 0; a < attributes; ++a)
+        views += fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"byteStride\":12,\"target\":34962}},",
+                             a * array_bytes, array_bytes);
+    views += fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}", attributes * array_bytes, index_bytes);
+    fmt::format_to(out, "\"scenes\":[{{\"nodes\":[{}]}}],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],"
+                   "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
+                   scene_nodes, nodes, meshes, materials, accessors, views, attributes * array_bytes + index_bytes);
+    std::string json(text.data(), text.size());
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    return json;
+}
+
+}  // namespace
+
+Result<void> write_glb(const Solution& solution, const std::string& path) {
+    static_assert(std::endian::native == std::endian::little);
+    const ToneMap tone = make_tone_map(solution);
+    const Triangles triangles = make_triangles(solution, make_element_mesh(solution), tone);
+    const std::string json = make_json(solution.scene, triangles, tone);
+    const std::size_t binary = triangles.position.size() * sizeof(Float3) * attributes + triangles.index.size() * 4;
+    const std::size_t total = 12 + 8 + json.size() + 8 + binary;
+    if (total > 0xffffffffu)
+        return Error{ErrorCode::cannot_write, "cannot write " + path + ": a .glb file holds at most 4 GiB, this mesh needs " +
+                     std::to_string(total >> 20) + " MiB", path, "export .vtkhdf, or solve with a larger --error"};
+
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return file.error();
+    const auto words = [&](std::initializer_list<std::size_t> values) {
+        for (const std::size_t value : values) {
+            const auto word = static_cast<std::uint32_t>(value);
+            file->write(std::as_bytes(std::span(&word, 1)));
+        }
+    };
+    words({0x46546c67, 2, total, json.size(), 0x4e4f534a});  // "glTF", version, length; "JSON"
+    file->write(json);
+    words({binary, 0x004e4942});  // "BIN"
+    for (const auto* array : {&triangles.position, &triangles.normal, &triangles.radiosity, &triangles.irradiance, &triangles.colour})
+        file->write(std::as_bytes(std::span(*array)));
+    file->write(std::as_bytes(std::span(triangles.index)));
+    return file->commit();
+}
+
+}  // namespace exitance
