@@ -1,0 +1,200 @@
+#include "exitance/transport/form_factor_batch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/core/check.hpp"
+#include "exitance/transport/form_factor.hpp"
+
+namespace exitance {
+namespace {
+
+// Four quads at a time, in the compiler's own vector types, which become whatever the processor has.
+constexpr std::size_t lanes = 4;
+using Real = double __attribute__((vector_size(32)));
+using Mask = long long __attribute__((vector_size(32)));
+
+struct Vec {
+    Real x, y, z;
+};
+inline Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Real dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Real dot(const Normal& n, const Vec& a) { return n.x * a.x + n.y * a.y + n.z * a.z; }
+inline Vec cross(const Vec& a, const Vec& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+inline Real load(const double* p) { return Real{p[0], p[1], p[2], p[3]}; }
+inline Real sqrt(const Real& v) { return Real{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
+inline Real max(const Real& a, const Real& b) { return a > b ? a : b; }
+inline Real min(const Real& a, const Real& b) { return a < b ? a : b; }
+inline bool any(const Mask& m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
+
+/// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
+/// quotients share one division; then a polynomial in t^2 that interpolates atan(t)/t at Chebyshev points to 4e-17.
+inline Real angle_over_sine(const Real& y, const Real& x) {
+    constexpr double c[11] = {1.0,
+                              -0.3333333333332844,
+                              0.1999999999885511,
+                              -0.14285714180976467,
+                              0.11111106180455946,
+                              -0.09090773074808414,
+                              0.07689953496306857,
+                              -0.06640233930429408,
+                              0.056883492268090106,
+                              -0.04348052215716462,
+                              0.021135373157693246};
+    const Real away = max(x, -x), low = min(y, away), high = max(y, away);
+    const Mask turned = low > 0.41421356237309503 * high;
+    const Real under = turned ? low + high : high, inverse = 1 / (under * y);
+    const Real t = (turned ? low - high : low) * y * inverse, z = t * t, w = z * z, v = w * w;
+    // Estrin's scheme: short chains, so that edges overlap in the pipeline.
+    const Real p = (c[0] + c[1] * z) + w * (c[2] + c[3] * z) + v * ((c[4] + c[5] * z) + w * (c[6] + c[7] * z)) +
+                   v * v * ((c[8] + c[9] * z) + w * c[10]);
+    // The angle is base + sign t p, by octant.
+    const Mask steep = y > away, back = x < 0;
+    const Real eighth = turned ? Real{} + pi / 4 : Real{};
+    Real a = t * p + eighth;
+    a = steep ? pi / 2 - a : a;
+    a = back ? pi - a : a;
+    return a * under * inverse;
+}
+
+/// Lambert's sum over the four edges of quads wholly above the horizon.
+inline Real contour(const Normal& n, const Vec (&r)[4]) {
+    Real sum{};
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+        const Vec &a = r[i], &b = r[(i + 1) & 3], c = cross(a, b - a);
+        const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);  // an edge without length, or that points at x: c = 0
+        sum -= angle_over_sine(sine, dot(a, b)) * dot(n, c);
+    }
+    return sum * (1 / (2 * pi));
+}
+
+/// A point of a rule over the unit square, and its share.
+struct Node {
+    double u, v, weight;
+};
+
+/// Degree 5 in 7 points [Radon48], and degree 7 in 12 points [Tyler53]: fewer than 3 x 3 and 4 x 4 Gauss points.
+struct SmallRules {
+    Node seven[7], twelve[12];
+    SmallRules() {
+        const auto at = [](double s, double t, double weight) { return Node{0.5 + 0.5 * s, 0.5 + 0.5 * t, weight / 4}; };
+        const double q = std::sqrt(14.0 / 15), r = std::sqrt(0.6), h = std::sqrt(1.0 / 3);
+        seven[0] = at(0, 0, 8.0 / 7), seven[1] = at(0, q, 20.0 / 63), seven[2] = at(0, -q, 20.0 / 63);
+        const double root = 3 * std::sqrt(583.0), axis = std::sqrt(6.0 / 7);
+        const double near = std::sqrt((114 - root) / 287), far = std::sqrt((114 + root) / 287);
+        // Weights of the diagonal points from the moments 1 and s^2.
+        const double axis_weight = 98.0 / 405, rest = 1 - axis_weight;
+        const double moment = (4.0 / 3 - 2 * axis_weight * axis * axis) / 4;
+        const double far_weight = (moment - rest * near * near) / (far * far - near * near);
+        for (int i = 0; i < 4; ++i) {
+            const double s = i & 1 ? 1 : -1, t = i & 2 ? 1 : -1;
+            seven[3 + i] = at(s * r, t * h, 5.0 / 9);
+            twelve[i] = i < 2 ? at(s * axis, 0, axis_weight) : at(0, s * axis, axis_weight);
+            twelve[4 + i] = at(s * near, t * near, rest - far_weight);
+            twelve[8 + i] = at(s * far, t * far, far_weight);
+        }
+    }
+};
+const SmallRules small_rules;
+
+/// The kernel at a rule's points of the bilinear map (1-u)(1-v) r0 + u (1-v) r1 + u v r2 + (1-u) v r3.
+/// `unit` is one over a squared distance to the quad, which keeps products of squares near one.
+template <std::size_t count>
+inline Real cubature(const Normal& n, const Vec (&r)[4], const Real& unit, const Node (&nodes)[count]) {
+    const Vec a = r[1] - r[0], b = r[3] - r[0], c = (r[2] - r[1]) - b;
+    const Vec base = cross(a, b), by_u = cross(a, c), by_v = cross(c, b);
+    // All of a planar quad's area vectors are parallel: each times -r is the plane's height over x times its length.
+    const Real height = -dot(base, r[0]), along_u = -dot(by_u, r[0]), along_v = -dot(by_v, r[0]);
+    const Real n0 = dot(n, r[0]), na = dot(n, a), nb = dot(n, b), nc = dot(n, c);
+    Real sum{}, before_above{}, before_below{};
+    for (std::size_t k = 0; k < count; ++k) {
+        const double u = nodes[k].u, v = nodes[k].v, uv = u * v;
+        const Vec d = r[0] + u * a + v * b + uv * c;
+        const Real near = unit * dot(d, d), below = near * near;
+        const Real above = nodes[k].weight * (height + u * along_u + v * along_v) * (n0 + u * na + v * nb + uv * nc);
+        if (k + 1 == count && count % 2 == 1)
+            sum += above / below;
+        else if (k % 2 == 0)
+            before_above = above, before_below = below;
+        else  // two terms over one denominator: a division costs more than the products it saves
+            sum += (above * before_below + before_above * below) / (below * before_below);
+    }
+    return sum * unit * unit * (1 / pi);
+}
+
+}  // namespace
+
+void QuadBatch::clear() {
+    for (auto& v : corner_) v.clear();
+    for (auto& v : middle_) v.clear();
+    radius_.clear();
+}
+
+void QuadBatch::reserve(std::size_t count) {
+    for (auto& v : corner_) v.reserve(count);
+    for (auto& v : middle_) v.reserve(count);
+    radius_.reserve(count);
+}
+
+void QuadBatch::add(const std::array<Point, 4>& corners) {
+    const Point middle = 0.25 * ((corners[0] + corners[1]) + (corners[2] + corners[3]));
+    double squared_radius = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) corner_[3 * i + axis].push_back(corners[i][axis]);
+        squared_radius = std::max(squared_radius, squared_norm(corners[i] - middle));
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) middle_[axis].push_back(middle[axis]);
+    radius_.push_back(std::sqrt(squared_radius));
+}
+
+void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out) {
+    EXI_CHECK(out.size() == quads.size());
+    const std::size_t count = quads.size();
+    for (std::size_t first = 0; first < count; first += lanes) {
+        // The last group reaches back over quads already done.
+        const std::size_t k = count >= lanes ? std::min(first, count - lanes) : 0;
+        const std::size_t used = std::min(lanes, count);
+        const auto at = [&](const std::vector<double>& v) {
+            if (used == lanes) return load(v.data() + k);
+            Real some = Real{} + v[0];
+            for (std::size_t i = 0; i < used; ++i) some[i] = v[i];
+            return some;
+        };
+        const Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
+        Vec r[4];
+        Real lowest = Real{} + HUGE_VAL, highest = -lowest;
+        for (std::size_t i = 0; i < 4; ++i) {
+            r[i] = Vec{at(quads.corner_[3 * i]), at(quads.corner_[3 * i + 1]), at(quads.corner_[3 * i + 2])} - origin;
+            const Real height = dot(n, r[i]);
+            lowest = min(lowest, height), highest = max(highest, height);
+        }
+        const Vec middle = Vec{at(quads.middle_[0]), at(quads.middle_[1]), at(quads.middle_[2])} - origin;
+        const Real radius = at(quads.radius_), squared = 4 * radius * radius, distance = dot(middle, middle);
+        Real F;
+        if (!any(squared > 3.6e-5 * distance))
+            F = cubature(n, r, 1 / distance, small_rules.seven);
+        else if (!any(squared > 0.0049 * distance))
+            F = cubature(n, r, 1 / distance, small_rules.twelve);
+        else
+            F = contour(n, r);
+        F = highest > 0 ? min(max(F, Real{}), Real{} + 1) : Real{};
+        const Mask cut = (lowest < 0) & (highest > 0);
+        for (std::size_t i = 0; i < used; ++i) out[k + i] = F[i];
+        if (!any(cut)) continue;
+        for (std::size_t i = 0; i < used; ++i) {
+            if (!cut[i]) continue;
+            std::array<Point, 4> corners;
+            for (std::size_t c = 0; c < 4; ++c)
+                for (std::size_t axis = 0; axis < 3; ++axis) corners[c][axis] = quads.corner_[3 * c + axis][k + i];
+            out[k + i] = point_to_polygon(x, n, corners);
+        }
+    }
+}
+
+}  // namespace exitance
