@@ -130,6 +130,25 @@ inline Real cubature(const Normal& n, const Vec (&r)[4], const Real& unit, const
 
 }  // namespace
 
+void EdgeTerms::grow() {
+    const std::size_t size = 2 * count_ + 4 * lanes;
+    squared_sine_.resize(size), cosine_.resize(size), share_.resize(size);
+}
+
+double EdgeTerms::sum() {
+    if (count_ == 0) return 0;
+    while (count_ % lanes != 0) {  // edges that add nothing fill the last group
+        if (count_ == squared_sine_.size()) grow();
+        squared_sine_[count_] = 1, cosine_[count_] = 1, share_[count_++] = 0;
+    }
+    Real total{};
+    for (std::size_t k = 0; k < count_; k += lanes) {
+        const Real sine = max(sqrt(load(&squared_sine_[k])), Real{} + 1e-200);
+        total -= angle_over_sine(sine, load(&cosine_[k])) * load(&share_[k]);
+    }
+    return ((total[0] + total[1]) + (total[2] + total[3])) * (1 / (2 * pi));
+}
+
 void QuadBatch::clear() {
     for (auto& v : corner_) v.clear();
     for (auto& v : middle_) v.clear();

@@ -34,4 +34,26 @@ class QuadBatch {
 /// x  point, metres      n  its unit normal      out  size() entries, in [0, 1]
 void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out);
 
+/// Terms of Lambert's contour sum, gathered from any number of edges of any number of polygons.
+class EdgeTerms {
+  public:
+    void clear() { count_ = 0; }
+    /// Adds the edge from a to b (relative to the point x), times `weight`.
+    void add(const Normal& n, const Vec3& a, const Vec3& b, double weight) {
+        const Vec3 c = cross(a, b - a);
+        if (count_ == squared_sine_.size()) grow();
+        squared_sine_[count_] = dot(c, c);
+        cosine_[count_] = dot(a, b);
+        share_[count_++] = weight * dot(n, c);
+    }
+    /// Sum of weight times the edges' shares of the form factor, -1/(2 pi) angle(a, b) n . (a x b) / |a x b|. The edges
+    /// of the part of a polygon above the horizon, counter-clockwise seen from its front, make point_to_polygon.
+    double sum();
+
+  private:
+    void grow();
+    std::size_t count_ = 0;
+    std::vector<double> squared_sine_, cosine_, share_;
+};
+
 }  // namespace exitance

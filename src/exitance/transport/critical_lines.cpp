@@ -1,0 +1,151 @@
+#include "exitance/transport/critical_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+
+/// Corners seen over edges of another blocker, in front of the source: the gap between the two closes there.
+void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& far,
+                                  const ConvexBlocker& near, std::vector<CriticalLine>& lines) const {
+    for (const Point& w : far.points) {
+        const Vec2 from = frame.flat(w);
+        const double high = frame.height(w);
+        if (high <= nearness_) continue;
+        for (const ConvexBlocker::Edge& e : near.edges) {
+            const Point &a = near.points[e.a], &b = near.points[e.b];
+            const auto faces_w = [&](std::int32_t k) { return near.faces[static_cast<std::size_t>(k)].signed_distance(w) > 0; };
+            if (e.right != ConvexBlocker::no_face && faces_w(e.left) == faces_w(e.right)) continue;
+            const double low_a = std::max(0.0, frame.height(a)), low_b = std::max(0.0, frame.height(b));
+            if (low_a >= high && low_b >= high) continue;
+            const Vec3 plane = cross(a - w, b - w);
+            bool over = false, under = false;
+            for (const Point& s : source) {
+                const double d = dot(plane, s - w);
+                over |= d > 0, under |= d < 0;
+            }
+            if (!over || !under) continue;  // that sight meets no source
+            const Vec2 p = frame.flat(a), q = frame.flat(b);
+            add({p.x * high - from.x * low_a, p.y * high - from.y * low_a, high - low_a},
+                {q.x * high - from.x * low_b, q.y * high - from.y * low_b, high - low_b}, lines);
+        }
+    }
+}
+
+/// Where a face is seen edge-on and its plane cuts the source, the silhouette passes from one edge to another.
+void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& body,
+                                   std::vector<CriticalLine>& lines) const {
+    for (const Plane& face : body.faces) {
+        bool over = false, under = false;
+        for (const Point& s : source) {
+            const double d = face.signed_distance(s);
+            over |= d > nearness_, under |= d < -nearness_;
+        }
+        const double x = dot(face.n, frame.u), y = dot(face.n, frame.v), length = std::hypot(x, y);
+        if (!over || !under || length < 1e-12 || lines.size() >= most_) continue;
+        const CriticalLine line{{x / length, y / length}, -face.signed_distance(frame.origin) / length, -HUGE_VAL, HUGE_VAL};
+        if (crosses_receiver(line)) keep(line, lines);
+    }
+}
+
+bool CriticalLineFinder::crosses_receiver(const CriticalLine& line) const {
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    for (Vec2 p : receiver_) {
+        const double d = line.signed_distance(p);
+        lowest = std::min(lowest, d), highest = std::max(highest, d);
+    }
+    return lowest <= -nearness_ && highest >= nearness_;
+}
+
+/// Keeps the line through two shadows of one edge, if it crosses the receiver where the edge's shadow lies.
+void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<CriticalLine>& lines) const {
+    if (lines.size() >= most_ || (a.weight <= 0 && b.weight <= 0)) return;
+    // The line joins them in homogeneous coordinates, wherever they lie.
+    const double x = a.y * b.weight - a.weight * b.y, y = a.weight * b.x - a.x * b.weight, z = a.x * b.y - a.y * b.x;
+    const double length = std::hypot(x, y);
+    if (!(length > 0)) return;
+    CriticalLine line{{x / length, y / length}, -z / length, 0, 0};
+    if (!crosses_receiver(line)) return;
+    const auto place = [&](const Shadow& s, const Shadow& other) {
+        if (s.weight > 0) return line.along({s.x / s.weight, s.y / s.weight});
+        // Gone to infinity on the way to it from the other: on which side?
+        const double t = other.weight / (other.weight - s.weight);
+        const double dx = other.x + t * (s.x - other.x), dy = other.y + t * (s.y - other.y);
+        return line.along({dx, dy}) > 0 ? HUGE_VAL : -HUGE_VAL;
+    };
+    const double from = place(a, b), to = place(b, a);
+    line.first = std::min(from, to), line.last = std::max(from, to);
+    keep(line, lines);
+}
+
+/// Adds a line unless it misses the receiver or is known already.
+void CriticalLineFinder::keep(CriticalLine line, std::vector<CriticalLine>& lines) const {
+    // Where does it cross the receiver's border?
+    double enters = HUGE_VAL, leaves = -HUGE_VAL;
+    for (std::size_t i = 0; i < receiver_.size(); ++i) {
+        const Vec2 p = receiver_[i], q = receiver_[i + 1 == receiver_.size() ? 0 : i + 1];
+        const double dp = line.signed_distance(p), dq = line.signed_distance(q);
+        if ((dp > 0) == (dq > 0)) continue;
+        const double s = line.along(p + (dp / (dp - dq)) * (q - p));
+        enters = std::min(enters, s), leaves = std::max(leaves, s);
+    }
+    if (line.last <= enters + nearness_ || line.first >= leaves - nearness_) return;
+    for (CriticalLine& known : lines) {
+        const double turn = known.n.x * line.n.y - known.n.y * line.n.x, reach = leaves - enters;
+        if (std::abs(turn) * reach > nearness_) continue;
+        const double side = dot(known.n, line.n) > 0 ? 1 : -1;
+        const Vec2 middle = line.offset * line.n + (0.5 * (enters + leaves)) * Vec2{-line.n.y, line.n.x};
+        if (std::abs(known.signed_distance(middle)) > nearness_) continue;
+        known.first = std::min(known.first, side > 0 ? line.first : -line.last);
+        known.last = std::max(known.last, side > 0 ? line.last : -line.first);
+        return;
+    }
+    lines.push_back(line);
+}
+
+void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> receiver, std::span<const Point> source,
+                              std::span<const ConvexBlocker* const> blockers, double nearness, std::size_t most,
+                              std::vector<CriticalLine>& lines) {
+    receiver_ = receiver, nearness_ = nearness, most_ = most;
+    lines.clear();
+    for (const ConvexBlocker* blocker : blockers) {
+        const std::size_t corners = blocker->points.size(), faces = blocker->faces.size();
+        shadows_.resize(source.size() * corners);
+        in_front_.resize(source.size() * faces);
+        for (std::size_t s = 0; s < source.size(); ++s) {
+            const Vec2 from = frame.flat(source[s]);
+            const double high = frame.height(source[s]);
+            for (std::size_t k = 0; k < faces; ++k)
+                in_front_[s * faces + k] = blocker->faces[k].signed_distance(source[s]) > 0;
+            for (std::size_t c = 0; c < corners; ++c) {
+                const Vec2 p = frame.flat(blocker->points[c]);
+                const double low = std::max(0.0, frame.height(blocker->points[c]));
+                shadows_[s * corners + c] = {p.x * high - from.x * low, p.y * high - from.y * low, high - low};
+            }
+        }
+        outlines_.assign(source.size() * corners, 0);
+        for (std::size_t s = 0; s < source.size(); ++s)
+            for (const ConvexBlocker::Edge& e : blocker->edges) {
+                const bool silhouette = e.right == ConvexBlocker::no_face ||
+                                        in_front_[s * faces + static_cast<std::size_t>(e.left)] !=
+                                            in_front_[s * faces + static_cast<std::size_t>(e.right)];
+                if (!silhouette) continue;
+                outlines_[s * corners + e.a] = outlines_[s * corners + e.b] = 1;
+                add(shadows_[s * corners + e.a], shadows_[s * corners + e.b], lines);
+            }
+        for (std::size_t s = 0; s < source.size(); ++s) {
+            const std::size_t next = s + 1 == source.size() ? 0 : s + 1;
+            // Faces seen alike from both ends of an edge are seen alike from all of it.
+            const bool alike = std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
+            for (std::size_t c = 0; c < corners; ++c)
+                if (!alike || outlines_[s * corners + c])
+                    add(shadows_[s * corners + c], shadows_[next * corners + c], lines);
+        }
+        add_faces(frame, source, *blocker, lines);
+    }
+    for (const ConvexBlocker* far : blockers)
+        for (const ConvexBlocker* near : blockers)
+            if (far != near) add_gaps(frame, source, *far, *near, lines);
+}
+
+}  // namespace exitance

@@ -1,0 +1,243 @@
+#include "exitance/transport/occluded_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/geometry/quadrature.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_lines = 24, most_cells = 96;
+constexpr int deepest = 10;          ///< Halvings of a cell: what is left is 1e-3 of its size.
+constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
+
+double cross_area(std::span<const Vec2> corners) {
+    double twice = 0;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        twice += cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    return 0.5 * twice;
+}
+
+Vec2 middle_of(std::span<const Vec2> corners) {
+    Vec2 sum{};
+    for (Vec2 p : corners) sum = sum + p;
+    return (1.0 / static_cast<double>(corners.size())) * sum;
+}
+
+double diameter(std::span<const Vec2> corners) {
+    double squared = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) squared = std::max(squared, dot(corners[i] - corners[j], corners[i] - corners[j]));
+    return std::sqrt(squared);
+}
+
+}  // namespace
+
+double OccludedExchange::seen_from(Vec2 p, Seen& seen) {
+    ++evaluations;
+    return visible_(frame_.at(p), frame_.n, seen);
+}
+
+/// Parts of a cell on both sides of a line; false when the line misses it, or its events lie beside the cell.
+bool OccludedExchange::cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const {
+    const double near = nearest_line * size_;
+    std::array<double, Cell::most> d;
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    for (std::size_t i = 0; i < cell.count; ++i) {
+        d[i] = line.signed_distance(cell.corner[i]);
+        if (std::abs(d[i]) <= near) d[i] = 0;
+        lowest = std::min(lowest, d[i]), highest = std::max(highest, d[i]);
+    }
+    if (lowest >= 0 || highest <= 0) return false;
+    double enters = HUGE_VAL, leaves = -HUGE_VAL;
+    front.count = back.count = 0;
+    for (std::size_t i = 0; i < cell.count; ++i) {
+        const std::size_t j = i + 1 == cell.count ? 0 : i + 1;
+        if (d[i] >= 0) front.add(cell.corner[i]);
+        if (d[i] <= 0) back.add(cell.corner[i]);
+        Vec2 at = cell.corner[i];
+        if (d[i] * d[j] < 0) {
+            at = at + (d[i] / (d[i] - d[j])) * (cell.corner[j] - at);
+            front.add(at), back.add(at);
+        } else if (d[i] != 0) {
+            continue;
+        }
+        enters = std::min(enters, line.along(at)), leaves = std::max(leaves, line.along(at));
+    }
+    return line.first < leaves - near && line.last > enters + near && front.count >= 3 && back.count >= 3;
+}
+
+/// The receiver, cut along every critical line where its events lie, in triangles and quadrilaterals.
+void OccludedExchange::cut_into_cells() {
+    Cell front, back;
+    for (const CriticalLine& line : lines_) {
+        if (cells_.size() > most_cells) break;
+        next_.clear();
+        for (const Cell& cell : cells_) {
+            if (cut(cell, line, front, back)) {
+                next_.push_back(front);
+                next_.push_back(back);
+            } else {
+                next_.push_back(cell);
+            }
+        }
+        cells_.swap(next_);
+    }
+    next_.clear();
+    for (const Cell& cell : cells_) {
+        std::size_t first = 1;
+        while (cell.count - first >= 2) {  // a fan of quadrilaterals, at last perhaps a triangle
+            Cell part;
+            const std::size_t take = std::min<std::size_t>(3, cell.count - first);
+            part.add(cell.corner[0]);
+            for (std::size_t i = 0; i < take; ++i) part.add(cell.corner[first + i]);
+            first += take - 1;
+            next_.push_back(part);
+        }
+    }
+    cells_.swap(next_);
+}
+
+void OccludedExchange::measure(Cell& cell) {
+    cell.area = std::max(0.0, cross_area(cell.corners()));
+    cell.at_middle = seen_from(middle_of(cell.corners()), cell.seen);
+}
+
+/// Gauss points of a triangle or quadrilateral: n x n on the square, on triangles those of degree 2n - 1.
+template <class Value>
+double OccludedExchange::apply(const Cell& cell, int points, const Value& value) {
+    const Vec2 o = cell.corner[0], a = cell.corner[1] - o;
+    double sum = 0;
+    if (cell.count == 3) {
+        const Vec2 b = cell.corner[2] - o;
+        const double area = std::abs(cross(a, b)) / 2;
+        for (const PlanarNode& k : triangle_rule(points == 2 ? 2 : 2 * points - 1))
+            sum += area * k.weight * value(o + k.at.x * a + k.at.y * b);
+        return sum;
+    }
+    const Vec2 b = cell.corner[3] - o, c = cell.corner[2] - cell.corner[1] - b;
+    for (const PlanarNode& k : square_rule(points)) {
+        const double u = k.at.x, v = k.at.y, area = cross(a + v * c, b + u * c);
+        sum += k.weight * area * value(o + u * a + v * b + (u * v) * c);
+    }
+    return sum;
+}
+
+double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int depth, bool smooth) {
+    // Across the longest edge, and for a quadrilateral across the edge opposite to it.
+    std::size_t longest = 0;
+    double most = 0;
+    for (std::size_t i = 0; i < cell.count; ++i) {
+        const Vec2 e = cell.corner[(i + 1) % cell.count] - cell.corner[i];
+        if (dot(e, e) > most) most = dot(e, e), longest = i;
+    }
+    const auto at = [&](std::size_t i) { return cell.corner[(longest + i) % cell.count]; };
+    const Vec2 p = 0.5 * (at(0) + at(1));
+    Cell one, two;
+    if (cell.count == 3) {
+        one.add(p), one.add(at(1)), one.add(at(2));
+        two.add(p), two.add(at(2)), two.add(at(0));
+    } else {
+        const Vec2 q = 0.5 * (at(2) + at(3));
+        one.add(p), one.add(at(1)), one.add(at(2)), one.add(q);
+        two.add(p), two.add(q), two.add(at(3)), two.add(at(0));
+    }
+    if (smooth) return integrate_smooth(one, 0.5 * allowed, depth + 1) + integrate_smooth(two, 0.5 * allowed, depth + 1);
+    return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
+}
+
+/// A cell that sees all of the source: as many Gauss points as its distance asks for. An integrand that is analytic
+/// but for a place at a distance of g cell sizes leaves an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
+double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int depth) {
+    Box box;
+    for (Vec2 p : cell.corners()) box.add(frame_.at(p));
+    const Vec3 apart = max(max(source_box_.lo - box.hi, box.lo - source_box_.hi), Vec3{});
+    const double g = norm(apart) / diameter(cell.corners()), rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
+    const auto value = [&](Vec2 p) { return visible_.unoccluded(frame_.at(p), frame_.n); };
+    const double whole = std::abs(cross_area(cell.corners())) * value(middle_of(cell.corners()));
+    const double wanted = std::max(allowed, 1e-16 * whole);
+    const double digits = whole > wanted ? std::log(whole / wanted) : 0;
+    const int points = std::max(1, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
+    if (points > 8 && depth < deepest) return integrate_halves(cell, allowed, depth, true);
+    return apply(cell, std::min(points, 8), value);
+}
+
+/// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; of
+/// the better one it is taken to be a tenth. Two points a side need a second witness, as bends of opposite sign cancel
+/// in their difference from the middle: exp(a s) on [-1, 1] errs by a^4 / 270 and varies by a / sqrt 3 at the points.
+double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
+    std::size_t dark = 0, count = 0;
+    double lowest = HUGE_VAL, highest = 0;
+    const auto value = [&](Vec2 p) {
+        Seen seen;
+        const double f = seen_from(p, seen);
+        ++count, dark += seen <= Seen::nothing_past_several;
+        lowest = std::min(lowest, f), highest = std::max(highest, f);
+        return f;
+    };
+    const bool fine = relative_ < 1e-5;
+    double before = apply(cell, fine ? 3 : 2, value);
+    if (!fine && depth == 0 && dark == 0) {
+        const double middle = std::max(cell.at_middle, 1e-300);
+        const double varies = 3 * std::pow(std::max(highest / middle - 1, 1 - lowest / middle), 2);
+        if (0.1 * std::abs(before - cell.area * middle) + before * varies * varies / 270 <= allowed) return before;
+    }
+    for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
+        const double sum = apply(cell, points, value);
+        if (dark == count) return 0;
+        if (0.1 * std::abs(sum - before) <= allowed) return sum;
+        before = sum;
+        if (!fine) break;
+    }
+    if (depth >= deepest + (fine ? 8 : 0)) return before;
+    return integrate_halves(cell, allowed, depth, false);
+}
+
+double OccludedExchange::operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded) {
+    unoccluded = false;
+    pair_ = pair;
+    relative_ = demand.relative;
+    visible_.set(pair.source, pair.blockers);
+    if (visible_.is_hidden_from(pair.receiver)) return 0;
+
+    frame_ = PlaneFrame(pair.receiver[0], pair.receiver_plane.n);
+    source_box_ = {};
+    for (const Point& p : pair.source) source_box_.add(p);
+    cells_.resize(1);
+    cells_[0].count = 0;
+    for (const Point& p : pair.receiver) cells_[0].add(frame_.flat(p));
+    size_ = diameter(cells_[0].corners());
+    const Cell whole = cells_[0];
+    finder_.find(frame_, whole.corners(), pair.source, pair.blockers, nearest_line * size_, most_lines, lines_);
+    cut_into_cells();
+
+    bool all = true;
+    double estimate = 0;
+    for (Cell& cell : cells_) {
+        measure(cell);
+        all &= cell.seen == Seen::all;
+        estimate += cell.area * cell.at_middle;
+    }
+    if (all && lines_.size() < most_lines) return unoccluded = true, 0;
+
+    const double allowed = std::max(demand.relative * estimate, demand.absolute);
+    // No part of the source looks larger than all of it; twice that from the middle bounds it over most receivers.
+    const double brightest = 2 * visible_.unoccluded(frame_.at(middle_of(whole.corners())), frame_.n);
+    const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
+    double total = 0;
+    for (const Cell& cell : cells_) {
+        const double value = cell.area * cell.at_middle;
+        if (cell.seen == Seen::nothing && lines_.size() < most_lines)
+            continue;
+        else if (cell.seen == Seen::all && lines_.size() < most_lines)
+            total += integrate_smooth(cell, 0.3 * share, 0);
+        else if (cell.area * brightest < 0.3 * share)
+            total += value;
+        else
+            total += integrate(cell, share, 0);
+    }
+    return total;
+}
+
+}  // namespace exitance

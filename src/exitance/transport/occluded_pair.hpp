@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "exitance/transport/critical_lines.hpp"
+#include "exitance/transport/visible_source.hpp"
+
+namespace exitance {
+
+/// Two convex polygons and what may stand between them.
+struct OccludedPair {
+    std::span<const Point> receiver, source;  ///< Each wholly in front of the other's plane, 3 to 12 corners, metres.
+    Plane receiver_plane, source_plane;
+    std::span<const ConvexBlocker* const> blockers;
+};
+
+/// What the quadrature of a partly hidden pair is to reach.
+struct Demand {
+    double relative = 1e-4;  ///< Error over the pair's exchange area.
+    double absolute = 0;     ///< m^2: an error that never matters.
+};
+
+/// Integrates the exact visible part of a source over a receiver. The receiver is cut along the lines where the visible
+/// part changes its corners; within the cells the integrand is smooth and Gauss rules converge fast. Cells whose
+/// embedded rules disagree are halved. One object serves one thread and many pairs.
+class OccludedExchange {
+  public:
+    /// A_i F_ij, m^2. `unoccluded` tells that nothing stands between after all; the value is then left to others.
+    double operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded);
+
+    std::size_t evaluations = 0;  ///< Exact visible parts so far.
+
+  private:
+    struct Cell {
+        static constexpr std::size_t most = 16;
+        std::size_t count = 0;
+        std::array<Vec2, most> corner;
+        Seen seen = Seen::part;
+        double area = 0, at_middle = 0;
+
+        void add(Vec2 p) {
+            if (count < most) corner[count++] = p;
+        }
+        std::span<const Vec2> corners() const { return std::span(corner).first(count); }
+    };
+
+    void cut_into_cells();
+    bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
+    void measure(Cell& cell);
+    double integrate(const Cell& cell, double allowed, int depth);
+    double integrate_smooth(const Cell& cell, double allowed, int depth);
+    double integrate_halves(const Cell& cell, double allowed, int depth, bool smooth);
+    template <class Value>
+    double apply(const Cell& cell, int points, const Value& value);
+    double seen_from(Vec2 p, Seen& seen);
+
+    OccludedPair pair_;
+    PlaneFrame frame_{{}, {0, 0, 1}};
+    VisibleSource visible_;
+    CriticalLineFinder finder_;
+    std::vector<CriticalLine> lines_;
+    std::vector<Cell> cells_, next_;
+    Box source_box_;
+    double size_ = 0;
+    double relative_ = 0;
+};
+
+}  // namespace exitance

@@ -1,0 +1,164 @@
+#include "exitance/transport/visible_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as none: scenes are full of aligned edges.
+
+}  // namespace
+
+void VisibleSource::set(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers) {
+    source_ = source, blockers_ = blockers;
+    if (pool_.empty()) pool_.resize(256);
+}
+
+/// Adds the planes through x and the silhouette of a blocker, normals pointing into its pyramid. False when x sees it
+/// edge-on; `inside` when x lies within a body.
+bool VisibleSource::add_pyramid(const ConvexBlocker& blocker, const Point& x, bool& inside) {
+    const std::size_t count = blocker.faces.size();
+    in_front_.resize(count + 1);
+    bool any = false;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double d = blocker.faces[k].signed_distance(x);
+        in_front_[k] = d > 0;
+        any |= d > 0;
+    }
+    inside = blocker.is_solid() && !any;
+    if (inside) return true;
+    const auto first = static_cast<std::uint32_t>(planes_.size());
+    for (const ConvexBlocker::Edge& e : blocker.edges) {
+        const bool left = in_front_[static_cast<std::size_t>(e.left)];
+        if (e.right != ConvexBlocker::no_face && left == static_cast<bool>(in_front_[static_cast<std::size_t>(e.right)])) continue;
+        const Vec3 a = blocker.points[e.a] - x, b = blocker.points[e.b] - x;
+        // A face seen from its front runs counter-clockwise: b x a points inwards.
+        planes_.push_back(left ? cross(b, a) : cross(a, b));
+    }
+    const auto last = static_cast<std::uint32_t>(planes_.size());
+    pyramids_.push_back({first, last});
+    return last - first >= 3;
+}
+
+void VisibleSource::add_edges(const Polygon& polygon, double weight) {
+    for (std::size_t i = 0; i < polygon.count; ++i)
+        terms_.add(n_, polygon.at(i), polygon.at(i + 1 == polygon.count ? 0 : i + 1), weight);
+}
+
+/// The part of a convex polygon with sign * height >= 0. Both parts meet in the same points.
+void VisibleSource::cut(const Polygon& polygon, const double* heights, double sign, Polygon& out) {
+    out.count = 0;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const std::size_t j = i + 1 == polygon.count ? 0 : i + 1;
+        const double a = heights[i], b = heights[j];
+        if (sign * a >= 0) out.add(polygon.at(i));
+        if ((a > 0 && b < 0) || (a < 0 && b > 0)) {
+            const Vec3 p = polygon.at(i), q = polygon.at(j);
+            out.add(a < b ? p + (a / (a - b)) * (q - p) : q + (b / (b - a)) * (p - q));
+        }
+    }
+}
+
+/// Adds the edges of what the pyramids from `next` on leave of a fragment.
+void VisibleSource::subtract(const Polygon& fragment, std::size_t next, bool is_whole) {
+    const std::size_t mark = pool_used_;
+    for (; next < pyramids_.size(); ++next) {
+        if (pool_used_ + 2 * Polygon::most > pool_.size()) pool_.resize(2 * pool_.size());
+        std::size_t rest = pool_used_++;  // index, as the pool may grow; offcuts follow
+        pool_[rest] = fragment;
+        const std::size_t first_offcut = pool_used_ + 1;
+        std::size_t spare = pool_used_++, offcuts = 0;
+        bool hidden = true;
+        for (std::uint32_t k = pyramids_[next].first; hidden && k < pyramids_[next].last; ++k) {
+            const Polygon& polygon = pool_[rest];
+            double heights[Polygon::most];
+            bool any_in = false, any_out = false;
+            const double none = on_plane * size_ * (std::abs(planes_[k].x) + std::abs(planes_[k].y) + std::abs(planes_[k].z));
+            for (std::size_t i = 0; i < polygon.count; ++i) {
+                double h = dot(planes_[k], polygon.at(i));
+                if (std::abs(h) <= none) h = 0;
+                heights[i] = h;
+                any_in |= h > 0, any_out |= h < 0;
+            }
+            if (!any_in) hidden = false;  // it lies beside this pyramid
+            if (!any_in || !any_out) continue;
+            cut(polygon, heights, -1, pool_[first_offcut + offcuts]);
+            ++offcuts, ++pool_used_;
+            cut(polygon, heights, 1, pool_[spare]);
+            std::swap(rest, spare);
+        }
+        if (!hidden) {
+            pool_used_ = mark;
+            continue;
+        }
+        anything_hidden_ = true;
+        hidden_by_one_ |= offcuts == 0 && is_whole;
+        if (offcuts > 0 && next + 1 == pyramids_.size()) {  // nothing more is cut: the hidden part may count negative
+            anything_lit_ = true;
+            add_edges(fragment, 1);
+            add_edges(pool_[rest], -1);
+        } else {
+            for (std::size_t i = 0; i < offcuts; ++i) {
+                const Polygon piece = pool_[first_offcut + i];
+                subtract(piece, next + 1, false);
+            }
+        }
+        pool_used_ = mark;
+        return;
+    }
+    anything_lit_ = true;
+    add_edges(fragment, 1);
+}
+
+double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
+    planes_.clear();
+    pyramids_.clear();
+    terms_.clear();
+    n_ = n;
+    anything_lit_ = anything_hidden_ = hidden_by_one_ = false;
+    pool_used_ = 0;
+    Polygon whole;
+    whole.count = 0;
+    size_ = 0;
+    for (const Point& p : source_) {
+        whole.add(p - x);
+        const Vec3 r = whole.at(whole.count - 1);
+        size_ = std::max(size_, std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
+    }
+    for (const ConvexBlocker* blocker : blockers_) {
+        bool inside = false;
+        if (!add_pyramid(*blocker, x, inside)) pyramids_.pop_back();
+        if (inside) return seen = Seen::nothing, 0;
+    }
+    subtract(whole, 0, true);
+    seen = !anything_lit_ ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several) : anything_hidden_ ? Seen::part : Seen::all;
+    return anything_lit_ ? std::max(0.0, terms_.sum()) : 0;
+}
+
+double VisibleSource::unoccluded(const Point& x, const Normal& n) {
+    terms_.clear();
+    for (std::size_t i = 0; i < source_.size(); ++i)
+        terms_.add(n, source_[i] - x, source_[i + 1 == source_.size() ? 0 : i + 1] - x, 1);
+    return std::max(0.0, terms_.sum());
+}
+
+bool VisibleSource::is_hidden_from(std::span<const Point> receiver) {
+    for (const ConvexBlocker* blocker : blockers_) {
+        bool hides = true;
+        for (const Point& x : receiver) {
+            planes_.clear();
+            pyramids_.clear();
+            bool inside = false;
+            if (!add_pyramid(*blocker, x, inside) || inside) hides = false;
+            for (std::size_t k = 0; hides && k < planes_.size(); ++k)
+                for (const Point& y : source_)
+                    if (dot(planes_[k], y - x) < 0) hides = false;
+            if (!hides) break;
+        }
+        if (hides) return true;
+    }
+    return false;
+}
+
+}  // namespace exitance
