@@ -147,13 +147,19 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
     return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
 }
 
-/// A cell that sees all of the source: as many Gauss points as its distance asks for. An integrand that is analytic
-/// but for a place at a distance of g cell sizes leaves an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
-double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int depth) {
+/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points a
+/// side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
+double OccludedExchange::convergence(const Cell& cell) const {
     Box box;
     for (Vec2 p : cell.corners()) box.add(frame_.at(p));
     const Vec3 apart = max(max(source_box_.lo - box.hi, box.lo - source_box_.hi), Vec3{});
-    const double g = norm(apart) / diameter(cell.corners()), rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
+    const double g = norm(apart) / diameter(cell.corners());
+    return 1 + 2 * g + 2 * std::sqrt(g + g * g);
+}
+
+/// A cell that sees all of the source: as many Gauss points as its distance asks for.
+double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int depth) {
+    const double rho = convergence(cell);
     const auto value = [&](Vec2 p) { return visible_.unoccluded(frame_.at(p), frame_.n); };
     const double whole = std::abs(cross_area(cell.corners())) * value(middle_of(cell.corners()));
     const double wanted = std::max(allowed, 1e-16 * whole);
@@ -164,7 +170,7 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int 
 }
 
 /// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; of
-/// the better one it is taken to be a tenth. Two points a side need a second witness, as bends of opposite sign cancel
+/// the better one it is taken to be a tenth, but no less than the source's distance lets expect. Two points a side need a second witness, as bends of opposite sign cancel
 /// in their difference from the middle: exp(a s) on [-1, 1] errs by a^4 / 270 and varies by a / sqrt 3 at the points.
 double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
     std::size_t dark = 0, count = 0;
@@ -177,16 +183,17 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
         return f;
     };
     const bool fine = relative_ < 1e-5;
+    const double rho = convergence(cell), unlikely = 10 * std::pow(rho, -4);
     double before = apply(cell, fine ? 3 : 2, value);
     if (!fine && depth == 0 && dark == 0) {
         const double middle = std::max(cell.at_middle, 1e-300);
         const double varies = 3 * std::pow(std::max(highest / middle - 1, 1 - lowest / middle), 2);
-        if (0.1 * std::abs(before - cell.area * middle) + before * varies * varies / 270 <= allowed) return before;
+        if (0.1 * std::abs(before - cell.area * middle) + before * (varies * varies / 270 + unlikely) <= allowed) return before;
     }
     for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
         const double sum = apply(cell, points, value);
         if (dark == count) return 0;
-        if (0.1 * std::abs(sum - before) <= allowed) return sum;
+        if (0.1 * std::abs(sum - before) + sum * unlikely * std::pow(rho, 4 - 2 * points) <= allowed) return sum;
         before = sum;
         if (!fine) break;
     }

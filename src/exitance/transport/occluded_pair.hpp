@@ -49,6 +49,7 @@ class OccludedExchange {
     void cut_into_cells();
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
     void measure(Cell& cell);
+    double convergence(const Cell& cell) const;
     double integrate(const Cell& cell, double allowed, int depth);
     double integrate_smooth(const Cell& cell, double allowed, int depth);
     double integrate_halves(const Cell& cell, double allowed, int depth, bool smooth);
