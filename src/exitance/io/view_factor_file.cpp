@@ -1,10 +1,8 @@
 #include "exitance/io/view_factor_file.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
+
+#include "exitance/io/atomic_file.hpp"
 
 namespace exitance {
 namespace {
@@ -14,25 +12,6 @@ void append(std::string& text, const char* format, Values... values) {
     char buffer[64];
     const int length = std::snprintf(buffer, sizeof buffer, format, values...);
     text.append(buffer, static_cast<std::size_t>(length));
-}
-
-Error cannot_write(const std::string& path) {
-    return {ErrorCode::cannot_write, "cannot write " + path + ": " + std::strerror(errno), path,
-            "check that its folder exists and has room"};
-}
-
-/// Written beside the target, flushed to the disk and renamed, so that no reader ever sees half of it.
-Result<void> write_whole(const std::string& path, const std::string& content) {
-    const std::string beside = path + ".part";
-    std::FILE* file = std::fopen(beside.c_str(), "wb");
-    if (!file) return cannot_write(path);
-    const bool written = std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
-                         std::fflush(file) == 0 && fsync(fileno(file)) == 0;
-    const bool closed = std::fclose(file) == 0;
-    if (written && closed && std::rename(beside.c_str(), path.c_str()) == 0) return {};
-    const Error error = cannot_write(path);
-    std::remove(beside.c_str());
-    return error;
 }
 
 bool ends_with_vf(const std::string& path) {
@@ -77,7 +56,7 @@ std::string view_factors_vf(const ViewFactors& table) {
 }
 
 Result<void> write_view_factors(const std::string& path, const ViewFactors& table) {
-    return write_whole(path, ends_with_vf(path) ? view_factors_vf(table) : view_factors_csv(table));
+    return write_file(path, ends_with_vf(path) ? view_factors_vf(table) : view_factors_csv(table));
 }
 
 }  // namespace exitance
