@@ -90,13 +90,11 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
 
 void ElementTree::add(RegionId region, ElementId parent, const Patch& shape, double area) {
     patch_.add(shape);
-    children_.add({});
+    nodes_.add({.children = {}, .shape = shape.shape});
     parent_.add(parent);
     region_.add(region);
     area_.add(area);
-    way_.add(Cut::none);
-    ratio_.add(0.5);
-    extra_.add({});
+    cell_.add(none);
 }
 
 ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
@@ -109,9 +107,10 @@ ElementId ElementTree::split(ElementId leaf, Cut way, double ratio) {
     EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && way != Cut::none && way != Cut::line);
     const std::size_t first = patch_.size();
     for (const Patch& piece : cut(patch_[leaf], way, ratio)) add(RegionId(region_[leaf]), leaf, piece, piece.area());
-    children_[leaf] = {first, patch_.size()};
-    way_[leaf] = patch_[leaf].is_triangle() ? Cut::both : way;
-    ratio_[leaf] = ratio;
+    Node& node = nodes_[leaf];
+    node.children = {first, patch_.size()};
+    node.way = patch_[leaf].is_triangle() ? Cut::both : way;
+    node.ratio = ratio;
     return ElementId(first);
 }
 
@@ -124,7 +123,9 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
         if (polygon.size() < 3 || std::abs(polygon_area(polygon)) < least * whole_area) return ElementId();
     const std::size_t first = patch_.size();
     const Patch parent = patch_[leaf];
-    for (std::vector<Vec2> polygon : side) {
+    LineCut record{line, {}, {}};
+    for (std::size_t i = 0; i < 2; ++i) {
+        std::vector<Vec2> polygon = side[i];
         Vec2 lo = polygon[0], hi = polygon[0];
         for (const Vec2 p : polygon) {
             lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
@@ -134,18 +135,21 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
                           Patch::Shape::parallelogram};
         for (Vec2& p : polygon) p = {(p.x - lo.x) / (hi.x - lo.x), (p.y - lo.y) / (hi.y - lo.y)};
         add(RegionId(region_[leaf]), leaf, frame, frame.area() * std::abs(polygon_area(polygon)));
-        extra_[ElementId(patch_.size() - 1)].cell = static_cast<std::uint32_t>(cells_.size());
+        record.origin[i] = lo;
+        record.size[i] = hi - lo;
+        cell_[ElementId(patch_.size() - 1)] = static_cast<std::uint32_t>(cells_.size());
         cells_.push_back(std::move(polygon));
     }
-    children_[leaf] = {first, patch_.size()};
-    way_[leaf] = Cut::line;
-    extra_[leaf].line = static_cast<std::uint32_t>(lines_.size());
-    lines_.push_back(line);
+    Node& node = nodes_[leaf];
+    node.children = {first, patch_.size()};
+    node.way = Cut::line;
+    node.line = static_cast<std::uint32_t>(cuts_.size());
+    cuts_.push_back(record);
     return ElementId(first);
 }
 
 std::vector<Vec2> ElementTree::domain(ElementId e) const {
-    if (is_cell(e)) return cells_[extra_[e].cell];
+    if (is_cell(e)) return cells_[cell_[e]];
     std::vector<Vec2> out;
     for (int i = 0; i < patch_[e].corner_count(); ++i) out.push_back(patch_[e].corner_uv(i));
     return out;
@@ -159,7 +163,7 @@ std::vector<Point> ElementTree::outline(ElementId e) const {
 
 Vec2 ElementTree::centre(ElementId e) const {
     if (!is_cell(e)) return patch_[e].is_triangle() ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0.5, 0.5};
-    const std::vector<Vec2>& p = cells_[extra_[e].cell];
+    const std::vector<Vec2>& p = cells_[cell_[e]];
     Vec2 moment;
     for (std::size_t i = 2; i < p.size(); ++i)
         moment = moment + (cross(p[i - 1] - p[0], p[i] - p[0]) / 6) * ((p[i - 1] - p[0]) + (p[i] - p[0]));
@@ -169,7 +173,7 @@ Vec2 ElementTree::centre(ElementId e) const {
 Vec2 ElementTree::uniform(ElementId e, double s, double t) const {
     if (!is_cell(e)) return uniform_in_shape(patch_[e].shape, s, t);
     // A triangle of the fan around the first corner, chosen by its area with the first number, which is then stretched.
-    const std::vector<Vec2>& p = cells_[extra_[e].cell];
+    const std::vector<Vec2>& p = cells_[cell_[e]];
     double rest = s * polygon_area(p);
     for (std::size_t i = 2;; ++i) {
         const double area = 0.5 * cross(p[i - 1] - p[0], p[i] - p[0]);
@@ -190,25 +194,26 @@ std::vector<ElementId> ElementTree::leaves() const {
 }
 
 ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
-    const Patch::Shape shape = patch_[e].shape;
-    uv = into_shape(uv, shape);
-    while (!is_leaf(e)) {
-        if (way_[e] == Cut::line) {
-            const ElementId child = children_[e][line(e).distance(uv) <= 0 ? 0 : 1];
-            uv = patch_[child].coordinates(patch_[e].at(uv));
-            e = child;
-            continue;
+    uv = into_shape(uv, patch_[e].shape);
+    for (const Node* node = &nodes_[e]; !node->children.empty(); node = &nodes_[e]) {
+        if (node->way == Cut::line) {
+            const LineCut& cut = cuts_[node->line];
+            const std::size_t side = cut.line.distance(uv) <= 0 ? 0 : 1;
+            const Vec2 from = uv - cut.origin[side];
+            uv = {from.x / cut.size[side].x, from.y / cut.size[side].y};
+            e = node->children[side];
+        } else {
+            const auto [child, inside] = descend(uv, node->shape, node->way, node->ratio);
+            uv = inside;
+            e = node->children[child];
         }
-        const auto [child, inside] = descend(uv, shape, way_[e], ratio_[e]);
-        e = children_[e][child];
-        uv = inside;
     }
-    return {e, into_shape(uv, patch_[e].shape)};
+    return {e, into_shape(uv, nodes_[e].shape)};
 }
 
 std::size_t ElementTree::memory_bytes() const {
-    return patch_.size() * (sizeof(Patch) + sizeof(IdRange<ElementId>) + 2 * sizeof(ElementId) + 2 * sizeof(double) + sizeof(Cut) + sizeof(Extra)) +
-           cells_.size() * 8 * sizeof(Vec2);
+    return patch_.size() * (sizeof(Patch) + sizeof(Node) + 3 * sizeof(ElementId) + sizeof(double)) +
+           cuts_.size() * sizeof(LineCut) + cells_.size() * (sizeof(std::vector<Vec2>) + 5 * sizeof(Vec2));
 }
 
 }  // namespace exitance

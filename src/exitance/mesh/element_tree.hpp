@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -76,16 +77,16 @@ class ElementTree {
     std::size_t size() const { return patch_.size(); }
     IdRange<ElementId> ids() const { return patch_.ids(); }  ///< Parents before children.
     const std::vector<ElementId>& roots() const { return roots_; }
-    IdRange<ElementId> children(ElementId e) const { return children_[e]; }  ///< Empty for a leaf.
-    bool is_leaf(ElementId e) const { return children_[e].empty(); }
-    Cut way(ElementId e) const { return way_[e]; }       ///< How an element was cut; none for a leaf.
-    double ratio(ElementId e) const { return ratio_[e]; }  ///< Where; meaningful for cuts across one direction.
+    IdRange<ElementId> children(ElementId e) const { return nodes_[e].children; }  ///< Empty for a leaf.
+    bool is_leaf(ElementId e) const { return nodes_[e].children.empty(); }
+    Cut way(ElementId e) const { return nodes_[e].way; }       ///< How an element was cut; none for a leaf.
+    double ratio(ElementId e) const { return nodes_[e].ratio; }  ///< Where; meaningful for cuts across one direction.
     ElementId parent(ElementId e) const { return parent_[e]; }  ///< None for a root.
     RegionId region(ElementId e) const { return region_[e]; }
     const Patch& patch(ElementId e) const { return patch_[e]; }
     double area(ElementId e) const { return area_[e]; }  ///< Of its domain, m^2.
-    const CutLine& line(ElementId e) const { return lines_[extra_[e].line]; }  ///< Of an element cut along a line.
-    bool is_cell(ElementId e) const { return extra_[e].cell != none; }         ///< Is its domain less than its patch?
+    const CutLine& line(ElementId e) const { return cuts_[nodes_[e].line].line; }  ///< Of an element cut along a line.
+    bool is_cell(ElementId e) const { return cell_[e] != none; }                ///< Is its domain less than its patch?
     /// What the element covers, as a convex polygon in its own coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
     /// The same in space, metres.
@@ -108,21 +109,28 @@ class ElementTree {
 
   private:
     static constexpr std::uint32_t none = 0xffffffffu;
-    /// What few elements have: where their cut line and their domain stand.
-    struct Extra {
-        std::uint32_t line = none, cell = none;
+    /// What finding a leaf reads of an element, side by side.
+    struct Node {
+        IdRange<ElementId> children;
+        double ratio = 0.5;
+        std::uint32_t line = none;  ///< Of an element cut along a line: where that stands in `cuts_`.
+        Cut way = Cut::none;
+        Patch::Shape shape = Patch::Shape::parallelogram;
+    };
+    /// A cut along a line, and the frames of the two cells in the coordinates of the element that was cut.
+    struct LineCut {
+        CutLine line;
+        std::array<Vec2, 2> origin, size;
     };
     void add(RegionId region, ElementId parent, const Patch& shape, double area);
 
     Field<ElementId, Patch> patch_;
-    Field<ElementId, IdRange<ElementId>> children_;
+    Field<ElementId, Node> nodes_;
     Field<ElementId, ElementId> parent_;
     Field<ElementId, RegionId> region_;
     Field<ElementId, double> area_;
-    Field<ElementId, Cut> way_;
-    Field<ElementId, double> ratio_;
-    Field<ElementId, Extra> extra_;
-    std::vector<CutLine> lines_;
+    Field<ElementId, std::uint32_t> cell_;  ///< Of a cell: where its domain stands in `cells_`.
+    std::vector<LineCut> cuts_;
     std::vector<std::vector<Vec2>> cells_;
     std::vector<ElementId> roots_;
 };

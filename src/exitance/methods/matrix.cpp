@@ -34,6 +34,7 @@ GlobalLight solve_matrix(const MethodInput& input) {
     const auto& [stage, options, knobs, direct, progress, stop] = input;
     GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};
     light.direct = leaf_means(direct, light.numbering);
+    light.on_projection = true;
 
     progress.phase("link");
     if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {

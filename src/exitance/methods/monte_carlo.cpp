@@ -127,7 +127,8 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
             standard_error[i][b] = std::sqrt(std::max(0.0, square[i][b] - indirect[i][b] * indirect[i][b]) / (runs - 1));
     }
     return {.tree = std::move(tree), .numbering = std::move(numbering), .direct = std::move(direct),
-            .indirect = std::move(indirect), .reflected = std::move(reflected), .standard_error = std::move(standard_error),
+            .indirect = std::move(indirect), .reflected = std::move(reflected),
+            .on_projection = true, .standard_error = std::move(standard_error),
             .report = {.iterations = sweeps, .residual = left_over, .converged = left_over <= knobs.residual},
             .rays = shooter.rays_shot};
 }

@@ -9,7 +9,9 @@ GlobalLight solve_progressive(const MethodInput& input) {
     ShootingSetup setup(input, input.direct);
     input.progress.phase("shoot");
     const SolveReport report = setup.run();
-    return setup.finish(report);
+    GlobalLight light = setup.finish(report);
+    light.on_projection = true;
+    return light;
 }
 
 }  // namespace exitance

@@ -39,6 +39,22 @@ ElementFunction constant_on_leaves(const GlobalLight& light) {
     return out;
 }
 
+/// What rays read in the local pass: on every leaf the direct light that was projected there, and the indirect light that
+/// the method found, times the reflectance.
+ElementFunction reflected_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light) {
+    ElementFunction out;
+    out.tree = light.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const Spectrum& rho = scene.material(out.tree.region(e)).reflectance;
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            out.add_value(rho * ((light.on_projection ? direct.corners[e][corner] : light.direct[i]) + light.indirect[i]));
+    }
+    return out;
+}
+
 class Solver {
   public:
     Solver(const Scene& scene, const SolveOptions& options, Progress& progress, const StopRequest& stop)
@@ -94,11 +110,11 @@ class Solver {
         light_ = find_method(options_.method).solve({stage_, options_, knobs, direct_, progress_, stop_});
         statistics().seconds["solve"] += watch.restart();
 
-        const ElementLocator locator(light_.tree, stage_.scene.regions().size());
         const ElementLocator direct_locator(direct_.tree, stage_.scene.regions().size());
+        const ElementFunction source = reflected_light(stage_.scene, direct_, light_);
+        const ElementLocator locator(source.tree, stage_.scene.regions().size());
         const RadiosityAt reflected = [&](RegionId region, const Point& y) {
-            const Spectrum& late = light_.indirect[light_.numbering.number[locator.find(region, y).element]];
-            return stage_.scene.material(region).reflectance * (direct_.at(direct_locator.find(region, y)) + late);
+            return source.at(locator.find(region, y));
         };
         LocalPassReport gathered;
         solution_.direct_in_elements = light_.holds_direct;

@@ -15,6 +15,8 @@ struct GlobalLight {
     std::vector<Spectrum> direct = {}, indirect = {};
     /// By leaf number, W/m^2: b = rho (E_dir + E_ind), reflected radiosity.
     std::vector<Spectrum> reflected = {};
+    /// Is `tree` the mesh of the direct projection, leaf for leaf?
+    bool on_projection = false;
     /// Of `indirect`, W/m^2, where the method is a random one; empty otherwise.
     std::vector<Spectrum> standard_error = {};
 
