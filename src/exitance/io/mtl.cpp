@@ -77,12 +77,13 @@ void MtlReader::end_material() {
     const auto same = [&](const Material& m) { return m.name == material_.name; };
     if (std::any_of(materials_.begin(), materials_.end(), same)) {
         find(Finding::Kind::warning, line_,
-             fmt::format("material '{}' is there already: the first one holds", material_.name),
+             fmt::format("material '{}' is there already: the first one holds", shown(material_.name)),
              "give it another name");
         return;
     }
     if (!has_reflectance_)
-        find(Finding::Kind::warning, line_, fmt::format("material '{}' has no Kd: it reflects nothing", material_.name),
+        find(Finding::Kind::warning, line_,
+             fmt::format("material '{}' has no Kd: it reflects nothing", shown(material_.name)),
              "add a line 'Kd r g b'");
     materials_.push_back(std::move(material_));
 }
@@ -93,22 +94,23 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
     const bool reflectance = key == "Kd";
     has_reflectance_ = has_reflectance_ || reflectance;
     if (lines_.rest().starts_with("spectral") || lines_.rest().starts_with("xyz"))
-        return error(fmt::format("'{} {}' of material '{}' is not supported", key, lines_.word(), material_.name),
-                     "give the values as 'r g b'");
+        return error(
+            fmt::format("'{} {}' of material '{}' is not supported", key, lines_.word(), shown(material_.name)),
+            "give the values as 'r g b'");
     std::vector<double> values;
     while (!lines_.rest().empty())
         if (!read_number(key, lines_.word(), values)) return;
     if (values.size() != 1 && values.size() != 3 && values.size() != bands)
-        return error(fmt::format("material '{}': {} has {} values", material_.name, key, values.size()),
+        return error(fmt::format("material '{}': {} has {} values", shown(material_.name), key, values.size()),
                      "give one or three");
     for (std::size_t b = 0; b < values.size(); ++b) {
         const double v = values[b];
         if (reflectance && !(v >= 0 && v < 1))
-            return error(fmt::format("material '{}': reflectance Kd of {} is {:g}, not in [0, 1)", material_.name,
-                                     band_name(b, values.size()), v),
+            return error(fmt::format("material '{}': reflectance Kd of {} is {:g}, not in [0, 1)",
+                                     shown(material_.name), band_name(b, values.size()), v),
                          "a reflectance is at least 0 and below 1, or light would never die out");
         if (!reflectance && v < 0)
-            return error(fmt::format("material '{}': emission Ke of {} is {:g}, below 0", material_.name,
+            return error(fmt::format("material '{}': emission Ke of {} is {:g}, below 0", shown(material_.name),
                                      band_name(b, values.size()), v),
                          "emitted radiance is 0 or more, W/(m^2 sr)");
     }
@@ -117,9 +119,9 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
 
 bool MtlReader::read_number(const std::string& key, std::string_view word, std::vector<double>& out) {
     double v = 0;
-    const NumberKind kind = parse_number(word, v);
+    const NumberKind kind = number_of_word(word, v);
     if (kind == NumberKind::finite) return out.push_back(v), true;
-    error(fmt::format("material '{}': '{}' in {} is not a {}number", material_.name, word, key,
+    error(fmt::format("material '{}': '{}' in {} is not a {}number", shown(material_.name), shown(word), key,
                       kind == NumberKind::not_finite ? "finite " : ""));
     return false;
 }

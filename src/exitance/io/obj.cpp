@@ -81,14 +81,14 @@ void ObjReader::read_point() {
     Point p;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::string_view word = lines_.word();
-        const NumberKind kind = parse_number(word, p[i]);
+        const NumberKind kind = number_of_word(word, p[i]);
         if (kind == NumberKind::finite) continue;
         if (word.empty())
             error(fmt::format("vertex has {} coordinates, not three", i));
         else
-            error(
-                fmt::format("coordinate '{}' is not a {}number", word, kind == NumberKind::not_finite ? "finite " : ""),
-                word.find(',') != word.npos ? "write decimals with a point" : "");
+            error(fmt::format("coordinate '{}' is not a {}number", shown(word),
+                              kind == NumberKind::not_finite ? "finite " : ""),
+                  word.find(',') != word.npos ? "write decimals with a point" : "");
         broken_.push_back(static_cast<std::uint32_t>(points.size()));
         p = {};
         break;
@@ -105,7 +105,7 @@ void ObjReader::read_face() {
         const std::string_view word = lines_.word();
         const auto index = parse_integer(word.substr(0, word.find('/')));
         const auto count = static_cast<long long>(description.points.size());
-        if (!index) return error(fmt::format("face names '{}', which is not a vertex number", word));
+        if (!index) return error(fmt::format("face names '{}', which is not a vertex number", shown(word)));
         if (*index == 0) return error("face names vertex 0", "vertices are numbered from 1");
         if (*index < -count) return error(fmt::format("face names vertex {}, of {} before it", *index, count));
         if (*index > most_points) return error(fmt::format("face names vertex {}", *index));
@@ -136,7 +136,7 @@ void ObjReader::read_library(std::string_view name) {
     const Result<std::string> text = read_whole_file(file);
     if (text) return parse_mtl(*text, file, out_.description.materials, out_.findings);
     library_missing_ = true;
-    error(fmt::format("material file '{}' {}", name, text.error().message),
+    error(fmt::format("material file '{}' {}", shown(name), text.error().message),
           "put it beside the scene file: without it nothing reflects or emits");
 }
 
@@ -180,7 +180,8 @@ void ObjReader::resolve_materials() {
         auto known = by_name.find(use.name);
         if (known == by_name.end()) {
             if (use.name != default_material && !library_missing_)
-                find(Finding::Kind::error, use.line, fmt::format("material '{}' is in no material file", use.name),
+                find(Finding::Kind::error, use.line,
+                     fmt::format("material '{}' is in no material file", shown(use.name)),
                      "define it with 'newmtl', or mend the name");
             known = by_name.emplace(use.name, static_cast<std::uint32_t>(materials.size())).first;
             materials.push_back({use.name, Spectrum(0.5), Spectrum()});

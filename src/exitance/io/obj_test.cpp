@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "exitance/io/atomic_file.hpp"
 #include "exitance/io/scene_file.hpp"
-#include "exitance/io/whole_file.hpp"
 #include "exitance/scene/findings.hpp"
 
 namespace exitance {
@@ -23,7 +23,7 @@ class ObjFiles : public testing::Test {
     ~ObjFiles() override { std::filesystem::remove_all(folder_); }
     std::string write(const std::string& name, const std::string& text) {
         const std::string path = folder_ + "/" + name;
-        EXPECT_TRUE(write_whole_file(path, text));
+        EXPECT_TRUE(write_file(path, text));
         return path;
     }
     /// A floor and a light, and what the test adds.
@@ -131,6 +131,14 @@ TEST_F(ObjFiles, FilesThatAreMissingOrUnknownAreRefused) {
     EXPECT_EQ(load_scene(folder_).scene.error().code, ErrorCode::bad_input);
     EXPECT_EQ(load_scene(write("s.stl", "solid")).scene.error().code, ErrorCode::bad_input);
     EXPECT_EQ(load_obj(folder_ + "/none.obj").error().where, folder_ + "/none.obj");
+}
+
+TEST_F(ObjFiles, MessagesShowNamesAsTextWhateverTheirBytes) {
+    EXPECT_EQ(first_error("mtllib m.mtl\nusemtl w\xc3\xa4nde\n" + points + "f 1 2 3\n"),
+              "s.obj:2: material 'w\xc3\xa4nde' is in no material file");
+    EXPECT_EQ(first_error("mtllib m.mtl\nusemtl \xff\x01\xc3_\n" + points + "f 1 2 3\n"),
+              "s.obj:2: material '???_' is in no material file");
+    EXPECT_LT(first_error("v " + std::string(100000, 'x') + " 0 0\n").size(), 120u);
 }
 
 TEST_F(ObjFiles, BytesOfAnyKindAreNoDanger) {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "exitance/io/whole_file.hpp"
+#include "exitance/io/atomic_file.hpp"
 
 namespace exitance {
 namespace {
@@ -49,8 +49,8 @@ std::string obj_text(const SceneDescription& scene, const std::string& library) 
 Result<void> write_obj(const SceneDescription& scene, const std::string& path) {
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
     // The library first: whoever sees the new scene also finds its materials.
-    if (auto written = write_whole_file(library.string(), mtl_text(scene)); !written) return written;
-    return write_whole_file(path, obj_text(scene, library.filename().string()));
+    if (auto written = write_file(library.string(), mtl_text(scene)); !written) return written;
+    return write_file(path, obj_text(scene, library.filename().string()));
 }
 
 }  // namespace exitance

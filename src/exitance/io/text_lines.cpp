@@ -64,7 +64,28 @@ std::string_view TextLines::word() {
     return out;
 }
 
-NumberKind parse_number(std::string_view word, double& value) {
+std::string shown(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    std::string out;
+    for (std::size_t i = 0; i < text.size() && out.size() < longest;) {
+        const auto byte = [&](std::size_t k) {
+            return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
+        };
+        // UTF-8: the first byte says how many follow, each of them 10xxxxxx.
+        const unsigned first = byte(0);
+        std::size_t length = first < 0x80 ? 1 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+        bool good = first >= 0x20 && first != 0x7f && (first < 0x80 || (first >= 0xc2 && first <= 0xf4));
+        for (std::size_t k = 1; k < length; ++k) good = good && (byte(k) & 0xc0u) == 0x80;
+        if (length == 3) good = good && !(first == 0xe0 && byte(1) < 0xa0) && !(first == 0xed && byte(1) >= 0xa0);
+        if (length == 4) good = good && !(first == 0xf0 && byte(1) < 0x90) && !(first == 0xf4 && byte(1) >= 0x90);
+        if (!good) length = 1;
+        out += good ? text.substr(i, length) : std::string_view("?");
+        i += length;
+    }
+    return out.size() < text.size() && out.size() >= longest ? out + "..." : out;
+}
+
+NumberKind number_of_word(std::string_view word, double& value) {
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || end != word.data() + word.size() || error == std::errc::invalid_argument)

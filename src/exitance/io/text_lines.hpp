@@ -31,9 +31,12 @@ class TextLines {
     int number_ = 0, physical_ = 0;
 };
 
+/// A piece of a file as a message may show it: shortened when long, bytes that are no text as '?'.
+std::string shown(std::string_view text);
+
 /// What a word says as a number. Finite numbers only: "nan" and what exceeds the range of double has none.
 enum class NumberKind { finite, not_finite, not_a_number };
-NumberKind parse_number(std::string_view word, double& value);
+NumberKind number_of_word(std::string_view word, double& value);
 
 /// A whole number, with a sign or without.
 std::optional<long long> parse_integer(std::string_view word);

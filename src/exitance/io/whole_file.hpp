@@ -10,10 +10,6 @@ namespace exitance {
 /// The content of a file. Error: cannot_read, with the system's reason.
 Result<std::string> read_whole_file(const std::string& path);
 
-/// Writes a file that appears whole or not at all: beside its place, flushed to the disk, then renamed.
-/// Error: cannot_write, with the system's reason.
-Result<void> write_whole_file(const std::string& path, std::string_view content);
-
 /// The path of a file that `name` in the file `path` refers to: relative to the folder of `path`.
 std::string beside(const std::string& path, std::string_view name);
 

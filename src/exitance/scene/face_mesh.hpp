@@ -16,9 +16,11 @@ struct Tolerances {
 };
 
 /// Tolerances of a scene whose points lie in `box`. Places: 1e-9 of the scene's size, which exceeds the rounding of
-/// decimal files, but never below the spacing of doubles at the coordinates. Planes: 1e-5 of the size, within which
-/// scene-file conventions count a point as lying on a face.
-Tolerances tolerances(const Box& box);
+/// decimal files; less where edges are short beside that (a chair on a plain of a thousand kilometres), but never below
+/// the spacing of doubles at the coordinates. Planes: 1e-5 of the size, within which scene-file conventions count a
+/// point as lying on a face.
+/// short_edge  a length that few edges are shorter than, metres
+Tolerances tolerances(const Box& box, double short_edge);
 
 /// Checked faces as the joining of regions sees them: corners are numbers of welded points.
 struct FaceMesh {

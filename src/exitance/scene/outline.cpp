@@ -21,6 +21,8 @@ int side(const Vec2& p, const Vec2& q, const Vec2& r, double tolerance) {
 }
 
 bool cross_properly(const FlatEdge& e, const FlatEdge& f, double tolerance) {
+    if (std::max(e.p.y, e.q.y) < std::min(f.p.y, f.q.y) || std::max(f.p.y, f.q.y) < std::min(e.p.y, e.q.y))
+        return false;
     return side(e.p, e.q, f.p, tolerance) * side(e.p, e.q, f.q, tolerance) < 0 &&
            side(f.p, f.q, e.p, tolerance) * side(f.p, f.q, e.q, tolerance) < 0;
 }

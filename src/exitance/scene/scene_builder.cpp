@@ -16,11 +16,11 @@
 
 namespace exitance {
 
-Tolerances tolerances(const Box& box) {
+Tolerances tolerances(const Box& box, double short_edge) {
     const Vec3 far = max(max(box.hi, -box.hi), max(box.lo, -box.lo));
     const double spacing = std::max({far.x, far.y, far.z}) * std::numeric_limits<double>::epsilon();
     Tolerances t;
-    t.place = std::max(1e-9 * box.diagonal(), 4 * spacing);
+    t.place = std::max(std::min(1e-9 * box.diagonal(), 1e-5 * short_edge), 4 * spacing);
     t.plane = std::max(1e-5 * box.diagonal(), t.place);
     return t;
 }
@@ -82,10 +82,21 @@ void SceneBuilder::check_materials() {
 
 /// Finds the scene's box and the points that stand at one place.
 void SceneBuilder::place_corners() {
-    for (const auto& face : in_.faces)
-        for (std::uint32_t c : face.corners)
-            if (c < in_.points.size() && is_finite(in_.points[c])) box_.add(in_.points[c]);
-    tol_ = tolerances(box_);
+    std::vector<float> lengths;  // of all edges; only their magnitude matters
+    for (const auto& face : in_.faces) {
+        const Point* before = nullptr;
+        for (std::uint32_t c : face.corners) {
+            if (c >= in_.points.size() || !is_finite(in_.points[c])) continue;
+            const Point& p = in_.points[c];
+            box_.add(p);
+            if (before && p != *before) lengths.push_back(static_cast<float>(norm(p - *before)));
+            before = &p;
+        }
+    }
+    constexpr std::size_t one_in = 100;
+    const auto percentile = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / one_in);
+    if (!lengths.empty()) std::nth_element(lengths.begin(), percentile, lengths.end());
+    tol_ = tolerances(box_, lengths.empty() ? HUGE_VAL : static_cast<double>(*percentile));
     place_ = weld(in_.points, tol_.place);
 }
 

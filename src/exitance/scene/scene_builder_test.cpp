@@ -267,5 +267,15 @@ TEST(Checks, ScenesMayBeTinyHugeAndFarAway) {
         }
 }
 
+TEST(Checks, AFarHorizonDoesNotBlurWhatIsNear) {
+    Sketch sketch;
+    sketch.add({{-1e7, -1e7, -1}, {1e7, -1e7, -1}, {1e7, 1e7, -1}, {-1e7, 1e7, -1}}, 2).light();
+    for (int i = 0; i < 300; ++i) sketch.rectangle(0.01 * i, 0, 0.01 * i + 0.005, 0.005);
+    const auto s = sketch.make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_TRUE(s.findings.empty());
+    EXPECT_EQ(s.scene->regions().size(), 302u);
+}
+
 }  // namespace
 }  // namespace exitance
