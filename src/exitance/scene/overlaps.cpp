@@ -3,33 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/geometry/triangulation.hpp"
 #include "exitance/scene/cell_keys.hpp"
+#include "exitance/scene/common_area.hpp"
 
 namespace exitance {
 namespace {
-
-/// Overlaps below this share of the smaller face are rounding.
-constexpr double negligible = 1e-6;
 
 struct PlaneEntry {
     std::uint64_t key;
     std::uint32_t region;
     auto operator<=>(const PlaneEntry&) const = default;
-};
-
-/// The box of a face or region in a plane's coordinates.
-struct FlatBox {
-    Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
-
-    void add(const Vec2& p) {
-        lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
-        hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
-    }
-    bool overlaps(const FlatBox& o, double tolerance) const {
-        return std::min(hi.x, o.hi.x) - std::max(lo.x, o.lo.x) > tolerance &&
-               std::min(hi.y, o.hi.y) - std::max(lo.y, o.lo.y) > tolerance;
-    }
 };
 
 /// Does the smaller region lie in the larger one's plane, facing the same way?
@@ -40,34 +23,6 @@ bool share_plane(const Region* a, const Region* b, double tolerance) {
         return std::all_of(loop.begin(), loop.end(),
                            [&](const Point& p) { return std::abs(a->plane.signed_distance(p)) <= tolerance; });
     });
-}
-
-/// The convex piece's part within another one, m^2.
-double common_area(std::span<const Point> a, std::span<const Point> b, const Normal& n) {
-    std::vector<Point> part(a.begin(), a.end()), next;
-    for (std::size_t i = 0; i < b.size() && !part.empty(); ++i) {
-        const Normal inwards = normalized(cross(n, b[(i + 1) % b.size()] - b[i]));
-        clip(part, {inwards, dot(inwards, b[i])}, next);
-        std::swap(part, next);
-    }
-    return part.empty() ? 0 : norm(area_vector(part));
-}
-
-double common_area(const Scene& scene, SurfaceId a, SurfaceId b) {
-    const Normal& n = scene.surfaces()[a].normal;
-    const auto convex = [&](SurfaceId s) {
-        std::vector<std::vector<Point>> out;
-        for (const auto& piece : convex_pieces(scene.outline(s), n)) {
-            out.emplace_back();
-            for (std::uint32_t c : piece) out.back().push_back(scene.outline(s)[c]);
-        }
-        return out;
-    };
-    double sum = 0;
-    const auto pieces = convex(b);
-    for (const auto& p : convex(a))
-        for (const auto& q : pieces) sum += common_area(p, q, n);
-    return sum;
 }
 
 /// The pair of faces of two regions that overlaps most, if any does.
@@ -85,39 +40,25 @@ void compare(const Scene& scene, RegionId a, RegionId b, const Frame& frame, dou
         const FlatBox own = box(s);
         for (const auto& [t, other] : boxes) {
             if (!own.overlaps(other, tolerance)) continue;
-            const double area = common_area(scene, s, t);
-            const double least = negligible * std::min(scene.surfaces()[s].area, scene.surfaces()[t].area);
-            if (area > least && area > most.area) most = {std::min(s, t), std::max(s, t), area};
+            const double area = common_area(scene.outline(s), scene.outline(t), frame.n, tolerance);
+            if (area > most.area) most = {std::min(s, t), std::max(s, t), area};
         }
     }
     if (most.area > 0) out.push_back(most);
 }
 
-/// Sweeps over the regions of one plane.
+/// Compares the regions of one cell of planes where their boxes overlap.
 void compare_all(const Scene& scene, std::span<const PlaneEntry> group, double tolerance, std::vector<Overlap>& out) {
     const Frame frame(scene.regions()[RegionId(group[0].region)].plane.n);
-    struct Placed {
-        FlatBox box;
-        RegionId region;
-    };
-    std::vector<Placed> placed, open;
-    for (const PlaneEntry& entry : group) {
-        placed.push_back({{}, RegionId(entry.region)});
-        for (const auto& loop : scene.regions()[RegionId(entry.region)].loops)
-            for (const Point& p : loop) placed.back().box.add({dot(p, frame.u), dot(p, frame.v)});
-    }
-    std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-        return a.box.lo.x != b.box.lo.x ? a.box.lo.x < b.box.lo.x : a.region < b.region;
+    std::vector<FlatBox> boxes(group.size());
+    for (std::size_t i = 0; i < group.size(); ++i)
+        for (const auto& loop : scene.regions()[RegionId(group[i].region)].loops)
+            for (const Point& p : loop) boxes[i].add({dot(p, frame.u), dot(p, frame.v)});
+    each_overlap(boxes, tolerance, [&](std::uint32_t i, std::uint32_t j) {
+        const RegionId a(group[i].region), b(group[j].region);
+        if (share_plane(&scene.regions()[a], &scene.regions()[b], tolerance))
+            compare(scene, a, b, frame, tolerance, out);
     });
-    for (const Placed& p : placed) {
-        std::erase_if(open, [&](const Placed& o) { return o.box.hi.x <= p.box.lo.x; });
-        for (const Placed& o : open) {
-            const Region &a = scene.regions()[o.region], &b = scene.regions()[p.region];
-            if (o.box.overlaps(p.box, tolerance) && share_plane(&a, &b, tolerance))
-                compare(scene, o.region, p.region, frame, tolerance, out);
-        }
-        open.push_back(p);
-    }
 }
 
 }  // namespace

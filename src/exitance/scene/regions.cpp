@@ -7,6 +7,7 @@
 #include "exitance/core/random.hpp"
 #include "exitance/scene/border.hpp"
 #include "exitance/scene/cell_keys.hpp"
+#include "exitance/scene/common_area.hpp"
 #include "exitance/scene/hash_chains.hpp"
 
 namespace exitance {
@@ -53,8 +54,10 @@ class Joiner {
 
     void pair_whole_edges();
     void pair_parts_of_edges();
-    /// Appends the sets whose union is a proper polygon to `out`, and the faces of the others to `failed`.
-    void collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& failed);
+    /// Appends the sets whose union is a proper polygon to `out`. Of the others, faces that cover an earlier one go to
+    /// `covering`, the rest to `failed`.
+    void collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& covering,
+                 std::vector<std::uint32_t>& failed);
 
   private:
     struct Edge {
@@ -75,6 +78,7 @@ class Joiner {
     void split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length);
     std::vector<BorderEdge> border(std::span<const std::uint32_t> set) const;
     bool is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector) const;
+    std::vector<std::uint32_t> covering_faces(std::span<const std::uint32_t> set, const Normal& n) const;
 
     const FaceMesh& mesh_;
     const Tolerances& tol_;
@@ -241,7 +245,29 @@ bool Joiner::is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector
     return hi - lo <= 2 * std::max(tol_.plane, tol_.place);
 }
 
-void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& failed) {
+/// Faces of a set that cover a part of an earlier one, ascending.
+std::vector<std::uint32_t> Joiner::covering_faces(std::span<const std::uint32_t> set, const Normal& n) const {
+    const Frame frame(n);
+    std::vector<FlatBox> boxes(set.size());
+    const auto corners = [&](std::size_t i) {
+        std::vector<Point> out;
+        for (std::uint32_t c : mesh_.outline(faces_[set[i]])) out.push_back(point(c));
+        return out;
+    };
+    for (std::size_t i = 0; i < set.size(); ++i)
+        for (std::uint32_t c : mesh_.outline(faces_[set[i]]))
+            boxes[i].add({dot(point(c), frame.u), dot(point(c), frame.v)});
+    std::vector<std::uint32_t> out;
+    each_overlap(boxes, tol_.place, [&](std::uint32_t i, std::uint32_t j) {
+        if (common_area(corners(i), corners(j), n, tol_.place) > 0) out.push_back(set[j]);
+    });
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+}
+
+void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& covering,
+                     std::vector<std::uint32_t>& failed) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // set, face
     for (std::uint32_t f = 0; f < faces_.size(); ++f) order.push_back({sets_.root(f), f});
     std::sort(order.begin(), order.end());
@@ -252,17 +278,17 @@ void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& 
             set.push_back(order[j].second);
             area_vector += mesh_.area_vector[faces_[order[j].second]];
         }
-        JoinedFaces joined;
-        for (std::uint32_t f : set) joined.faces.push_back(faces_[f]);
+        std::vector<std::uint32_t> above;
         bool proper = is_flat(set, area_vector);
-        if (proper) {
-            joined.loops = border_loops(mesh_.points, border(set), area_vector, tol_.place);
-            proper = !joined.loops.empty();
+        if (proper && set.size() > 1) above = covering_faces(set, normalized(area_vector)), proper = above.empty();
+        JoinedFaces joined;
+        if (proper) joined.loops = border_loops(mesh_.points, border(set), area_vector, tol_.place);
+        const bool done = !joined.loops.empty();
+        for (std::uint32_t f : set) {
+            const bool covers = std::binary_search(above.begin(), above.end(), f);
+            (done ? joined.faces : covers ? covering : failed).push_back(faces_[f]);
         }
-        if (proper)
-            out.push_back(std::move(joined));
-        else
-            failed.insert(failed.end(), joined.faces.begin(), joined.faces.end());
+        if (done) out.push_back(std::move(joined));
     }
 }
 
@@ -270,21 +296,23 @@ void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& 
 
 std::vector<JoinedFaces> join_coplanar(const FaceMesh& mesh, const Tolerances& tolerances) {
     std::vector<JoinedFaces> out;
-    std::vector<std::uint32_t> faces(mesh.size());
+    std::vector<std::uint32_t> faces(mesh.size()), lone;
     std::iota(faces.begin(), faces.end(), 0u);
     // Finely cut curved surfaces bend little from one face to the next, but much over a whole set: such a set is joined
-    // again where it is flat to rounding alone.
+    // again where it is flat to rounding alone. Each way is tried again for sets from which covering faces were taken.
     Tolerances strict = tolerances;
     strict.plane = strict.place;
-    for (const Tolerances& attempt : {tolerances, strict}) {
+    for (const Tolerances& attempt : {tolerances, tolerances, strict, strict}) {
         if (faces.empty()) break;
         Joiner joiner(mesh, attempt, std::move(faces));
         joiner.pair_whole_edges();
         joiner.pair_parts_of_edges();
         faces.clear();
-        joiner.collect(out, faces);
+        joiner.collect(out, lone, faces);
+        std::sort(faces.begin(), faces.end());
     }
-    for (std::uint32_t f : faces) out.push_back({{f}, lone_face_loops(mesh, f, tolerances.place)});
+    lone.insert(lone.end(), faces.begin(), faces.end());
+    for (std::uint32_t f : lone) out.push_back({{f}, lone_face_loops(mesh, f, tolerances.place)});
     std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.faces[0] < b.faces[0]; });
     return out;
 }

@@ -12,8 +12,9 @@ struct JoinedFaces {
     std::vector<std::vector<std::uint32_t>> loops;
 };
 
-/// Joins faces of one material and one orientation that lie in one plane and share an edge or a part of one. A union
-/// that is not a proper polygon (faces that overlap) is undone: its faces stay by themselves. Sets are ordered by their
+/// Joins faces of one material and one orientation that lie in one plane and share an edge or a part of one. A face
+/// that covers a part of an earlier one of its set stays by itself; so do all faces of a union that is no proper polygon
+/// for other reasons. Sets are ordered by their
 /// first face. How the faces were cut does not show in the result. Expected O(n log n) in edges.
 std::vector<JoinedFaces> join_coplanar(const FaceMesh& mesh, const Tolerances& tolerances);
 

@@ -135,6 +135,22 @@ TEST(Regions, FacesBentWithinTheToleranceLieInOnePlane) {
             EXPECT_NEAR(region(s, 0).plane.signed_distance(p), 0, 1e-15);  // moved into the plane, but for rounding
 }
 
+TEST(Regions, AFaceThatCoversItsNeighbourStaysByItselfAndTheOthersAreJoined) {
+    const auto s = Sketch()
+                       .rectangle(0, 0, 1, 1)
+                       .rectangle(1, 0, 2, 1)
+                       .rectangle(2, 0, 3, 1)
+                       .add({{1, 1, 0}, {2, 1, 0}, {3, 0.2, 0}, {2, 2, 0}, {1, 2, 0}})  // reaches back over the third
+                       .light()
+                       .make();
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(s.scene->regions().size(), 3u);
+    EXPECT_EQ(region(s, 0).area, 3);
+    EXPECT_EQ(region(s, 0).surfaces.size(), 3u);
+    ASSERT_EQ(count(s, Finding::Kind::warning), 1);
+    EXPECT_EQ(s.findings[0].line, 4);
+}
+
 TEST(Regions, AFinelyCutCylinderIsNotTakenForAPlane) {
     Sketch sketch;
     const int n = 20000;  // neighbours are tilted by 0.3 mrad, below what bent faces are allowed
