@@ -31,7 +31,8 @@ class Interpolation {
             fitted_.resize(out_.tree.size());
             parallel_ranges(active.size(), 8, [&](std::size_t begin, std::size_t end) {
                 DirectLight::Workspace workspace;
-                for (std::size_t i = begin; i < end; ++i) fitted_[active[i]] = fit(active[i], workspace);
+                ReceiverLight light;
+                for (std::size_t i = begin; i < end; ++i) fitted_[active[i]] = fit(active[i], light, workspace);
             });
             report.interrupted = stop.requested();
             if (depth == options_.max_depth || report.interrupted || out_.tree.size() > options_.max_elements) break;
@@ -50,16 +51,17 @@ class Interpolation {
         return w;
     }
 
-    Fitted fit(ElementId e, DirectLight::Workspace& workspace) const {
+    Fitted fit(ElementId e, ReceiverLight& light, DirectLight::Workspace& workspace) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
         const Normal& n = stage_.scene.regions()[region].plane.n;
         const std::vector<WeightedPlace> rule = element_rule(out_.tree, e, RuleOrder::fine);
+        if (options_.add_direct) stage_.direct.prepare(out_.tree.outline(e), n, region, light, workspace);
         std::vector<Spectrum> value(rule.size());
         for (std::size_t i = 0; i < rule.size(); ++i) {
             const Point x = patch.at(rule[i].uv);
             value[i] = indirect_.at(locator_.find(region, x));
-            if (options_.add_direct) value[i] += stage_.direct.irradiance(x, n, region, workspace);
+            if (options_.add_direct) value[i] += stage_.direct.irradiance(light, x, workspace);
         }
         const ElementFit fit(out_.tree, e, rule, value);
         Fitted out;

@@ -8,15 +8,17 @@ namespace exitance {
 namespace {
 
 /// Exact values on one leaf, and what the polynomial makes of them.
-void fit_leaf(const Stage& stage, ElementId e, DirectLight::Workspace& workspace, DirectProjection& out) {
+void fit_leaf(const Stage& stage, ElementId e, ReceiverLight& light, DirectLight::Workspace& workspace,
+              DirectProjection& out) {
     const Patch& patch = out.tree.patch(e);
     const RegionId region = out.tree.region(e);
     const Normal& n = stage.scene.regions()[region].plane.n;
     const std::vector<WeightedPlace> rule = element_rule(out.tree, e, RuleOrder::fine);
+    stage.direct.prepare(out.tree.outline(e), n, region, light, workspace);
     std::vector<Spectrum> value(rule.size());
     Spectrum mean;
     for (std::size_t i = 0; i < rule.size(); ++i) {
-        value[i] = stage.direct.irradiance(patch.at(rule[i].uv), n, region, workspace);
+        value[i] = stage.direct.irradiance(light, patch.at(rule[i].uv), workspace);
         mean += rule[i].weight * value[i];
     }
     const ElementFit fit(out.tree, e, rule, value);
@@ -57,7 +59,8 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         out.misfit_squared.resize(out.tree.size());
         parallel_ranges(active.size(), 8, [&](std::size_t begin, std::size_t end) {
             DirectLight::Workspace workspace;
-            for (std::size_t i = begin; i < end; ++i) fit_leaf(stage, active[i], workspace, out);
+            ReceiverLight light;
+            for (std::size_t i = begin; i < end; ++i) fit_leaf(stage, active[i], light, workspace, out);
         });
         if (depth == 0) {
             double flux = 0;
