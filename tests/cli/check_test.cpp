@@ -51,7 +51,7 @@ TEST(ProgramCheck, ABrokenSceneIsBadInputWithFileAndLine) {
 }
 
 TEST(ProgramCheck, AMissingFileIsBadInput) {
-    for (const char* verb : {"check"}) {
+    for (const char* verb : {"check", "solve"}) {
         const TemporaryFolder folder;
         std::vector<std::string> arguments{verb, folder / "absent.obj"};
         if (verb == std::string("solve")) arguments.insert(arguments.end(), {"-o", folder / "s.h5"});

@@ -72,7 +72,7 @@ CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, l
     return app.add_option_function<std::string>(name, read, help)->type_name("N");
 }
 
-[[maybe_unused]] int read_bounces(const std::string& word) {
+int read_bounces(const std::string& word) {
     if (word == "all") return all_bounces;
     const double value = read_number("--bounces", word);
     if (value != std::floor(value) || value < 0 || value > 1e9)
@@ -81,7 +81,7 @@ CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, l
 }
 
 /// "4G", "500M", "1048576": bytes, with K, M, G and T as powers of 1024.
-[[maybe_unused]] std::size_t read_bytes(const std::string& option, const std::string& word) {
+std::size_t read_bytes(const std::string& option, const std::string& word) {
     const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
     std::string unit = word.substr(digits);
     for (char& c : unit) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -108,10 +108,10 @@ constexpr std::array<std::pair<ProgressStyle, std::string_view>, 5> progress_nam
     {ProgressStyle::none, "none"},
 }};
 
-constexpr std::array<std::pair<LightComponent, std::string_view>, 3> component_names{{
-    {LightComponent::total, "total"},
-    {LightComponent::direct, "direct"},
-    {LightComponent::indirect, "indirect"},
+constexpr std::array<std::pair<Component, std::string_view>, 3> component_names{{
+    {Component::total, "total"},
+    {Component::direct, "direct"},
+    {Component::indirect, "indirect"},
 }};
 
 void declare_common(CLI::App& app, CommonArguments& arguments) {
@@ -123,15 +123,110 @@ void declare_json(CLI::App& app, CommonArguments& arguments) {
     app.add_flag("--json", arguments.json, "Facts as JSON on standard output");
 }
 
-[[maybe_unused]] void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
+void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
     add_count(app, "--threads", threads, 1, "Threads to use; default all. The result does not depend on it");
     add_choice(app, "--progress", progress_names, arguments.progress,
                "auto: a bar on a terminal, a line every ten seconds otherwise");
 }
 
+void declare(CLI::App& app, SolveArguments& arguments) {
+    SolveOptions& o = arguments.options;
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
+    app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
+    add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
+    add_choice(app, "--basis", basis_names, o.basis, "Of method matrix");
+    app.add_option_function<std::string>(
+           "--bounces", [&o](const std::string& w) { o.bounces = read_bounces(w); },
+           "0: direct light alone; default all")
+        ->type_name("N|all");
+
+    add_positive(app, "--error", o.error, "R", "Relative RMS error asked for; default 0.02")->group("Accuracy");
+    add_positive(app, "--mesh-size", o.mesh_size, "METRES", "Longest edge of an element")->group("Accuracy");
+    add_positive(app, "--min-area", o.min_area, "M2", "No element is cut smaller, m^2")->group("Accuracy");
+    add_positive(app, "--residual", o.residual, "R", "Of the system, relative to its right side")->group("Accuracy");
+    add_count(app, "--max-iterations", o.max_iterations, 1, "Sweeps, Krylov steps or shots")->group("Accuracy");
+
+    add_choice(app, "--relaxation", relaxation_names, o.relaxation, "How the system is solved")->group("Method");
+    app.add_flag("--overshooting", o.overshooting, "Shoot ahead what will come back")->group("Method");
+    add_choice(app, "--visibility", visibility_names, o.visibility, "Default auto")->group("Method");
+    add_count(app, "--visibility-samples", o.visibility_samples, 1, "Rays a pair of elements")->group("Method");
+    add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
+        ->group("Method");
+    add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");
+
+    add_positive(app, "--time-limit", arguments.time_limit, "SECONDS", "Stop then and write what there is")
+        ->group("Limits");
+    app.add_option_function<std::string>(
+           "--memory-limit", [&o](const std::string& w) { o.memory_limit_bytes = read_bytes("--memory-limit", w); },
+           "Such as 4G")
+        ->type_name("SIZE")
+        ->group("Limits");
+    app.add_flag("--dry-run", arguments.dry_run, "Counts and a forecast; nothing is solved or written")
+        ->group("Limits");
+    declare_json(app, arguments);
+    declare_work(app, arguments, o.threads);
+}
+
+void declare(CLI::App& app, ProbeArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("--points", arguments.points, "CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz; - for standard input")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", arguments.output, "CSV with E_* and B_*; default - for standard output")
+        ->type_name("FILE");
+    app.add_flag("--interpolant", arguments.interpolant, "Evaluate what export writes, not the full function");
+    add_choice(app, "--component", component_names, arguments.component, "Default total");
+    add_count(app, "--reference", arguments.reference_paths, 1,
+              "N unbiased paths a point in place of the solution, with their standard errors");
+    add_count(app, "--seed", arguments.seed, 0, "Of the paths; default 1");
+    declare_work(app, arguments, arguments.threads);
+}
+
+void declare(CLI::App& app, CompareArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("REFERENCE", arguments.reference, "Probe CSV with E_*, or another solution")->required();
+    declare_json(app, arguments);
+    declare_work(app, arguments, arguments.threads);
+}
+
+void declare(CLI::App& app, StatsArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    declare_json(app, arguments);
+}
+
+void declare(CLI::App& app, ExportArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("-o,--output", arguments.output, "By ending: .glb, .vtkhdf, .vtu, .obj, .csv")
+        ->type_name("FILE")
+        ->required();
+}
+
 void declare(CLI::App& app, CheckArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
     declare_json(app, arguments);
+}
+
+void declare(CLI::App& app, GenerateArguments& arguments) {
+    app.add_option("FAMILY", arguments.family, "Family of scenes, or 'list'")->required();
+    app.add_option("PARAMETERS", arguments.parameters, "Of the family, name=value");
+    app.add_option("-o,--output", arguments.output, "Scene to write (.obj, its .mtl beside it)")->type_name("FILE");
+}
+
+void declare(CLI::App& app, ViewFactorArguments& arguments) {
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
+    app.add_option("-o,--output", arguments.output, "Matrix to write: .csv, or .vf as View3D does")
+        ->type_name("FILE")
+        ->required();
+    const auto read_tolerance = [&arguments](const std::string& word) {
+        arguments.tolerance = read_number("--tolerance", word);
+        if (arguments.tolerance < 1e-12 || arguments.tolerance > 0.1)
+            throw CLI::ValidationError("--tolerance", fmt::format("must be between 1e-12 and 0.1, not {}", word));
+    };
+    app.add_option_function<std::string>("--tolerance", read_tolerance,
+                                         "Relative error of entries above 1e-6; default 1e-4")
+        ->type_name("R");
+    declare_json(app, arguments);
+    declare_work(app, arguments, arguments.threads);
 }
 
 // -------------------------------------------------------------------------------------------------- parsing
@@ -184,8 +279,21 @@ struct Verb {
 
 const std::vector<Verb>& verbs() {
     static const std::vector<Verb> all{
+        {"solve", "Computes the light in a scene.", "exitance solve room.obj -o room.h5", parse_verb<SolveArguments>},
+        {"probe", "Evaluates irradiance and radiosity at points.",
+         "exitance probe room.h5 --points desks.csv -o light.csv", parse_verb<ProbeArguments>},
+        {"compare", "Tells how far a solution is from a reference.", "exitance compare room.h5 reference.csv",
+         parse_verb<CompareArguments>},
+        {"stats", "Tells what a solution took: counts, times, memory, error, energy balance.", "exitance stats room.h5",
+         parse_verb<StatsArguments>},
+        {"export", "Writes a solution for other programs.", "exitance export room.h5 -o room.glb",
+         parse_verb<ExportArguments>},
         {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
          parse_verb<CheckArguments>},
+        {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",
+         parse_verb<GenerateArguments>},
+        {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
+         "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
     };
     return all;
 }

@@ -9,6 +9,7 @@
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/core/result.hpp"
 #include "exitance/methods/solve_options.hpp"
+#include "exitance/reconstruct/radiosity_function.hpp"
 
 namespace exitance {
 
@@ -29,13 +30,11 @@ struct SolveArguments : CommonArguments {
     bool dry_run = false;
 };
 
-enum class LightComponent { total, direct, indirect };
-
 struct ProbeArguments : CommonArguments {
     std::string solution, points;
     std::string output = "-";
     bool interpolant = false;
-    LightComponent component = LightComponent::total;
+    Component component = Component::total;
     std::size_t reference_paths = 0;  ///< 0: evaluate the solution; N: N unbiased paths a point instead.
     std::uint64_t seed = 1;
     int threads = 0;
@@ -70,7 +69,7 @@ struct ViewFactorArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command = std::variant<CheckArguments>;
+using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

@@ -100,6 +100,19 @@ std::string check_json(const CheckedScene& checked) {
     return dump(json, 2);
 }
 
+std::string error_json(const ErrorMeasure& error) {
+    const Json json{
+        {"relative_rms_error", error.relative_rms_error},
+        {"raw_relative_rms_error", error.raw_relative_rms_error},
+        {"reference_noise", error.reference_noise},
+        {"bias", error.bias},
+        {"median_relative_error", error.median_relative_error},
+        {"p95_relative_error", error.p95_relative_error},
+        {"points", error.points},
+    };
+    return dump(json, 2);
+}
+
 std::string view_factors_json(const ViewFactorFacts& facts) {
     const Json json{
         {"surfaces", facts.surfaces},

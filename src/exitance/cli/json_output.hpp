@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exitance/methods/solve_options.hpp"
+#include "exitance/reconstruct/compare.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
 namespace exitance {
@@ -21,6 +22,9 @@ std::string options_json(const SolveOptions& options);
 
 /// `check --json`.
 std::string check_json(const CheckedScene& checked);
+
+/// `compare --json`.
+std::string error_json(const ErrorMeasure& error);
 
 /// What `viewfactors` found out besides the matrix.
 struct ViewFactorFacts {

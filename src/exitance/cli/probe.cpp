@@ -1,0 +1,77 @@
+#include <limits>
+
+#include "exitance/cli/verbs.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/probe_file.hpp"
+#include "exitance/io/solution_file.hpp"
+#include "exitance/reconstruct/path_reference.hpp"
+#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/scene/locator.hpp"
+
+namespace exitance {
+namespace {
+
+/// Points taken at a time: memory stays small however many there are.
+constexpr std::size_t batch = 1 << 16;
+
+std::vector<ProbePoint> zip(const ProbePoints& probes) {
+    std::vector<ProbePoint> out;
+    out.reserve(probes.size());
+    for (std::size_t i = 0; i < probes.size(); ++i) out.push_back({probes.points[i], probes.normals[i]});
+    return out;
+}
+
+Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeReader& reader,
+                         ProbeWriter& writer) {
+    ProbePoints probes;
+    while (true) {
+        if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
+        if (probes.size() == 0) return writer.commit();
+        const std::vector<ProbePoint> points = zip(probes);
+        const std::vector<Light> values =
+            arguments.interpolant ? light.interpolant_at(points) : light.at(points, arguments.component);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            writer.add(points[i].x, points[i].n, values[i].irradiance,
+                       values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt);
+    }
+}
+
+/// Paths in place of the solution. All points together, since a point's random numbers go by its place.
+Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeReader& reader,
+                             ProbeWriter& writer, Terminal& terminal) {
+    ProbePoints probes;
+    if (const Result<void> read = reader.next(probes, std::numeric_limits<std::size_t>::max()); !read)
+        return read.error();
+    const std::vector<ProbePoint> points = zip(probes);
+    const std::vector<ReferenceLight> values =
+        reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), StopRequest());
+    const Locator locator(scene);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SurfaceId surface = locator.find(points[i].x, points[i].n);
+        const Spectrum& E = values[i].irradiance;
+        std::optional<Spectrum> B;
+        if (!surface.is_none()) B = scene.material(surface).exitance + scene.material(surface).reflectance * E;
+        writer.add(points[i].x, points[i].n, E, B, values[i].standard_error);
+    }
+    return writer.commit();
+}
+
+}  // namespace
+
+/// exitance probe SOLUTION --points POINTS -o LIGHT
+ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
+    set_threads(arguments.threads);
+    const Result<Solution> solution = load_solution(arguments.solution);
+    if (!solution) return terminal.fail(solution.error());
+    Result<ProbeReader> reader = ProbeReader::open(arguments.points);
+    if (!reader) return terminal.fail(reader.error());
+    const bool by_paths = arguments.reference_paths > 0;
+    Result<ProbeWriter> writer = ProbeWriter::create(arguments.output, {.standard_errors = by_paths});
+    if (!writer) return terminal.fail(writer.error());
+
+    const Result<void> written = by_paths ? write_reference(arguments, solution->scene, *reader, *writer, terminal)
+                                          : write_light(arguments, RadiosityFunction(*solution), *reader, *writer);
+    return written ? ExitCode::done : terminal.fail(written.error());
+}
+
+}  // namespace exitance

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "exitance/cli/json_output.hpp"
+#include "exitance/cli/signals.hpp"
+#include "exitance/cli/summary.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/core/memory.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/atomic_file.hpp"
+#include "exitance/io/scene_file.hpp"
+#include "exitance/io/solution_file.hpp"
+#include "exitance/methods/solve_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// Found out before the work, not after it: can the result be written?
+Result<void> check_output(const std::string& path) {
+    if (path.empty()) return Error{ErrorCode::usage, "is missing", "-o", "exitance solve room.obj -o room.h5"};
+    const Result<AtomicFile> file = AtomicFile::create(path);
+    return file ? Result<void>() : Result<void>(file.error());
+}
+
+StopRequest::Clock::time_point after(double seconds) {
+    using Seconds = std::chrono::duration<double>;
+    const Seconds limit(std::min(seconds, 1e9));  // what a clock can hold
+    return StopRequest::Clock::now() + std::chrono::duration_cast<StopRequest::Clock::duration>(limit);
+}
+
+/// Whoever reads the solution later learns what was repaired.
+void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>& findings) {
+    std::vector<std::string> all;
+    for (const Finding& finding : findings)
+        if (finding.kind == Finding::Kind::warning)
+            all.push_back(fmt::format("line {}: {}", finding.line, finding.message));
+    warnings.insert(warnings.begin(), all.begin(), all.end());
+}
+
+ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) {
+    if (const std::optional<ExitCode> signal = signals.received()) return *signal;
+    return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
+}
+
+}  // namespace
+
+/// exitance solve SCENE -o SOLUTION
+ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
+    const Stopwatch run_time;
+    StopRequest stop;
+    const SignalGuard signals(stop);
+    if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit));
+    set_threads(arguments.options.threads);
+    if (const Result<void> output = check_output(arguments.output); !output) return terminal.fail(output.error());
+
+    Stopwatch reading;
+    const CheckedScene checked = load_scene(arguments.scene);
+    terminal.show(checked.findings);
+    if (!checked.scene) return terminal.fail(checked);
+    const double read_seconds = reading.seconds();
+
+    Result<Solution> solution = solve_scene(*checked.scene, arguments.options, terminal.progress(), stop);
+    if (!solution && signals.received()) return *signals.received();
+    if (!solution) return terminal.fail(solution.error());
+
+    SolveStatistics& statistics = solution->statistics;
+    solution->options = options_json(arguments.options);
+    add_findings(statistics.warnings, checked.findings);
+    statistics.seconds["read"] = read_seconds;
+    statistics.seconds["total"] = run_time.seconds();
+    statistics.peak_memory_bytes = peak_memory_bytes();
+
+    terminal.progress().phase("write");
+    Stopwatch writing;
+    if (const Result<void> written = write_solution(arguments.output, *solution); !written)
+        return terminal.fail(written.error());
+    statistics.seconds["write"] = writing.seconds();
+    statistics.seconds["total"] = run_time.seconds();
+    statistics.peak_memory_bytes = peak_memory_bytes();
+    terminal.progress().finish();
+
+    if (arguments.json) {
+        terminal.print(statistics_json(statistics));
+    } else if (!arguments.quiet) {
+        terminal.print(summary(statistics));
+    }
+    return code_of(statistics, signals);
+}
+
+}  // namespace exitance

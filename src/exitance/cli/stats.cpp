@@ -1,0 +1,16 @@
+#include "exitance/cli/json_output.hpp"
+#include "exitance/cli/summary.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/io/solution_file.hpp"
+
+namespace exitance {
+
+/// exitance stats SOLUTION
+ExitCode run(const StatsArguments& arguments, Terminal& terminal) {
+    const Result<Solution> solution = load_solution(arguments.solution);
+    if (!solution) return terminal.fail(solution.error());
+    terminal.print(arguments.json ? statistics_json(solution->statistics) : summary(solution->statistics));
+    return ExitCode::done;
+}
+
+}  // namespace exitance

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "cli/small_scene.hpp"
+
+namespace exitance::test {
+namespace {
+
+const std::string points = "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n2,1.5,1,0,0,1\n";
+
+/// One solution serves all tests of this file.
+class ProgramProbe : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        folder_ = new TemporaryFolder;
+        const Finished run =
+            run_program({"solve", write_small_room(*folder_), "-o", *folder_ / "room.h5", "--error", "0.1", "-q"});
+        ASSERT_EQ(run.status, 0) << run.err;
+    }
+    static void TearDownTestSuite() {
+        delete folder_;
+        folder_ = nullptr;
+    }
+    static std::string solution() { return *folder_ / "room.h5"; }
+    static std::string file(const std::string& name) { return *folder_ / name; }
+
+  private:
+    static inline TemporaryFolder* folder_ = nullptr;
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+}  // namespace
+
+TEST_F(ProgramProbe, ReadsStandardInputAndWritesStandardOutput) {
+    const Finished run = run_program({"probe", solution(), "--points", "-", "-o", "-"}, points);
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    const std::vector<std::string> lines = lines_of(run.out);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0], "x,y,z,nx,ny,nz,E_r,E_g,E_b,B_r,B_g,B_b");
+    EXPECT_TRUE(lines[2].ends_with(",,,")) << "a point in free space has no radiosity: " << lines[2];
+}
+
+TEST_F(ProgramProbe, FilesHoldWhatStandardOutputShows) {
+    write_text(file("points.csv"), points);
+    const Finished shown = run_program({"probe", solution(), "--points", file("points.csv")});
+    const Finished run = run_program({"probe", solution(), "--points", file("points.csv"), "-o", file("light.csv")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(read_text(file("light.csv")), shown.out);
+}
+
+TEST_F(ProgramProbe, DirectAndIndirectLightMakeTheTotal) {
+    std::vector<double> red;
+    for (const std::string component : {"direct", "indirect", "total"}) {
+        const Finished run = run_program({"probe", solution(), "--points", "-", "--component", component}, points);
+        ASSERT_EQ(run.status, 0) << run.err;
+        std::istringstream row(lines_of(run.out).at(1));
+        std::string field;
+        for (int i = 0; i < 7; ++i) std::getline(row, field, ',');
+        red.push_back(std::stod(field));
+    }
+    EXPECT_GT(red[0], 0);
+    EXPECT_GT(red[1], 0);
+    EXPECT_NEAR(red[0] + red[1], red[2], 1e-8 * red[2]);  // ten digits are printed
+}
+
+TEST_F(ProgramProbe, ABadPointIsBadInputWithItsLine) {
+    const Finished run =
+        run_program({"probe", solution(), "--points", "-"}, "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n1,oops,0,0,0,1\n");
+    EXPECT_EQ(run.status, 3);
+    EXPECT_EQ(run.out, "");
+    EXPECT_NE(run.err.find(":3: "), std::string::npos) << run.err;
+}
+
+TEST_F(ProgramProbe, AnUnwritableFolderLeavesNoResult) {
+    EXPECT_EQ(run_program({"probe", solution(), "--points", "-", "-o", file("absent/light.csv")}, points).status, 5);
+}
+
+TEST_F(ProgramProbe, WhatIsNotASolutionIsBadInput) {
+    write_text(file("not.h5"), "This is no HDF5 file.\n");
+    for (const std::string name : {"not.h5", "absent.h5"}) {
+        const Finished run = run_program({"probe", file(name), "--points", "-"}, points);
+        EXPECT_EQ(run.status, 3) << name;
+        EXPECT_NE(run.err.find(name), std::string::npos) << run.err;
+        EXPECT_EQ(run_program({"stats", file(name)}).status, 3);
+    }
+}
+
+}  // namespace exitance::test

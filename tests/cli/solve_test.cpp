@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/small_scene.hpp"
+
+namespace exitance::test {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::vector<std::string> keys(const Json& json) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : json.items()) names.push_back(name);
+    return names;
+}
+
+const std::vector<std::string> statistics_keys{"method",
+                                               "basis",
+                                               "threads",
+                                               "schedule",
+                                               "surfaces",
+                                               "elements",
+                                               "leaf_elements",
+                                               "links",
+                                               "rays",
+                                               "form_factors",
+                                               "iterations",
+                                               "converged",
+                                               "residual",
+                                               "relative_error_estimate",
+                                               "relative_error_bound",
+                                               "relative_error_estimate_interpolant",
+                                               "energy",
+                                               "seconds",
+                                               "peak_memory_bytes",
+                                               "link_memory_bytes",
+                                               "warnings"};
+
+}  // namespace
+
+TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    const Finished run = run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Json json = Json::parse(run.out);
+    EXPECT_EQ(keys(json), statistics_keys);
+    EXPECT_EQ(keys(json["energy"]), (std::vector<std::string>{"emitted", "absorbed", "defect"}));
+    EXPECT_EQ(keys(json["seconds"]),
+              (std::vector<std::string>{"total", "read", "mesh", "link", "solve", "certify", "reconstruct", "write"}));
+    EXPECT_EQ(json["surfaces"], 7);
+    EXPECT_LE(json["relative_error_estimate"], 0.1);
+    EXPECT_GT(json["seconds"]["total"], 0);
+    EXPECT_GT(json["peak_memory_bytes"], 1 << 20);
+
+    const Finished stats = run_program({"stats", solution, "--json"});
+    ASSERT_EQ(stats.status, 0) << stats.err;
+    Json kept = Json::parse(stats.out), made = json;
+    for (Json* either : {&kept, &made}) either->erase("seconds"), either->erase("peak_memory_bytes");
+    EXPECT_EQ(kept, made);
+}
+
+TEST(ProgramSolve, AnUnwritableFolderEndsBeforeTheWorkWithoutAResult) {
+    const TemporaryFolder folder;
+    const Finished run = run_program({"solve", write_small_room(folder), "-o", folder / "absent/room.h5"});
+    EXPECT_EQ(run.status, 5);
+    EXPECT_EQ(run.err.find("error: "), 0u) << run.err;
+    EXPECT_NE(run.err.find("absent/room.h5"), std::string::npos) << run.err;
+    EXPECT_EQ(folder.count(), 2u) << "the scene's two files and nothing else";
+}
+
+TEST(ProgramSolve, NothingIsWrittenForABrokenScene) {
+    const TemporaryFolder folder;
+    const Finished run = run_program({"solve", write_broken_scene(folder), "-o", folder / "room.h5"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("broken.obj:9: "), std::string::npos) << run.err;
+    EXPECT_EQ(folder.count(), 2u);
+}
+
+TEST(ProgramSolve, AMissingOutputIsAUsageError) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(run_program({"solve", write_small_room(folder)}).status, 2);
+}
+
+TEST(ProgramSolve, AnErrorThatTimeForbidsLeavesAResultAndStatusFour) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    const Finished run = run_program(
+        {"solve", write_small_room(folder), "-o", solution, "--error", "0.01", "--time-limit", "0.01", "--json"});
+    EXPECT_EQ(run.status, 4) << run.err;
+    EXPECT_FALSE(Json::parse(run.out)["converged"]);
+    EXPECT_EQ(run_program({"stats", solution}).status, 0);
+}
+
+TEST(ProgramSolve, ASignalEndsTheWorkAndTheStateSoFarIsWritten) {
+    for (const auto& [signal, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
+        const TemporaryFolder folder;
+        const std::string solution = folder / "room.h5";
+        RunningProgram run(
+            {"solve", write_small_room(folder), "-o", solution, "--error", "0.005", "--progress", "json"});
+        ASSERT_TRUE(run.wait_for("\"phase\""));
+        run.send(signal);
+        EXPECT_EQ(run.finish().status, status);
+        EXPECT_EQ(run_program({"stats", solution}).status, 0);
+        EXPECT_EQ(folder.count(), 3u) << "two files of the scene, one solution";
+    }
+}
+
+TEST(ProgramSolve, TheSolutionDoesNotDependOnTheNumberOfThreads) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder);
+    write_text(folder / "points.csv", "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n0,2,1,1,0,0\n2.3,0.3,2.5,0,0,-1\n");
+    std::vector<std::string> light;
+    for (const std::string threads : {"1", "2", "3"}) {
+        const std::string solution = folder / (threads + ".h5");
+        ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--error", "0.1", "--threads", threads, "-q"}).status,
+                  0);
+        const Finished probe =
+            run_program({"probe", solution, "--points", folder / "points.csv", "--threads", threads});
+        EXPECT_EQ(probe.status, 0) << probe.err;
+        light.push_back(probe.out);
+    }
+    EXPECT_EQ(light[0], light[1]);
+    EXPECT_EQ(light[0], light[2]);
+}
+
+TEST(ProgramSolve, QuietSaysNothingAndFindsTheSame) {
+    const TemporaryFolder folder;
+    const Finished run =
+        run_program({"solve", write_small_room(folder), "-o", folder / "room.h5", "--error", "0.1", "-q"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.out + run.err, "");
+}
+
+}  // namespace exitance::test

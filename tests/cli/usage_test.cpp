@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include "run_program.hpp"
+
+namespace exitance::test {
+namespace {
+
+const std::vector<std::string> verbs{"solve",  "probe", "compare",  "stats",
+                                     "export", "check", "generate", "viewfactors"};
+
+std::string first_line(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+TEST(ProgramUsage, HelpBeginsWithAnExampleThatNamesTheVerb) {
+    for (const std::string& verb : verbs) {
+        const Finished help = run_program({verb, "--help"});
+        EXPECT_EQ(help.status, 0) << verb;
+        EXPECT_EQ(help.out.find("Example:\n  exitance " + verb), 0u) << help.out;
+        EXPECT_EQ(help.err, "");
+    }
+}
+
+TEST(ProgramUsage, HelpListsEveryVerb) {
+    const Finished help = run_program({"--help"});
+    EXPECT_EQ(help.status, 0);
+    EXPECT_EQ(first_line(help.out), "Example:");
+    for (const std::string& verb : verbs) EXPECT_NE(help.out.find("\n  " + verb + " "), std::string::npos) << verb;
+}
+
+TEST(ProgramUsage, VersionNamesTheLibraries) {
+    const Finished version = run_program({"--version"});
+    EXPECT_EQ(version.status, 0);
+    EXPECT_EQ(version.out.find("exitance "), 0u);
+    for (const char* library : {"Embree 3.", "oneTBB 2", "CGAL 5", "HDF5 1."})
+        EXPECT_NE(version.out.find(library), std::string::npos) << version.out;
+}
+
+TEST(ProgramUsage, AnUnknownVerbIsAUsageErrorThatNamesTheNearest) {
+    const Finished run = run_program({"sovle", "room.obj"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(run.err, "error: there is no verb 'sovle'\nhint: did you mean 'solve'?\n");
+    EXPECT_EQ(run_program({}).status, 2);
+    EXPECT_NE(run_program({"frobnicate"}).err.find("the verbs are solve, "), std::string::npos);
+}
+
+TEST(ProgramUsage, AnUnknownOptionIsAUsageErrorThatNamesTheNearest) {
+    const Finished run = run_program({"solve", "room.obj", "--eror", "0.1", "-o", "s.h5"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.err, "error: '--eror' is not understood\nhint: did you mean --error?\n");
+}
+
+TEST(ProgramUsage, ValuesOutOfRangeAreUsageErrorsThatNameTheOptionAndTheValue) {
+    const std::vector<std::vector<std::string>> cases{
+        {"--error", "-1"},        {"--error", "nan"},    {"--error", "0"},          {"--error", "two"},
+        {"--mesh-size", "0"},     {"--bounces", "1.5"},  {"--bounces", "-1"},       {"--method", "matrx"},
+        {"--basis", "cubic"},     {"--threads", "0"},    {"--max-iterations", "0"}, {"--time-limit", "0"},
+        {"--memory-limit", "4X"}, {"--seed", "-3"},      {"--visibility", "yes"},   {"--relaxation", "sor"},
+        {"--progress", "loudly"}, {"--min-area", "inf"}, {"--residual", "1e-3x"},   {"--memory-limit", "0"},
+    };
+    for (const std::vector<std::string>& option : cases) {
+        const Finished run = run_program({"solve", "room.obj", "-o", "s.h5", option[0], option[1]});
+        EXPECT_EQ(run.status, 2) << option[0] << " " << option[1];
+        EXPECT_EQ(run.err.find("error: " + option[0] + ": "), 0u) << run.err;
+        EXPECT_NE(first_line(run.err).find(option[1].substr(0, 3)), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find("\nhint: "), std::string::npos) << run.err;
+        EXPECT_EQ(run.out, "");
+    }
+}
+
+TEST(ProgramUsage, AMissingValueOrInputIsAUsageError) {
+    EXPECT_EQ(first_line(run_program({"solve", "room.obj", "--error"}).err), "error: --error: its value is missing");
+    EXPECT_EQ(run_program({"solve", "room.obj", "--error"}).status, 2);
+    EXPECT_EQ(first_line(run_program({"solve", "room.obj", "--error", "1", "--error", "2"}).err),
+              "error: --error: is given more than once");
+    EXPECT_EQ(run_program({"solve"}).status, 2);
+    EXPECT_EQ(run_program({"export", "room.h5"}).status, 2);
+    EXPECT_EQ(run_program({"stats", "a.h5", "b.h5"}).status, 2);
+}
+
+}  // namespace exitance::test
