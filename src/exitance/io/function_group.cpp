@@ -25,8 +25,9 @@ class Replay {
     std::optional<std::string> run(ElementTree& tree) {
         std::size_t root = 0;
         while (tree.size() < parent_.size()) {
-            const bool good = parent_[tree.size()] == none ? add_root(tree, root++) : split(tree);
-            if (!good) return "makes no tree at element " + std::to_string(tree.size());
+            const std::size_t at = tree.size();
+            const bool good = parent_[at] == none ? add_root(tree, root++) : split(tree);
+            if (!good) return "makes no tree at element " + std::to_string(at);
         }
         for (ElementId e : tree.ids())
             if (tree.is_leaf(e) && cut_[e.value] != 0) return "lacks the children of element " + std::to_string(e.value);
@@ -66,7 +67,8 @@ class Replay {
         if (parent_[first] != e.value || parent_[first + 1] != e.value) return false;
         const double* line = &line_[3 * static_cast<std::size_t>(found - line_element_.begin())];
         if (tree.split_by_line(e, {{line[0], line[1]}, line[2]}, 0).is_none()) return false;
-        return tree.area(ElementId(first)) > 0 && tree.area(ElementId(first + 1)) > 0;
+        const double a = tree.area(ElementId(first)), b = tree.area(ElementId(first + 1));
+        return a > 0 && b > 0 && std::abs(a + b - tree.area(e)) <= 1e-6 * tree.area(e);
     }
 
     std::vector<std::uint32_t> parent_;

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include "exitance/io/export.hpp"
+#include "exitance/io/hdf5_file.hpp"
+#include "exitance/io/solution_file.hpp"
+#include "exitance/io/solution_groups.hpp"
+#include "support/run.hpp"
+#include "support/sample_solution.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr Hdf5Label label = {"1", "made up"};
+
+/// The parts of a file of one square cut into four, of which one at a time is made wrong.
+struct Parts {
+    std::vector<std::uint32_t> parent = {0xffffffffu, 0, 0, 0, 0}, root_region = {0};
+    std::vector<std::uint8_t> cut = {3, 0, 0, 0, 0}, root_shape = {0};
+    std::vector<double> ratio = {0.5, 0.5, 0.5, 0.5, 0.5}, root_patch = {0, 0, 0, 1, 0, 0, 0, 1, 0}, line;
+    std::vector<std::uint32_t> line_element;
+    std::vector<float> values = std::vector<float>(16 * bands, 1);
+
+    std::string wrong(const std::string& path) const {
+        Hdf5Writer out;
+        out.make_group("f");
+        out.write("f/parent", parent, 1, label);
+        out.write("f/cut", cut, 1, label);
+        out.write("f/ratio", ratio, 1, label);
+        out.write("f/line_element", line_element, 1, label);
+        out.write("f/line", line, 3, label);
+        out.write("f/root_region", root_region, 1, label);
+        out.write("f/root_shape", root_shape, 1, label);
+        out.write("f/root_patch", root_patch, 9, label);
+        out.write("f/values", values, bands, label);
+        if (!out.write_file(path)) return "cannot write";
+        Result<Hdf5Reader> in = Hdf5Reader::open(path);
+        if (!in) return "cannot open";
+        read_function(*in, "f", 1);
+        return in->failed() ? in->error().message.substr(in->error().message.find("data set")) : "";
+    }
+};
+
+TEST(HostileSolutions, MakeNoTreeOfNonsense) {
+    const TemporaryFolder folder;
+    const auto outcome = [&](const auto& change) {
+        Parts p;
+        change(p);
+        return p.wrong(folder / "f.h5");
+    };
+    EXPECT_EQ(outcome([](Parts&) {}), "");
+    EXPECT_EQ(outcome([](Parts& p) { p.parent[1] = 7; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.parent[0] = 0; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.parent[4] = 1; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[0] = 0; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[0] = 9; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[0] = 4; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[3] = 1; }), "data set f/parent lacks the children of element 3");
+    EXPECT_EQ(outcome([](Parts& p) { p.ratio[0] = 1; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.ratio[0] = NAN; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.ratio.pop_back(); }), "data set f/ratio has 4 rows in place of 5");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_region[0] = 1; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_shape[0] = 2; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_patch[4] = INFINITY; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_region.push_back(0); }), "data set f/root_shape has 1 rows in place of 2");
+    EXPECT_EQ(outcome([](Parts& p) { p.values.resize(15 * bands); }), "data set f/values has 15 rows in place of 16");
+}
+
+TEST(HostileSolutions, CutNothingAlongLinesThatMissIt) {
+    const TemporaryFolder folder;
+    Parts p;
+    p.parent = {0xffffffffu, 0, 0}, p.cut = {4, 0, 0}, p.ratio = {0.5, 0.5, 0.5};
+    p.line_element = {0}, p.values.resize(8 * bands);
+    p.line = {1, 1, 0.7};
+    EXPECT_EQ(p.wrong(folder / "f.h5"), "");
+    for (const std::vector<double>& line : {std::vector<double>{1, 1, 7}, {NAN, 1, 0.7}, {0, 0, 0}, {1, 0, 1}}) {
+        p.line = line;
+        EXPECT_EQ(p.wrong(folder / "f.h5"), "data set f/parent makes no tree at element 1");
+    }
+}
+
+TEST(HostileSolutions, MayNotChangeTheKindOfASet) {
+    const TemporaryFolder folder;
+    Hdf5Writer out;
+    out.write("a", std::vector<double>{1, 2, 3, 4}, 2, label);
+    out.write("b", std::vector<std::int64_t>{-1, 2}, 1, label);
+    out.write_text("c", "text", label);
+    out.make_group("g");
+    ASSERT_TRUE(out.write_file(folder / "f.h5"));
+    const auto wrong = [&](const auto& read) {
+        Result<Hdf5Reader> in = Hdf5Reader::open(folder / "f.h5");
+        EXPECT_TRUE(in);
+        read(*in);
+        return in->failed() ? in->error().message.substr(in->error().message.find("data set")) : "";
+    };
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a", 2); }), "");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a", 3); }), "data set a does not have rows of 3");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a"); }), "data set a does not have rows of 1");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("b"); }), "data set b does not hold fractions");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<std::uint8_t>("a", 2); }), "data set a does not hold integers");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("x/y"); }), "data set x/y is missing");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a/y"); }), "data set a/y is missing");
+    EXPECT_EQ(wrong([](auto& in) { in.read_text("a"); }), "data set a is not one text of fixed length");
+    EXPECT_EQ(wrong([](auto& in) { in.read_texts("c"); }), "data set c is not a row of texts of fixed length");
+    EXPECT_TRUE(wrong([](auto& in) { in.template read<double>("g"); }).starts_with("data set g cannot be opened"));
+}
+
+TEST(Exports, ByUnknownEndingsAreErrors) {
+    const Result<void> written = export_solution(sample_solution(), "solution.stl");
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::usage);
+    EXPECT_EQ(written.error().hint, "endings known: .vtkhdf, .vtu, .glb, .obj, .csv");
+    EXPECT_EQ(export_solution(sample_solution(), "no/folder/s.glb").error().code, ErrorCode::cannot_write);
+}
+
+}  // namespace
+}  // namespace exitance
