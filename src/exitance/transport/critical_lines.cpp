@@ -41,7 +41,7 @@ void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Poin
             const double d = face.signed_distance(s);
             over |= d > nearness_, under |= d < -nearness_;
         }
-        const double x = dot(face.n, frame.u), y = dot(face.n, frame.v), length = std::hypot(x, y);
+        const double x = dot(face.n, frame.u), y = dot(face.n, frame.v), length = std::sqrt(x * x + y * y);
         if (!over || !under || length < 1e-12 || lines.size() >= most_) continue;
         const CriticalLine line{{x / length, y / length}, -face.signed_distance(frame.origin) / length, -HUGE_VAL, HUGE_VAL};
         if (crosses_receiver(line)) keep(line, lines);
@@ -62,7 +62,7 @@ void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<Criti
     if (lines.size() >= most_ || (a.weight <= 0 && b.weight <= 0)) return;
     // The line joins them in homogeneous coordinates, wherever they lie.
     const double x = a.y * b.weight - a.weight * b.y, y = a.weight * b.x - a.x * b.weight, z = a.x * b.y - a.y * b.x;
-    const double length = std::hypot(x, y);
+    const double length = std::sqrt(x * x + y * y);
     if (!(length > 0)) return;
     CriticalLine line{{x / length, y / length}, -z / length, 0, 0};
     if (!crosses_receiver(line)) return;

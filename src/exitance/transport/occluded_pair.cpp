@@ -144,6 +144,7 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
         two.add(p), two.add(q), two.add(at(3)), two.add(at(0));
     }
     if (smooth) return integrate_smooth(one, 0.5 * allowed, depth + 1) + integrate_smooth(two, 0.5 * allowed, depth + 1);
+    measure(one), measure(two);
     return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
 }
 
@@ -164,14 +165,16 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int 
     const double whole = std::abs(cross_area(cell.corners())) * value(middle_of(cell.corners()));
     const double wanted = std::max(allowed, 1e-16 * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
-    const int points = std::max(1, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
+    const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
     if (points > 8 && depth < deepest) return integrate_halves(cell, allowed, depth, true);
     return apply(cell, std::min(points, 8), value);
 }
 
-/// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; of
-/// the better one it is taken to be a tenth, but no less than the source's distance lets expect. Two points a side need a second witness, as bends of opposite sign cancel
-/// in their difference from the middle: exp(a s) on [-1, 1] errs by a^4 / 270 and varies by a / sqrt 3 at the points.
+/// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; the
+/// better one's is a small share of it, but no less than the source's distance lets expect. Two points a side need a
+/// second witness, as bends of opposite sign cancel in their difference from the middle: exp(a s) on [-1, 1] errs by
+/// a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones, every bend counts. Shares are from cells of rooms with blocks: of a hundred cells
+/// accepted one errs by more than its allowance, none by ten times that.
 double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
     std::size_t dark = 0, count = 0;
     double lowest = HUGE_VAL, highest = 0;
@@ -183,17 +186,20 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
         return f;
     };
     const bool fine = relative_ < 1e-5;
-    const double rho = convergence(cell), unlikely = 10 * std::pow(rho, -4);
+    const double rho = convergence(cell), step = 1 / (rho * rho);
     double before = apply(cell, fine ? 3 : 2, value);
-    if (!fine && depth == 0 && dark == 0) {
+    if (!fine && dark == 0) {
         const double middle = std::max(cell.at_middle, 1e-300);
-        const double varies = 3 * std::pow(std::max(highest / middle - 1, 1 - lowest / middle), 2);
-        if (0.1 * std::abs(before - cell.area * middle) + before * (varies * varies / 270 + unlikely) <= allowed) return before;
+        const double most = std::max(highest / middle - 1, 1 - lowest / middle), varies = 3 * most * most;
+        const double witness = before * (varies * varies / 270 + 10 * step * step + (matters_ ? 0.005 * most : 0));
+        const double part = cell.count == 3 ? 0.2 : 0.03;  // three points of a triangle are but of degree 2
+        if (part * std::abs(before - cell.area * middle) + witness <= allowed) return before;
     }
     for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
         const double sum = apply(cell, points, value);
         if (dark == count) return 0;
-        if (0.1 * std::abs(sum - before) + sum * unlikely * std::pow(rho, 4 - 2 * points) <= allowed) return sum;
+        const double share = fine ? 0.1 : 0.03;
+        if (share * std::abs(sum - before) + 10 * sum * std::pow(step, points) <= allowed) return sum;
         before = sum;
         if (!fine) break;
     }
@@ -228,6 +234,7 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     }
     if (all && lines_.size() < most_lines) return unoccluded = true, 0;
 
+    matters_ = estimate > demand.large;
     const double allowed = std::max(demand.relative * estimate, demand.absolute);
     // No part of the source looks larger than all of it; twice that from the middle bounds it over most receivers.
     const double brightest = 2 * visible_.unoccluded(frame_.at(middle_of(whole.corners())), frame_.n);

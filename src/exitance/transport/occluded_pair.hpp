@@ -20,6 +20,7 @@ struct OccludedPair {
 struct Demand {
     double relative = 1e-4;  ///< Error over the pair's exchange area.
     double absolute = 0;     ///< m^2: an error that never matters.
+    double large = 0;        ///< m^2: larger exchange areas are integrated with more care.
 };
 
 /// Integrates the exact visible part of a source over a receiver. The receiver is cut along the lines where the visible
@@ -66,6 +67,7 @@ class OccludedExchange {
     Box source_box_;
     double size_ = 0;
     double relative_ = 0;
+    bool matters_ = false;
 };
 
 }  // namespace exitance

@@ -16,6 +16,7 @@ namespace exitance {
 namespace {
 
 constexpr double smallest_entry = 1e-6;  ///< Entries below it need no digits of their own.
+constexpr double large_entry = 3e-4;     ///< Entries above it may be among the largest of their rows.
 constexpr std::size_t most_corners = 12; ///< Of a convex piece.
 constexpr int most_points = 8;           ///< Gauss points a side; nearer pairs take the contour integral.
 
@@ -279,7 +280,7 @@ void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
 /// One convex piece of the receiver and one of the source, both before each other's plane.
 double RowWorker::occluded_pieces(const Face& receiver, const Face& source, std::span<const Point> r,
                                   std::span<const Point> s, bool& unoccluded) {
-    const Demand demand{pairs_.tolerance(), pairs_.tolerance() * smallest_entry * receiver.area};
+    const Demand demand{pairs_.tolerance(), pairs_.tolerance() * smallest_entry * receiver.area, large_entry * receiver.area};
     return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
 }
 

@@ -60,55 +60,77 @@ void VisibleSource::cut(const Polygon& polygon, const double* heights, double si
     }
 }
 
+VisibleSource::Sides VisibleSource::measure(const Polygon& polygon, const Vec3& plane, double* heights) const {
+    const double none = on_plane * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z));
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        double h = plane.x * polygon.xyz[i][0] + plane.y * polygon.xyz[i][1] + plane.z * polygon.xyz[i][2];
+        if (std::abs(h) <= none) h = 0;
+        heights[i] = h;
+        lowest = std::min(lowest, h), highest = std::max(highest, h);
+    }
+    return {highest > 0, lowest < 0};
+}
+
+/// Adds the planes of a pyramid that run through a fragment to cuts_; false when one has all of it outside.
+bool VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
+    double heights[Polygon::most];
+    for (std::uint32_t k = pyramid.first; k < pyramid.last; ++k) {
+        const Sides sides = measure(fragment, planes_[k], heights);
+        if (!sides.any_in) return false;
+        if (sides.any_out) cuts_.push_back(k);
+    }
+    return true;
+}
+
 /// Adds the edges of what the pyramids from `next` on leave of a fragment.
 void VisibleSource::subtract(const Polygon& fragment, std::size_t next, bool is_whole) {
-    const std::size_t mark = pool_used_;
-    for (; next < pyramids_.size(); ++next) {
-        if (pool_used_ + 2 * Polygon::most > pool_.size()) pool_.resize(2 * pool_.size());
-        std::size_t rest = pool_used_++;  // index, as the pool may grow; offcuts follow
-        pool_[rest] = fragment;
-        const std::size_t first_offcut = pool_used_ + 1;
-        std::size_t spare = pool_used_++, offcuts = 0;
-        bool hidden = true;
-        for (std::uint32_t k = pyramids_[next].first; hidden && k < pyramids_[next].last; ++k) {
-            const Polygon& polygon = pool_[rest];
-            double heights[Polygon::most];
-            bool any_in = false, any_out = false;
-            const double none = on_plane * size_ * (std::abs(planes_[k].x) + std::abs(planes_[k].y) + std::abs(planes_[k].z));
-            for (std::size_t i = 0; i < polygon.count; ++i) {
-                double h = dot(planes_[k], polygon.at(i));
-                if (std::abs(h) <= none) h = 0;
-                heights[i] = h;
-                any_in |= h > 0, any_out |= h < 0;
-            }
-            if (!any_in) hidden = false;  // it lies beside this pyramid
-            if (!any_in || !any_out) continue;
-            cut(polygon, heights, -1, pool_[first_offcut + offcuts]);
-            ++offcuts, ++pool_used_;
-            cut(polygon, heights, 1, pool_[spare]);
-            std::swap(rest, spare);
-        }
-        if (!hidden) {
-            pool_used_ = mark;
-            continue;
-        }
-        anything_hidden_ = true;
-        hidden_by_one_ |= offcuts == 0 && is_whole;
-        if (offcuts > 0 && next + 1 == pyramids_.size()) {  // nothing more is cut: the hidden part may count negative
-            anything_lit_ = true;
-            add_edges(fragment, 1);
-            add_edges(pool_[rest], -1);
-        } else {
-            for (std::size_t i = 0; i < offcuts; ++i) {
-                const Polygon piece = pool_[first_offcut + i];
-                subtract(piece, next + 1, false);
-            }
-        }
-        pool_used_ = mark;
+    const std::size_t mark = pool_used_, first_cut = cuts_.size();
+    while (next < pyramids_.size() && !find_cuts(fragment, pyramids_[next])) cuts_.resize(first_cut), ++next;
+    if (next == pyramids_.size()) {
+        anything_lit_ = true;
+        add_edges(fragment, 1);
         return;
     }
-    anything_lit_ = true;
-    add_edges(fragment, 1);
+    if (cuts_.size() == first_cut) {  // it lies within
+        anything_hidden_ = true;
+        hidden_by_one_ |= is_whole;
+        return;
+    }
+    const bool last = next + 1 == pyramids_.size();
+    if (pool_used_ + 2 + cuts_.size() - first_cut > pool_.size()) pool_.resize(2 * pool_.size() + cuts_.size());
+    std::size_t rest = pool_used_++, spare = pool_used_++;
+    const std::size_t first_offcut = pool_used_;
+    const Polygon* polygon = &fragment;
+    bool hidden = true;
+    for (std::size_t c = first_cut; hidden && c < cuts_.size(); ++c) {
+        double heights[Polygon::most];
+        const Sides sides = measure(*polygon, planes_[cuts_[c]], heights);
+        hidden = sides.any_in;
+        if (!sides.any_in || !sides.any_out) continue;
+        if (!last) cut(*polygon, heights, -1, pool_[pool_used_++]);
+        cut(*polygon, heights, 1, pool_[spare]);
+        std::swap(rest, spare);
+        polygon = &pool_[rest];
+    }
+    const std::size_t end = pool_used_;
+    cuts_.resize(first_cut);
+    if (!hidden) {  // beside the pyramid after all
+        pool_used_ = mark;
+        subtract(fragment, next + 1, is_whole);
+    } else if (last) {  // nothing more is cut: the hidden part may count negative
+        anything_hidden_ = anything_lit_ = true;
+        add_edges(fragment, 1);
+        add_edges(*polygon, -1);
+    } else {
+        anything_hidden_ = true;
+        for (std::size_t i = first_offcut; i < end; ++i) {
+            Polygon piece;
+            piece.copy(pool_[i]);
+            subtract(piece, next + 1, false);
+        }
+    }
+    pool_used_ = mark;
 }
 
 double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
@@ -118,6 +140,7 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
     n_ = n;
     anything_lit_ = anything_hidden_ = hidden_by_one_ = false;
     pool_used_ = 0;
+    cuts_.clear();
     Polygon whole;
     whole.count = 0;
     size_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -42,12 +43,21 @@ class VisibleSource {
         void add(const Vec3& p) {
             if (count < most) xyz[count][0] = p.x, xyz[count][1] = p.y, xyz[count][2] = p.z, ++count;
         }
+        void copy(const Polygon& other) {  // no more than is used
+            count = other.count;
+            std::copy_n(&other.xyz[0][0], 3 * count, &xyz[0][0]);
+        }
     };
     struct Pyramid {
         std::uint32_t first, last;  ///< Its planes.
     };
 
     bool add_pyramid(const ConvexBlocker& blocker, const Point& x, bool& inside);
+    struct Sides {
+        bool any_in, any_out;
+    };
+    Sides measure(const Polygon& polygon, const Vec3& plane, double* heights) const;
+    bool find_cuts(const Polygon& fragment, const Pyramid& pyramid);
     void subtract(const Polygon& fragment, std::size_t next, bool is_whole);
     void add_edges(const Polygon& polygon, double weight);
     static void cut(const Polygon& polygon, const double* heights, double sign, Polygon& out);
@@ -59,8 +69,9 @@ class VisibleSource {
     std::vector<Vec3> planes_;
     std::vector<Pyramid> pyramids_;
     std::vector<std::uint8_t> in_front_;
-    std::vector<Polygon> pool_;
+    std::vector<Polygon> pool_;  ///< A stack of fragments.
     std::size_t pool_used_ = 0;
+    std::vector<std::uint32_t> cuts_;  ///< Planes that run through the fragments on the stack.
     bool anything_lit_ = false, anything_hidden_ = false, hidden_by_one_ = false;
     EdgeTerms terms_;
 };
