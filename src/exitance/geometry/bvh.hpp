@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "exitance/geometry/polygon.hpp"
@@ -57,16 +59,17 @@ class Bvh {
     std::size_t size() const { return items_.size(); }
     std::size_t memory_bytes() const;
 
-    /// Calls visit(item) for every item whose box is not wholly outside one plane of the region.
+    /// Calls visit(item) for every item whose box is not wholly outside one plane of the region. Where visit returns a
+    /// bool, true ends the walk; returns whether it was ended.
     template <class Visit>
-    void visit_region(const ConvexRegion& region, const Visit& visit) const {
-        walk([&](const Box& box) { return !region.excludes(box); }, visit);
+    bool visit_region(const ConvexRegion& region, const Visit& visit) const {
+        return walk([&](const Box& box) { return !region.excludes(box); }, visit);
     }
 
-    /// Calls visit(item) for every item whose box meets the given one.
+    /// Calls visit(item) for every item whose box meets the given one; true ends the walk here, too.
     template <class Visit>
-    void visit_box(const Box& query, const Visit& visit) const {
-        walk(
+    bool visit_box(const Box& query, const Visit& visit) const {
+        return walk(
             [&](const Box& b) {
                 return b.lo.x <= query.hi.x && query.lo.x <= b.hi.x && b.lo.y <= query.hi.y && query.lo.y <= b.hi.y &&
                        b.lo.z <= query.hi.z && query.lo.z <= b.hi.z;
@@ -93,8 +96,8 @@ class Bvh {
     static constexpr std::size_t largest_leaf = 3, deepest = 96;
 
     template <class Meets, class Visit>
-    void walk(const Meets& meets, const Visit& visit) const {
-        if (nodes_.empty()) return;
+    bool walk(const Meets& meets, const Visit& visit) const {
+        if (nodes_.empty()) return false;
         std::array<std::uint32_t, deepest> stack;
         std::size_t top = 0;
         stack[top++] = 0;
@@ -108,8 +111,15 @@ class Bvh {
                 continue;
             }
             for (std::uint32_t i = node.second; i < node.second + node.count; ++i)
-                if (node.count == 1 || meets(items_[i].box)) visit(items_[i].id);
+                if (node.count == 1 || meets(items_[i].box)) {
+                    if constexpr (std::is_same_v<decltype(visit(items_[i].id)), bool>) {
+                        if (visit(items_[i].id)) return true;
+                    } else {
+                        visit(items_[i].id);
+                    }
+                }
         }
+        return false;
     }
 
     std::vector<Node> nodes_;  ///< A node's first child follows it.

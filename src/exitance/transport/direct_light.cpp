@@ -63,7 +63,10 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
         for (PieceId piece : emitter.pieces) {
             scratch.shaft.set(*occluders_, {receiver, n, own},
                               {occluders_->corners(piece), emitter.plane.n, emitter.region});
+            PieceId& likely = scratch.last_blocker(piece);
+            if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) continue;
             add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
+            if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
         }
     }
 }

@@ -45,10 +45,23 @@ Occluders::Occluders(const Scene& scene) : scene_(&scene) {
         }
         of_region_[r] = {first, pieces_.size()};
     }
-    std::vector<Box> boxes;
-    boxes.reserve(pieces_.size());
-    for (PieceId p : pieces_.ids()) boxes.push_back(box_of(corners(p)));
-    bvh_ = Bvh(boxes);
+    make_trees();
+}
+
+void Occluders::make_trees() {
+    std::vector<std::pair<double, std::uint32_t>> by_area;
+    for (PieceId p : pieces_.ids()) by_area.push_back({-squared_norm(area_vector(corners(p))), p.value});
+    const auto large = std::min(by_area.size(), static_cast<std::size_t>(4 * std::sqrt(by_area.size())));
+    std::nth_element(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(large), by_area.end());
+    std::vector<bool> is_large(by_area.size());
+    for (std::size_t i = 0; i < large; ++i) is_large[by_area[i].second] = true;
+    for (PieceId p : pieces_.ids()) trees_[is_large[p.value] ? 0 : 1].pieces.push_back(p);
+    for (Tree& tree : trees_) {
+        std::vector<Box> boxes;
+        boxes.reserve(tree.pieces.size());
+        for (PieceId p : tree.pieces) boxes.push_back(box_of(corners(p)));
+        tree.bvh = Bvh(boxes);
+    }
 }
 
 void Occluders::add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane) {
@@ -77,23 +90,24 @@ bool Occluders::is_covered(const Point& x, const Normal& n, RegionId own) const 
     Box near;
     near.add(x - Vec3{reach, reach, reach});
     near.add(x + Vec3{reach, reach, reach});
-    bool covered = false;
-    bvh_.visit_box(near, [&](std::uint32_t i) {
-        const PieceId p(i);
+    const auto covers = [&](PieceId p) {
         const ConvexPiece& piece = pieces_[p];
-        if (covered || piece.region == own) return;
+        if (piece.region == own) return false;
         const double facing = dot(piece.plane.n, n);
         const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // of the piece above x
-        if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return;
-        if (facing > 0 && height <= rounding_) return;
-        if (!contains(corners(p), piece.plane.n, x)) return;
-        covered = facing > 0 || own.is_none() || !is_back_of(own, piece.region);
-    });
-    return covered;
+        if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return false;
+        if (facing > 0 && height <= rounding_) return false;
+        if (!contains(corners(p), piece.plane.n, x)) return false;
+        return facing > 0 || own.is_none() || !is_back_of(own, piece.region);
+    };
+    for (const Tree& tree : trees_)
+        if (tree.bvh.visit_box(near, [&](std::uint32_t i) { return covers(tree.pieces[i]); })) return true;
+    return false;
 }
 
 std::size_t Occluders::memory_bytes() const {
-    return bvh_.memory_bytes() + corners_.capacity() * sizeof(Point) + pieces_.size() * sizeof(ConvexPiece) +
+    return trees_[0].bvh.memory_bytes() + trees_[1].bvh.memory_bytes() + pieces_.size() * sizeof(PieceId) +
+           corners_.capacity() * sizeof(Point) + pieces_.size() * sizeof(ConvexPiece) +
            of_region_.size() * sizeof(IdRange<PieceId>);
 }
 

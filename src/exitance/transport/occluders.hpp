@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,18 @@ class Occluders {
         return std::span(corners_).subspan(pieces_[p].first_corner, pieces_[p].corner_count);
     }
     IdRange<PieceId> pieces(RegionId r) const { return of_region_[r]; }
-    const Bvh& bvh() const { return bvh_; }  ///< Its items are the pieces.
+
+    /// The pieces in two trees: the largest few (4 sqrt(n) by area: walls, floors, ceilings) and the others. What is
+    /// hidden at all is hidden by a large one as a rule, and these are found at once.
+    enum class Size : std::uint8_t { large, small };
+
+    /// Calls visit(piece) for every piece of a size whose box is not wholly outside one plane of the region, in a fixed
+    /// order, until visit returns true. Returns whether it did.
+    template <class Visit>
+    bool visit_region(Size size, const ConvexRegion& region, const Visit& visit) const {
+        const Tree& tree = trees_[static_cast<std::size_t>(size)];
+        return tree.bvh.visit_region(region, [&](std::uint32_t i) { return visit(tree.pieces[i]); });
+    }
 
     /// How far apart two places may be that are meant to be the same, metres: a few roundings of the coordinates.
     double rounding() const { return rounding_; }
@@ -46,6 +58,7 @@ class Occluders {
     std::size_t memory_bytes() const;
 
   private:
+    void make_trees();
     void add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane);
     bool is_back_of(RegionId a, RegionId b) const;
 
@@ -53,7 +66,11 @@ class Occluders {
     Field<PieceId, ConvexPiece> pieces_;
     Field<RegionId, IdRange<PieceId>> of_region_;
     std::vector<Point> corners_;
-    Bvh bvh_;
+    struct Tree {
+        std::vector<PieceId> pieces;
+        Bvh bvh;
+    };
+    std::array<Tree, 2> trees_;  ///< Indexed by Size.
     double rounding_ = 0;
 };
 

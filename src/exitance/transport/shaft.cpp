@@ -57,6 +57,7 @@ void Shaft::clip_by(const Plane& plane, std::vector<Point>& polygon) {
 void Shaft::set(const Occluders& occluders, const Facet& receiver, const Facet& source) {
     occluders_ = &occluders;
     receiver_region_ = receiver.region, source_region_ = source.region;
+    blocker_ = PieceId();
     receiver_plane_ = {receiver.n, dot(receiver.n, receiver.corners[0])};
     source_plane_ = {source.n, dot(source.n, source.corners[0])};
     receiver_.assign(receiver.corners.begin(), receiver.corners.end());
@@ -194,15 +195,21 @@ View Shaft::classify(std::vector<PieceId>& candidates) {
     candidates.clear();
     in_vain_.clear();
     if (receiver_.empty() || source_.empty()) return View::none;
-    bool blocked = false;
-    occluders_->bvh().visit_region(region_, [&](std::uint32_t i) {
-        const PieceId p(i);
-        if (blocked || !reaches_in(p)) return;
+    const auto look = [&](PieceId p) {
+        if (!reaches_in(p)) return false;
         candidates.push_back(p);
-        blocked = blocks_all(p);
-    });
+        return blocks_all(p);
+    };
+    const bool blocked = occluders_->visit_region(Occluders::Size::large, region_, look) ||
+                         occluders_->visit_region(Occluders::Size::small, region_, look);
+    if (blocked) blocker_ = candidates.back();
     if (blocked) candidates.clear();
     return blocked ? View::none : candidates.empty() ? View::open : View::mixed;
+}
+
+bool Shaft::is_blocked_by(PieceId p) {
+    in_vain_.clear();
+    return !receiver_.empty() && !source_.empty() && reaches_in(p) && blocks_all(p);
 }
 
 View Shaft::classify(std::span<const PieceId> from, std::vector<PieceId>& candidates) {
@@ -213,6 +220,7 @@ View Shaft::classify(std::span<const PieceId> from, std::vector<PieceId>& candid
         if (!reaches_in(p)) continue;
         candidates.push_back(p);
         if (!blocks_all(p)) continue;
+        blocker_ = p;
         candidates.clear();
         return View::none;
     }

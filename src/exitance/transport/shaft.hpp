@@ -43,6 +43,11 @@ class Shaft {
     /// `candidates` must be another vector.
     View classify(std::span<const PieceId> from, std::vector<PieceId>& candidates);
 
+    /// Does this piece, or its region, block every segment? If so, classify finds that, too.
+    bool is_blocked_by(PieceId p);
+    /// What blocked, after classify returned View::none because something did.
+    PieceId blocker() const { return blocker_; }
+
   private:
     void clip_by(const Plane& plane, std::vector<Point>& polygon);
     void add_supporting_planes(std::span<const Point> edges, std::span<const Point> corners);
@@ -52,6 +57,7 @@ class Shaft {
 
     const Occluders* occluders_ = nullptr;
     RegionId receiver_region_, source_region_;
+    PieceId blocker_;
     std::vector<Point> receiver_, source_, buffer_, part_;  ///< The parts that face each other; scratch.
     Plane receiver_plane_, source_plane_;
     std::vector<Plane> planes_;

@@ -64,8 +64,8 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     }
 }
 
-/// The pieces whose boxes reach into the pyramid from x over the source, between the planes of both.
-void find_candidates(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+/// The pyramid from x over the source, between the planes of both, in scratch.region.
+void make_region(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
     const double slack = occluders.rounding();
     const auto above = [&](const Vec3& n, double height) { return Plane{n, dot(n, at.x) + height}; };
     scratch.region.clear();
@@ -73,8 +73,6 @@ void find_candidates(const Occluders& occluders, const Receiver& at, PieceId sou
     scratch.region.add(above(ns, dot(ns, scratch.source[0]) + slack));
     scratch.region.add(above(at.n, slack));
     for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
-    scratch.candidates.clear();
-    occluders.bvh().visit_region(scratch.region, [&](std::uint32_t i) { scratch.candidates.push_back(PieceId(i)); });
 }
 
 /// Adds the planes of the pyramid over a convex polygon (relative to x); false if the polygon is seen edge-on.
@@ -208,21 +206,34 @@ void subtract(std::span<const Vec3> fragment, std::span<const Vec3> planes, Work
     }
 }
 
-/// Cuts the source by one occluder after the other and sums over what is left.
-double subtraction(const Normal& n, Workspace& scratch) {
+void begin_lit(Workspace& scratch) {
     scratch.lit.clear();
     scratch.lit.corners.assign(scratch.source.begin(), scratch.source.end());
     scratch.lit.close();
-    for (const Workspace::Shadow& shadow : scratch.shadows) {
+}
+
+/// Cuts what is lit by the shadows from the given one on; false if nothing is left.
+bool cut_lit(std::size_t first, Workspace& scratch) {
+    // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
+    std::sort(scratch.shadows.begin() + static_cast<std::ptrdiff_t>(first), scratch.shadows.end(),
+              [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
+                  return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
+              });
+    for (std::size_t k = first; k < scratch.shadows.size(); ++k) {
+        const Workspace::Shadow& shadow = scratch.shadows[k];
         const std::span<const Vec3> planes = std::span(scratch.planes).subspan(shadow.first_plane, shadow.plane_count);
         scratch.next.clear();
         for (std::size_t i = 0; i < scratch.lit.size(); ++i) subtract(scratch.lit[i], planes, scratch, scratch.next);
         std::swap(scratch.lit, scratch.next);
-        if (scratch.lit.size() == 0) return 0;
+        if (scratch.lit.size() == 0) return false;
     }
+    return true;
+}
+
+double sum_lit(const Normal& n, const Workspace& scratch) {
     double sum = 0;
     for (std::size_t i = 0; i < scratch.lit.size(); ++i) sum += contour_sum(n, scratch.lit[i]);
-    return sum;
+    return std::clamp(sum, 0.0, 1.0);
 }
 
 /// Do many occluders hide little, so that each edge meets few others? Then the boundary is quicker than cutting.
@@ -234,43 +245,62 @@ bool shadows_are_sparse(const Occluders& occluders, const Receiver& at, PieceId 
     return hidden < sparse * rough_solid_angle(scratch.source, dot(piece.plane.n, at.x - occluders.corners(source)[0]));
 }
 
-double form_factor_of_lit_part(const Occluders& occluders, const Receiver& at, PieceId source,
-                               std::span<const PieceId> candidates, Workspace& scratch, VisiblePartMethod method) {
+/// The form factor to what the shadows leave, the first `cut` of which have cut the source already.
+double finish(const Occluders& occluders, const Receiver& at, PieceId source, std::size_t cut, Workspace& scratch,
+              VisiblePartMethod method) {
+    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
+    if (method == VisiblePartMethod::edge_sums ||
+        (method == VisiblePartMethod::automatic && shadows_are_sparse(occluders, at, source, scratch))) {
+        const double f = edge_sum(at.n, scratch);
+        if (!std::isnan(f)) return std::clamp(f, 0.0, 1.0);
+    }
+    return cut_lit(cut, scratch) ? sum_lit(at.n, scratch) : 0;
+}
+
+void begin(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+    look_at_source(occluders, at, source, scratch);
     scratch.planes.clear();
     scratch.shadows.clear();
     scratch.outlines.clear();
-    for (PieceId candidate : candidates)
-        if (add_shadow(occluders, at, occluders.pieces()[source], candidate, scratch) == Hides::everything) return 0;
-    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
-    // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
-    std::sort(scratch.shadows.begin(), scratch.shadows.end(),
-              [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
-                  return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
-              });
-    const bool by_edges =
-        method == VisiblePartMethod::edge_sums ||
-        (method == VisiblePartMethod::automatic && shadows_are_sparse(occluders, at, source, scratch));
-    double f = by_edges ? edge_sum(at.n, scratch) : subtraction(at.n, scratch);
-    if (std::isnan(f)) f = subtraction(at.n, scratch);
-    return std::clamp(f, 0.0, 1.0);
+    begin_lit(scratch);
 }
 
 }  // namespace
 
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
                            VisiblePartMethod method) {
-    look_at_source(occluders, at, source, scratch);
+    begin(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
-    find_candidates(occluders, at, source, scratch);
-    return form_factor_of_lit_part(occluders, at, source, scratch.candidates, scratch, method);
+    const ConvexPiece& emitter = occluders.pieces()[source];
+    PieceId& likely = scratch.last_blocker(source);
+    const auto hides_everything = [&](PieceId p) {
+        const bool hides = add_shadow(occluders, at, emitter, p, scratch) == Hides::everything;
+        if (hides) likely = p;
+        return hides;
+    };
+    if (!likely.is_none()) {
+        if (hides_everything(likely)) return 0;
+        scratch.planes.clear();
+        scratch.shadows.clear();
+        scratch.outlines.clear();
+    }
+    make_region(occluders, at, source, scratch);
+    if (occluders.visit_region(Occluders::Size::large, scratch.region, hides_everything)) return 0;
+    const std::size_t large = scratch.shadows.size();
+    if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
+    if (occluders.visit_region(Occluders::Size::small, scratch.region, hides_everything)) return 0;
+    return finish(occluders, at, source, large > 1 ? large : 0, scratch, method);
 }
 
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
                            std::span<const PieceId> candidates, VisibilityWorkspace& scratch,
                            VisiblePartMethod method) {
-    look_at_source(occluders, at, source, scratch);
+    begin(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
-    return form_factor_of_lit_part(occluders, at, source, candidates, scratch, method);
+    const ConvexPiece& emitter = occluders.pieces()[source];
+    for (PieceId p : candidates)
+        if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
+    return finish(occluders, at, source, 0, scratch, method);
 }
 
 }  // namespace exitance

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -57,6 +58,20 @@ class VisibilityWorkspace {
     std::vector<double> heights;
     ConvexRegion region;
     Shaft shaft;
+
+    /// What hid a source last, and is likely to hide it again: asked first, it saves the search. What it does not hide
+    /// is searched for as ever, so the answer does not depend on it.
+    PieceId& last_blocker(PieceId source) {
+        Blocker& entry = blockers_[source.value % blockers_.size()];
+        if (entry.source != source) entry = {source, PieceId()};
+        return entry.blocker;
+    }
+
+  private:
+    struct Blocker {
+        PieceId source, blocker;
+    };
+    std::array<Blocker, 1024> blockers_;
 };
 
 /// How the visible part is found: by cutting the source, or by its boundary (edge_sum.hpp). Both are exact.
