@@ -60,10 +60,11 @@ class Bvh {
     std::size_t memory_bytes() const;
 
     /// Calls visit(item) for every item whose box is not wholly outside one plane of the region. Where visit returns a
-    /// bool, true ends the walk; returns whether it was ended.
+    /// bool, true ends the walk; returns whether it was ended. Of two subtrees, what lies farther back along
+    /// `direction` is walked first (the zero vector: in the order of the tree).
     template <class Visit>
-    bool visit_region(const ConvexRegion& region, const Visit& visit) const {
-        return walk([&](const Box& box) { return !region.excludes(box); }, visit);
+    bool visit_region(const ConvexRegion& region, const Visit& visit, const Vec3& direction = {}) const {
+        return walk([&](const Box& box) { return !region.excludes(box); }, visit, direction);
     }
 
     /// Calls visit(item) for every item whose box meets the given one; true ends the walk here, too.
@@ -96,7 +97,7 @@ class Bvh {
     static constexpr std::size_t largest_leaf = 3, deepest = 96;
 
     template <class Meets, class Visit>
-    bool walk(const Meets& meets, const Visit& visit) const {
+    bool walk(const Meets& meets, const Visit& visit, const Vec3& direction = {}) const {
         if (nodes_.empty()) return false;
         std::array<std::uint32_t, deepest> stack;
         std::size_t top = 0;
@@ -106,8 +107,10 @@ class Bvh {
             const Node& node = nodes_[at];
             if (!meets(node.box)) continue;
             if (node.count == 0) {
-                stack[top++] = node.second;
-                stack[top++] = at + 1;
+                const Box &first = nodes_[at + 1].box, &second = nodes_[node.second].box;
+                const bool turned = dot(direction, second.lo - first.lo) + dot(direction, second.hi - first.hi) < 0;
+                stack[top++] = turned ? at + 1 : node.second;
+                stack[top++] = turned ? node.second : at + 1;
                 continue;
             }
             for (std::uint32_t i = node.second; i < node.second + node.count; ++i)

@@ -39,12 +39,13 @@ class Occluders {
     /// hidden at all is hidden by a large one as a rule, and these are found at once.
     enum class Size : std::uint8_t { large, small };
 
-    /// Calls visit(piece) for every piece of a size whose box is not wholly outside one plane of the region, in a fixed
-    /// order, until visit returns true. Returns whether it did.
+    /// Calls visit(piece) for every piece of a size whose box is not wholly outside one plane of the region, roughly
+    /// along `direction`, until visit returns true. Returns whether it did.
     template <class Visit>
-    bool visit_region(Size size, const ConvexRegion& region, const Visit& visit) const {
+    bool visit_region(Size size, const ConvexRegion& region, const Visit& visit, const Vec3& direction) const {
         const Tree& tree = trees_[static_cast<std::size_t>(size)];
-        return tree.bvh.visit_region(region, [&](std::uint32_t i) { return visit(tree.pieces[i]); });
+        return tree.bvh.visit_region(
+            region, [&](std::uint32_t i) { return visit(tree.pieces[i]); }, direction);
     }
 
     /// How far apart two places may be that are meant to be the same, metres: a few roundings of the coordinates.

@@ -17,36 +17,6 @@ double highest(std::span<const Point> points, const Plane& plane) {
     return h;
 }
 
-/// Convex hull, counter-clockwise (monotone chains [Andrew79]); orders the points.
-void make_hull(std::vector<Vec2>& points, std::vector<Vec2>& hull) {
-    std::sort(points.begin(), points.end(), [](Vec2 a, Vec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-    hull.clear();
-    const auto add = [&](Vec2 p, std::size_t keep) {
-        while (hull.size() >= keep + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
-            hull.pop_back();
-        hull.push_back(p);
-    };
-    for (const Vec2& p : points) add(p, 0);
-    const std::size_t lower = hull.size() - 1;
-    for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
-    hull.pop_back();
-}
-
-/// Does a part of the segment a b lie inside a convex polygon by more than `margin`?
-bool enters(Vec2 a, Vec2 b, std::span<const Vec2> polygon, double margin) {
-    double from = 0, to = 1;
-    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
-        const Vec2 edge = polygon[i + 1 == m ? 0 : i + 1] - polygon[i];
-        const double length = std::sqrt(dot(edge, edge));
-        const double ha = cross(edge, a - polygon[i]) - margin * length,
-                     hb = cross(edge, b - polygon[i]) - margin * length;
-        if (ha <= 0 && hb <= 0) return false;
-        if (ha < 0) from = std::max(from, ha / (ha - hb));
-        if (hb < 0) to = std::min(to, ha / (ha - hb));
-    }
-    return from < to;
-}
-
 }  // namespace
 
 void Shaft::clip_by(const Plane& plane, std::vector<Point>& polygon) {
@@ -160,35 +130,11 @@ bool Shaft::blocks_all(PieceId p) {
 }
 
 bool Shaft::blocks_all(RegionId r) {
-    const Region& region = occluders_->scene().regions()[r];
-    const double slack = occluders_->rounding();
-    const double side = region.plane.signed_distance(mean(receiver_)) > 0 ? 1 : -1;
-    const Frame frame(region.plane.n);
-    const Point origin = region.loops[0][0];
-    const auto flat = [&](const Point& p) { return Vec2{dot(frame.u, p - origin), dot(frame.v, p - origin)}; };
-    crossings_.clear();
+    cover_.begin(occluders_->scene().regions()[r], occluders_->rounding());
     for (const Point& x : receiver_)
-        for (const Point& y : source_) {
-            const double hx = side * region.plane.signed_distance(x), hy = side * region.plane.signed_distance(y);
-            if (hx < 0 || hy > 0 || hx - hy <= slack) return false;
-            crossings_.push_back(flat(x + (hx / (hx - hy)) * (y - x)));
-        }
-    make_hull(crossings_, hull_);
-    if (hull_.size() < 3) return false;
-    Vec2 middle;
-    for (const Vec2& p : hull_) middle = middle + (1.0 / static_cast<double>(hull_.size())) * p;
-    bool holds_middle = false;
-    for (const std::vector<Point>& loop : region.loops) {
-        Vec2 a = flat(loop.back());
-        for (const Point& p : loop) {
-            const Vec2 b = flat(p);
-            if (enters(a, b, hull_, slack)) return false;
-            if ((a.y > middle.y) != (b.y > middle.y) && middle.x - a.x < (b.x - a.x) * ((middle.y - a.y) / (b.y - a.y)))
-                holds_middle = !holds_middle;
-            a = b;
-        }
-    }
-    return holds_middle;
+        for (const Point& y : source_)
+            if (!cover_.add(x, y)) return false;
+    return cover_.covers();
 }
 
 View Shaft::classify(std::vector<PieceId>& candidates) {
@@ -200,8 +146,9 @@ View Shaft::classify(std::vector<PieceId>& candidates) {
         candidates.push_back(p);
         return blocks_all(p);
     };
-    const bool blocked = occluders_->visit_region(Occluders::Size::large, region_, look) ||
-                         occluders_->visit_region(Occluders::Size::small, region_, look);
+    const Vec3 direction = source_[0] - receiver_[0];  // from the receiver on: near walls block most
+    const bool blocked = occluders_->visit_region(Occluders::Size::large, region_, look, direction) ||
+                         occluders_->visit_region(Occluders::Size::small, region_, look, direction);
     if (blocked) blocker_ = candidates.back();
     if (blocked) candidates.clear();
     return blocked ? View::none : candidates.empty() ? View::open : View::mixed;

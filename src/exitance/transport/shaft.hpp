@@ -7,6 +7,7 @@
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/transport/occluders.hpp"
+#include "exitance/transport/region_cover.hpp"
 
 namespace exitance {
 
@@ -61,7 +62,7 @@ class Shaft {
     std::vector<Point> receiver_, source_, buffer_, part_;  ///< The parts that face each other; scratch.
     Plane receiver_plane_, source_plane_;
     std::vector<Plane> planes_;
-    std::vector<Vec2> crossings_, hull_;
+    RegionCover cover_;
     std::vector<RegionId> in_vain_;  ///< Regions of several pieces that do not block everything.
     ConvexRegion region_;
 };

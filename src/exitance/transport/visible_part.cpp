@@ -118,6 +118,18 @@ double rough_solid_angle(std::span<const Vec3> polygon, double distance_of_plane
     return 0.5 * std::abs(distance_of_plane) * norm(twice_area) / (distance * distance * distance);
 }
 
+/// Does a region of several pieces (a wall with a door, say) hide all of the source by itself?
+bool region_hides_everything(const Occluders& occluders, const Receiver& at, RegionId region, Workspace& scratch) {
+    if (std::find(scratch.uncovering.begin(), scratch.uncovering.end(), region) != scratch.uncovering.end())
+        return false;
+    scratch.cover.begin(occluders.scene().regions()[region], occluders.rounding());
+    bool all_cross = true;
+    for (const Vec3& r : scratch.source) all_cross = all_cross && scratch.cover.add(at.x, at.x + r);
+    if (all_cross && scratch.cover.covers()) return true;
+    scratch.uncovering.push_back(region);
+    return false;
+}
+
 /// What a candidate hides: the pyramid over its part between the planes of the source and the receiver, added to the
 /// shadows if it hides some of the source.
 Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate,
@@ -151,6 +163,8 @@ Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPie
     const Hides hides = compare(scratch.source, std::span(scratch.planes).subspan(first));
     if (hides == Hides::nothing) scratch.planes.resize(first);
     if (hides != Hides::some) return hides;
+    if (occluders.pieces(piece.region).size() > 1 && region_hides_everything(occluders, at, piece.region, scratch))
+        return Hides::everything;
     scratch.shadows.push_back(
         {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(scratch.planes.size() - first),
          rough_solid_angle(scratch.clipped, facing), static_cast<std::uint32_t>(scratch.outlines.size()), facing < 0});
@@ -262,6 +276,7 @@ void begin(const Occluders& occluders, const Receiver& at, PieceId source, Works
     scratch.planes.clear();
     scratch.shadows.clear();
     scratch.outlines.clear();
+    scratch.uncovering.clear();
     begin_lit(scratch);
 }
 
@@ -285,10 +300,11 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
         scratch.outlines.clear();
     }
     make_region(occluders, at, source, scratch);
-    if (occluders.visit_region(Occluders::Size::large, scratch.region, hides_everything)) return 0;
+    // From the receiver on: near walls hide most.
+    if (occluders.visit_region(Occluders::Size::large, scratch.region, hides_everything, scratch.source[0])) return 0;
     const std::size_t large = scratch.shadows.size();
     if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
-    if (occluders.visit_region(Occluders::Size::small, scratch.region, hides_everything)) return 0;
+    if (occluders.visit_region(Occluders::Size::small, scratch.region, hides_everything, scratch.source[0])) return 0;
     return finish(occluders, at, source, large > 1 ? large : 0, scratch, method);
 }
 

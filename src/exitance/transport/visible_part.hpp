@@ -57,6 +57,8 @@ class VisibilityWorkspace {
     std::vector<PieceId> candidates;
     std::vector<double> heights;
     ConvexRegion region;
+    RegionCover cover;
+    std::vector<RegionId> uncovering;  ///< Regions of several pieces that do not hide all of the source.
     Shaft shaft;
 
     /// What hid a source last, and is likely to hide it again: asked first, it saves the search. What it does not hide
