@@ -198,7 +198,7 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
     for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
         const double sum = apply(cell, points, value);
         if (dark == count) return 0;
-        const double share = fine ? 0.1 : 0.03;
+        const double share = fine || matters_ ? 0.1 : 0.03;
         if (share * std::abs(sum - before) + 10 * sum * std::pow(step, points) <= allowed) return sum;
         before = sum;
         if (!fine) break;
