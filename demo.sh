@@ -9,7 +9,7 @@ export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 
 scripts/install_dependencies.sh
 echo "== Building (Release)"
-cmake --preset release --log-level=WARNING -D EXITANCE_TESTS=OFF >/dev/null
+cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target exitance-cli
 
 mkdir -p "$out"
