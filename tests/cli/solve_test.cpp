@@ -126,6 +126,17 @@ TEST(ProgramSolve, TheSolutionDoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(light[0], light[2]);
 }
 
+TEST(ProgramSolve, ADryRunForecastsAndWritesNothing) {
+    const TemporaryFolder folder;
+    const Finished run = run_program({"solve", write_small_room(folder), "--dry-run", "--json"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    const Json json = Json::parse(run.out);
+    EXPECT_EQ(json["surfaces"], 7);
+    for (const char* key : {"solve_elements", "gather_elements", "rays", "seconds", "memory_bytes"})
+        EXPECT_GT(json[key], 0) << key;
+    EXPECT_EQ(folder.count(), 2u);
+}
+
 TEST(ProgramSolve, QuietSaysNothingAndFindsTheSame) {
     const TemporaryFolder folder;
     const Finished run =

@@ -69,7 +69,8 @@ struct ViewFactorArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
+using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
+                             CheckArguments, GenerateArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

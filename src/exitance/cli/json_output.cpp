@@ -65,6 +65,20 @@ std::string statistics_json(const SolveStatistics& s) {
     return dump(json, 2);
 }
 
+std::string forecast_json(const Forecast& f) {
+    const Json json{
+        {"surfaces", f.surfaces},
+        {"regions", f.regions},
+        {"emitters", f.emitters},
+        {"solve_elements", f.solve_elements},
+        {"gather_elements", f.gather_elements},
+        {"rays", f.rays},
+        {"seconds", f.seconds},
+        {"memory_bytes", f.memory_bytes},
+    };
+    return dump(json, 2);
+}
+
 std::string options_json(const SolveOptions& o) {
     const Json json{
         {"method", name_in(method_names, o.method)},

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "exitance/methods/forecast.hpp"
 #include "exitance/methods/solve_options.hpp"
 #include "exitance/reconstruct/compare.hpp"
 #include "exitance/reconstruct/solution.hpp"
@@ -16,6 +17,9 @@ namespace exitance {
 
 /// `solve --json` and `stats --json`.
 std::string statistics_json(const SolveStatistics& statistics);
+
+/// `solve --dry-run --json`.
+std::string forecast_json(const Forecast& forecast);
 
 /// The options in force, as the solution records them: what the light depends on, and hence neither threads nor limits.
 std::string options_json(const SolveOptions& options);

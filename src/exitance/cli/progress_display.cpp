@@ -81,6 +81,12 @@ void ProgressDisplay::show_bar(double fraction, const std::string& words) {
     bar_is_up_ = true;
 }
 
+void ProgressDisplay::note(std::string_view message) {
+    if (!verbose_ || quiet_) return;
+    clear();
+    fmt::print(stderr, "{}\n", message);
+}
+
 void ProgressDisplay::warn(std::string_view message) {
     clear();
     if (!quiet_) fmt::print(stderr, "warning: {}\n", message);

@@ -17,6 +17,7 @@ class ProgressDisplay : public Progress {
 
     void phase(std::string_view name) override;
     void advance(double fraction, std::string_view detail = {}) override;
+    void note(std::string_view message) override;
     void warn(std::string_view message) override;
 
     /// Takes the bar off the screen, so that lines may follow.

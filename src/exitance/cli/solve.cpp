@@ -12,6 +12,7 @@
 #include "exitance/io/atomic_file.hpp"
 #include "exitance/io/scene_file.hpp"
 #include "exitance/io/solution_file.hpp"
+#include "exitance/methods/forecast.hpp"
 #include "exitance/methods/solve_scene.hpp"
 
 namespace exitance {
@@ -39,6 +40,13 @@ void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>
     warnings.insert(warnings.begin(), all.begin(), all.end());
 }
 
+/// exitance solve SCENE --dry-run
+ExitCode show_forecast(const SolveArguments& arguments, const Scene& scene, Terminal& terminal) {
+    const Forecast forecast = forecast_solve(scene, arguments.options);
+    terminal.print(arguments.json ? forecast_json(forecast) : summary(forecast));
+    return ExitCode::done;
+}
+
 ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) {
     if (const std::optional<ExitCode> signal = signals.received()) return *signal;
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
@@ -53,13 +61,15 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
     const SignalGuard signals(stop);
     if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit));
     set_threads(arguments.options.threads);
-    if (const Result<void> output = check_output(arguments.output); !output) return terminal.fail(output.error());
+    if (const Result<void> output = check_output(arguments.output); !arguments.dry_run && !output)
+        return terminal.fail(output.error());
 
     Stopwatch reading;
     const CheckedScene checked = load_scene(arguments.scene);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     const double read_seconds = reading.seconds();
+    if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
 
     Result<Solution> solution = solve_scene(*checked.scene, arguments.options, terminal.progress(), stop);
     if (!solution && signals.received()) return *signals.received();

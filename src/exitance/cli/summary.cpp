@@ -55,4 +55,15 @@ std::string summary(const SolveStatistics& s) {
     return text;
 }
 
+std::string summary(const Forecast& f) {
+    return fmt::format(
+        "surfaces   {} ({} after joining coplanar neighbours), {} emitters\n"
+        "elements   about {} to solve on, {} to gather on, before they follow the light\n"
+        "rays       about {:.2g}\n"
+        "time       about {:.2g} s, within a factor of four\n"
+        "memory     about {}\n",
+        f.surfaces, f.regions, f.emitters, f.solve_elements, f.gather_elements, f.rays, f.seconds,
+        bytes(static_cast<std::size_t>(f.memory_bytes)));
+}
+
 }  // namespace exitance

@@ -2,12 +2,16 @@
 
 #include <string>
 
+#include "exitance/methods/forecast.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
 namespace exitance {
 
 /// What a solve took and what it reached, for people: what `solve` and `stats` print.
 std::string summary(const SolveStatistics& statistics);
+
+/// What `solve --dry-run` prints.
+std::string summary(const Forecast& forecast);
 
 /// "6.25%", "0.038%".
 std::string percent(double share);
