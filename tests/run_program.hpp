@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/temporary_folder.hpp"
+
 extern char** environ;
 
 namespace exitance::test {
@@ -28,47 +30,23 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
     std::ofstream(path, std::ios::binary) << text;
 }
 
-/// A folder of its own for one test, gone at its end.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "exitance-test-XXXXXX").string();
-        path_ = mkdtemp(pattern.data());
-    }
-    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
-    /// Names of what is in it, for tests that nothing is left behind.
-    std::size_t count() const {
-        const std::filesystem::directory_iterator all(path_);
-        return static_cast<std::size_t>(std::distance(begin(all), end(all)));
-    }
-
-  private:
-    std::filesystem::path path_;
-};
-
 /// How a run of the program ended.
 struct Finished {
     int status = -1;  ///< Exit status; 1000 + the signal's number when a signal ended it.
     std::string out, err;
 };
 
-/// The built program, started with these arguments; `input` is its standard input.
+/// A program (the built one unless another is named), started with these arguments; `input` is its standard input.
 class RunningProgram {
   public:
-    explicit RunningProgram(const std::vector<std::string>& arguments, const std::string& input = {}) {
+    explicit RunningProgram(const std::vector<std::string>& arguments, const std::string& input = {},
+                            std::string program = EXITANCE_PROGRAM) {
         write_text(folder_ / "in", input);
         posix_spawn_file_actions_t files;
         posix_spawn_file_actions_init(&files);
         posix_spawn_file_actions_addopen(&files, 0, (folder_ / "in").c_str(), O_RDONLY, 0);
         posix_spawn_file_actions_addopen(&files, 1, (folder_ / "out").c_str(), O_WRONLY | O_CREAT, 0600);
         posix_spawn_file_actions_addopen(&files, 2, (folder_ / "err").c_str(), O_WRONLY | O_CREAT, 0600);
-        std::string program = EXITANCE_PROGRAM;
         std::vector<std::string> words = arguments;
         std::vector<char*> pointers{program.data()};
         for (std::string& word : words) pointers.push_back(word.data());
