@@ -22,11 +22,6 @@ Error cannot_write(const std::string& path, int error) {
     return {ErrorCode::cannot_write, "cannot write " + path + ": " + std::strerror(error), path, hint};
 }
 
-std::string folder_of(const std::string& path) {
-    const std::size_t slash = path.rfind('/');
-    return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-}
-
 /// The place behind symbolic links, so that renaming replaces the file and not the link.
 std::string resolved(const std::string& path) {
     char* real = ::realpath(path.c_str(), nullptr);
@@ -129,10 +124,7 @@ Result<void> AtomicFile::commit() {
         if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
             error_ = errno;
         } else {
-            temporary_.clear();
-            // The name is safe on the disk only with its folder; some file systems cannot do that, and need not.
-            const int folder = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-            if (folder >= 0) ::fsync(folder), ::close(folder);
+            temporary_.clear();  // a power cut may still bring the old file back, but whole: the folder is not flushed
         }
     }
     abandon();
