@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <string_view>
 
 namespace exitance {
@@ -32,6 +33,11 @@ class StopRequest {
 
     bool interrupted() const { return interrupted_.load(std::memory_order_relaxed); }
     bool out_of_time() const { return Clock::now() >= deadline_; }
+    /// Until the deadline; infinite when there is none, below 0 when it has passed.
+    double seconds_left() const {
+        if (deadline_ == Clock::time_point::max()) return std::numeric_limits<double>::infinity();
+        return std::chrono::duration<double>(deadline_ - Clock::now()).count();
+    }
     bool requested() const { return interrupted() || out_of_time(); }
 
   private:

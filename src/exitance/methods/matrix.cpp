@@ -7,20 +7,36 @@ namespace {
 
 constexpr unsigned default_visibility_samples = 16;
 
-/// Solves b = rho (E_dir + F b), starting from the first reflection, and writes what arrives to `light.indirect`.
-void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& light) {
-    input.progress.phase("solve");
-    const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
+/// b = first + rho F b to convergence, starting from `light.reflected`.
+void solve(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
+           std::span<const Spectrum> first, GlobalLight& light) {
     const std::vector<double> area = leaf_areas(light.tree, light.numbering);
-    std::vector<Spectrum> first(rho.size());
-    for (std::size_t i = 0; i < rho.size(); ++i) first[i] = rho[i] * light.direct[i];
-    light.reflected = first;
     light.report = solve_radiosity({F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres),
                                    light.reflected,
                                    {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations,
                                     .request = &input.stop});
+}
+
+/// All reflections of the direct light, or as many as were asked for; writes the light that
+/// arrives before the last of them to `light.indirect`.
+void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& light) {
+    input.progress.phase("solve");
+    const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
+    std::vector<Spectrum> first(rho.size());
+    for (std::size_t i = 0; i < rho.size(); ++i) first[i] = rho[i] * light.direct[i];
+    light.reflected = first;
     light.indirect.resize(rho.size());
-    F.gather(light.reflected, light.indirect);
+    if (input.options.bounces > 0) {
+        // So many terms of the series first + rho F first + ...
+        for (int bounce = 1; bounce < input.options.bounces; ++bounce) {
+            F.gather(light.reflected, light.indirect);
+            for (std::size_t i = 0; i < rho.size(); ++i) light.reflected[i] = first[i] + rho[i] * light.indirect[i];
+        }
+        light.report = {.iterations = static_cast<std::size_t>(input.options.bounces), .converged = true};
+    } else {
+        solve(input, F, rho, first, light);
+        F.gather(light.reflected, light.indirect);
+    }
     light.link_memory_bytes = F.memory_bytes();
 }
 

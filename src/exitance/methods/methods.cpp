@@ -5,7 +5,7 @@ namespace exitance {
 std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbering& numbering) {
     std::vector<Spectrum> out;
     out.reserve(numbering.leaves.size());
-    for (ElementId e : numbering.leaves) out.push_back(direct.mean[e]);
+    for (ElementId e : numbering.leaves) out.push_back(direct.fit[e].mean);
     return out;
 }
 

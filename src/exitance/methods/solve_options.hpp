@@ -60,25 +60,25 @@ inline constexpr double default_error = 0.02;  ///< Relative RMS error, of radio
 /// for; a knob that is set by hand is used as it stands and lifts the default demand.
 struct SolveOptions {
     Method method = Method::automatic;
-    std::optional<BasisKind> basis;
+    std::optional<BasisKind> basis = {};
     int bounces = all_bounces;  ///< 0: direct light alone; n: at most n reflections; all_bounces: until convergence.
 
-    std::optional<double> error;  ///< Relative RMS error of what `probe` evaluates; empty: see error_demand().
+    std::optional<double> error = {};  ///< Relative RMS error of what `probe` evaluates; empty: see error_demand().
 
-    std::optional<double> mesh_size;            ///< Longest edge of an element, metres.
-    std::optional<double> residual;             ///< Of the discrete system, relative to its right-hand side.
-    std::optional<std::size_t> max_iterations;  ///< Sweeps, Krylov steps or shots.
-    std::optional<double> min_area;             ///< No element is cut to pieces smaller than this, m^2.
-    std::optional<Relaxation> relaxation;
+    std::optional<double> mesh_size = {};            ///< Longest edge of an element, metres.
+    std::optional<double> residual = {};             ///< Of the discrete system, relative to its right-hand side.
+    std::optional<std::size_t> max_iterations = {};  ///< Sweeps, Krylov steps or shots.
+    std::optional<double> min_area = {};             ///< No element is cut to pieces smaller than this, m^2.
+    std::optional<Relaxation> relaxation = {};
     bool overshooting = false;  ///< Shooting sends more than the unshot light, expecting what returns.
 
     VisibilityKind visibility = VisibilityKind::automatic;
-    std::optional<std::size_t> visibility_samples;  ///< Rays a pair of elements.
-    std::optional<FormFactorKind> form_factors;
+    std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
+    std::optional<FormFactorKind> form_factors = {};
 
     int threads = 0;  ///< 0: all cores. Results do not depend on it.
     std::uint64_t seed = 1;
-    std::optional<std::size_t> memory_limit_bytes;  ///< Of the whole process.
+    std::optional<std::size_t> memory_limit_bytes = {};  ///< Of the whole process.
 
     /// Has any of the knobs been set that the error asked for would otherwise decide?
     bool has_knobs() const { return mesh_size || residual || max_iterations || min_area || visibility_samples; }

@@ -4,16 +4,20 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/methods/memory_plan.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/reconstruct/certificate.hpp"
+#include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/interpolant.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 
 namespace exitance {
 namespace {
 
-const MethodEntry& find_method(Method wanted) {
-    const Method id = wanted == Method::automatic ? Method::matrix : wanted;
+/// What `auto` stands for. Reflections are counted by `matrix` alone, whose iterations are reflections.
+const MethodEntry& find_method(const SolveOptions& options) {
+    const bool counts_bounces = options.bounces > 0;
+    const Method id = options.method == Method::automatic || counts_bounces ? Method::matrix : options.method;
     const auto table = method_table();
     return *std::find_if(table.begin(), table.end(), [&](const MethodEntry& m) { return m.id == id; });
 }
@@ -27,7 +31,7 @@ ElementFunction dark(const Stage& stage) {
     return out;
 }
 
-/// Light that a method carried through its elements, as it stands there: constant on every leaf.
+/// Light as a method left it on its elements: constant on every leaf.
 ElementFunction constant_on_leaves(const GlobalLight& light) {
     ElementFunction out;
     out.tree = light.tree;
@@ -49,8 +53,8 @@ ElementFunction reflected_light(const Scene& scene, const DirectProjection& dire
         const ElementId e = light.numbering.leaves[i];
         const Spectrum& rho = scene.material(out.tree.region(e)).reflectance;
         out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
-        for (std::size_t corner = 0; corner < 4; ++corner)
-            out.add_value(rho * ((light.on_projection ? direct.corners[e][corner] : light.direct[i]) + light.indirect[i]));
+        for (std::size_t k = 0; k < 4; ++k)
+            out.add_value(rho * ((light.on_projection ? direct.fit[e].corners[k] : light.direct[i]) + light.indirect[i]));
     }
     return out;
 }
@@ -59,18 +63,29 @@ class Solver {
   public:
     Solver(const Scene& scene, const SolveOptions& options, Progress& progress, const StopRequest& stop)
         : options_(options), progress_(progress), stop_(stop), solution_{.scene = scene}, stage_(scene) {
+        const MethodEntry& method = find_method(options);
+        if (options.method != Method::automatic && options.method != method.id)
+            warn(fmt::format("--bounces is counted by the method matrix, which solves in place of {}",
+                             name_in(method_names, options.method)));
         solution_.bounces = options.bounces;
-        statistics().method = name_in(method_names, find_method(options.method).id);
-        statistics().basis = find_method(options.method).basis;
+        statistics().method = name_in(method_names, method.id);
+        statistics().basis = method.basis;
         statistics().threads = threads();
         statistics().schedule = "stealing";
         statistics().surfaces = scene.surfaces().size();
         statistics().converged = true;
         solution_.indirect = dark(stage_);
+        knobs_ = knobs_for_error(options.error_target(), stage_.pieces, options);
     }
 
-    Solution run() {
+    Result<Solution> run() {
+        if (options_.memory_limit_bytes) {
+            const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
+            if (!fits) return fits.error();
+            if (!*fits) stop_early("memory limit");
+        }
         if (options_.bounces != 0 && stage_.has_indirect_light()) solve_indirect_light();
+        else project_direct();
         make_output_mesh();
         return std::move(solution_);
     }
@@ -78,115 +93,153 @@ class Solver {
   private:
     SolveStatistics& statistics() { return solution_.statistics; }
 
+    void warn(std::string message) {
+        progress_.warn(message);
+        statistics().warnings.push_back(std::move(message));
+    }
+
+    void stop_early(const char* why) {
+        statistics().stopped_by = why;
+        statistics().converged = false;
+    }
+
     /// Method, local pass, certificate, until the certificate is content.
     void solve_indirect_light() {
-        constexpr int most_attempts = 5;
+        constexpr int most_attempts = 6;
         const std::optional<double> demand = options_.error_demand();
-        Knobs knobs = knobs_for_error(options_.error_target(), stage_.pieces, options_);
         for (int attempt = 1;; ++attempt) {
-            solve_once(knobs);
-            if (stop_.requested()) {
-                statistics().stopped_by = stop_.interrupted() ? "interrupt" : "time limit";
-                statistics().converged = false;
+            const Stopwatch watch;
+            solve_once();
+            if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+            if (!demand || certificate_.estimate <= *demand) {
+                if (statistics().stopped_by.empty() || demand) statistics().converged = true, statistics().stopped_by.clear();
                 return;
             }
-            if (!demand || certificate_.estimate <= *demand) return;
-            if (attempt == most_attempts) {
-                statistics().stopped_by = "iterations";
-                statistics().converged = false;
-                return;
+            if (statistics().stopped_by == "memory limit") return;
+            if (attempt == most_attempts) return stop_early("iterations");
+            const double factor = std::clamp(0.8 * *demand / certificate_.estimate, 0.2, 0.75);
+            // A finer attempt takes about factor^-2 as long; one that cannot end in time would only be thrown away.
+            if (stop_.seconds_left() < watch.seconds() / (factor * factor)) return stop_early("time limit");
+            progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer", 100 * certificate_.estimate,
+                                       100 * *demand));
+            knobs_ = tightened(knobs_, factor, options_);
+            if (options_.memory_limit_bytes) {
+                const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
+                if (!fits || !*fits) return stop_early("memory limit");
             }
-            progress_.advance(0, fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer",
-                                             100 * certificate_.estimate, 100 * *demand));
-            knobs = tightened(knobs, std::clamp(0.8 * *demand / certificate_.estimate, 0.2, 0.75), options_);
         }
     }
 
-    void solve_once(const Knobs& knobs) {
-        Stopwatch watch;
+    void project_direct() {
         progress_.phase("direct light");
-        direct_ = project_direct_light(stage_, {.mesh = knobs.solve_mesh, .tolerance = knobs.direct_tolerance}, stop_);
-        statistics().seconds["mesh"] += watch.restart();
-        light_ = find_method(options_.method).solve({stage_, options_, knobs, direct_, progress_, stop_});
-        statistics().seconds["solve"] += watch.restart();
+        const Stopwatch watch;
+        direct_ = project_direct_light(
+            stage_, {.mesh = knobs_.solve_mesh, .tolerance = knobs_.direct_tolerance, .least_area = options_.min_area},
+            stop_);
+        statistics().seconds["mesh"] += watch.seconds();
+    }
 
-        const ElementLocator direct_locator(direct_.tree, stage_.scene.regions().size());
-        const ElementFunction source = reflected_light(stage_.scene, direct_, light_);
+    void solve_once() {
+        project_direct();
+        Stopwatch watch;
+        GlobalLight light = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
+        statistics().seconds["solve"] += watch.restart();
+        LocalPassReport gathered;
+        ElementFunction indirect = light.holds_direct ? constant_on_leaves(light) : gather(light, gathered);
+        statistics().seconds["reconstruct"] += watch.restart();
+        if (stop_.requested()) {
+            // Half a local pass is worth less than the last whole one, or than what the method has found.
+            if (certificate_.points == 0) {
+                solution_.indirect = constant_on_leaves(light);
+                solution_.direct_in_elements = light.holds_direct;
+                certificate_.mean_reflected = light.mean_reflected();
+            }
+            return;
+        }
+        solution_.indirect = std::move(indirect);
+        solution_.direct_in_elements = light.holds_direct;
+        progress_.phase("certify");
+        certificate_ = certify_solution(light, gathered);
+        statistics().seconds["certify"] += watch.restart();
+        record(light, gathered);
+    }
+
+    ElementFunction gather(const GlobalLight& light, LocalPassReport& report) {
+        progress_.phase("gather");
+        const ElementFunction source = reflected_light(stage_.scene, direct_, light);
         const ElementLocator locator(source.tree, stage_.scene.regions().size());
         const RadiosityAt reflected = [&](RegionId region, const Point& y) {
             return source.at(locator.find(region, y));
         };
-        LocalPassReport gathered;
-        solution_.direct_in_elements = light_.holds_direct;
-        if (light_.holds_direct) {
-            solution_.indirect = constant_on_leaves(light_);
-        } else {
-            progress_.phase("gather");
-            solution_.indirect = gather_indirect_light(
-                stage_, reflected,
-                {.mesh = knobs.gather_mesh, .rays = knobs.gather_rays,
-                 .noise = knobs.gather_noise * light_.mean_reflected(),
-                 .tolerance = knobs.gather_tolerance * light_.mean_reflected(), .seed = options_.seed},
-                gathered, stop_);
-        }
-        statistics().seconds["reconstruct"] += watch.restart();
+        const double scale = light.mean_reflected();
+        return gather_indirect_light(stage_, reflected,
+                                     {.mesh = knobs_.gather_mesh,
+                                      .rays = knobs_.gather_rays,
+                                      .noise = knobs_.gather_noise * scale,
+                                      .tolerance = knobs_.gather_tolerance * scale,
+                                      .seed = options_.seed},
+                                     report, progress_, stop_);
+    }
 
-        progress_.phase("certify");
+    Certificate certify_solution(const GlobalLight& light, const LocalPassReport& gathered) {
+        const ElementLocator direct_locator(direct_.tree, stage_.scene.regions().size());
         const ElementLocator indirect(solution_.indirect.tree, stage_.scene.regions().size());
+        const ElementLocator coarse(light.tree, stage_.scene.regions().size());
         const RadiosityAt delivered = [&](RegionId region, const Point& y) {
-            return stage_.scene.material(region).reflectance *
-                   (direct_.at(direct_locator.find(region, y)) + solution_.indirect.at(indirect.find(region, y)));
+            // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
+            Spectrum E = options_.bounces > 0 ? light.indirect[light.numbering.number[coarse.find(region, y).element]]
+                                              : solution_.indirect.at(indirect.find(region, y));
+            if (!light.holds_direct) E += direct_.at(direct_locator.find(region, y));
+            return stage_.scene.material(region).reflectance * E;
         };
-        certificate_ = certify(stage_, light_, solution_.indirect, delivered,
-                               {.error = options_.error_target(), .seed = options_.seed,
-                                .direct_in_elements = light_.holds_direct,
-                                .leaves = light_.holds_direct ? nullptr : &gathered.leaves});
-        statistics().seconds["certify"] += watch.restart();
-        statistics().iterations += light_.report.iterations;
-        statistics().residual = light_.report.residual;
-        statistics().rays += light_.rays + gathered.rays + certificate_.rays;
-        statistics().links = light_.links;
-        statistics().link_memory_bytes = light_.link_memory_bytes;
-        statistics().elements = light_.tree.size() + solution_.indirect.tree.size();
-        statistics().leaf_elements = light_.numbering.leaves.size() + solution_.indirect.tree.leaves().size();
-        statistics().relative_error_estimate = certificate_.estimate;
-        statistics().relative_error_bound = certificate_.bound;
+        return certify(stage_, light, solution_.indirect, delivered,
+                       {.error = options_.error_target(),
+                        .seed = options_.seed,
+                        .direct_in_elements = light.holds_direct,
+                        .leaves = light.holds_direct ? nullptr : &gathered.leaves});
+    }
+
+    void record(const GlobalLight& light, const LocalPassReport& gathered) {
+        SolveStatistics& s = statistics();
+        s.iterations += light.report.iterations;
+        s.residual = light.report.residual;
+        s.rays += light.rays + gathered.rays + certificate_.rays;
+        s.form_factors += light.form_factors;
+        s.links = light.links;
+        s.link_memory_bytes = light.link_memory_bytes;
+        s.elements = light.tree.size() + solution_.indirect.tree.size();
+        s.leaf_elements = light.numbering.leaves.size() + solution_.indirect.tree.leaves().size();
+        s.relative_error_estimate = certificate_.estimate;
+        s.relative_error_bound = certificate_.bound;
         const double scale = certificate_.mean_reflected > 0 ? 100 / certificate_.mean_reflected : 0;
         progress_.note(fmt::format(
             "{} elements solved on, {} gathered on; mean reflected radiosity {:.4g} W/m^2; error estimate {:.3f}%, bound "
             "{:.3f}%, residual {:.3f}%, error constant {:.2f}; rays' noise {:.3f}%, interpolation {:.3f}%; rays {} + {} + {}",
-            light_.numbering.leaves.size(), solution_.indirect.tree.leaves().size(), certificate_.mean_reflected,
+            light.numbering.leaves.size(), solution_.indirect.tree.leaves().size(), certificate_.mean_reflected,
             100 * certificate_.estimate, 100 * certificate_.bound, 100 * certificate_.residual, certificate_.constant,
-            scale * gathered.noise, scale * gathered.interpolation, light_.rays, gathered.rays, certificate_.rays));
+            scale * gathered.noise, scale * gathered.interpolation, light.rays, gathered.rays, certificate_.rays));
     }
 
     void make_output_mesh() {
-        Stopwatch watch;
+        const Stopwatch watch;
         progress_.phase("reconstruct");
-        double scale = certificate_.mean_reflected;
-        if (scale <= 0) scale = mean_direct_light();
-        InterpolantReport report;
-        solution_.interpolant = make_interpolant(
-            stage_, solution_.indirect,
-            {.edge = edge_for_elements(stage_.pieces, static_cast<std::size_t>(4 / options_.error_target())),
-             .tolerance = 2.5 * options_.error_target() * scale,
-             .add_direct = !solution_.direct_in_elements},
-            report, stop_);
-        const double own = scale > 0 ? report.error / scale : 0;
-        statistics().relative_error_estimate_interpolant = std::hypot(own, statistics().relative_error_estimate);
+        if (solution_.direct_in_elements) {
+            solution_.interpolant = solution_.indirect;
+            statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
+        } else {
+            // Where nothing reflects, E itself is what errors are relative to.
+            const double scale =
+                certificate_.mean_reflected > 0 ? certificate_.mean_reflected : mean_direct_light(stage_, direct_);
+            InterpolantReport report;
+            solution_.interpolant = make_interpolant(stage_, direct_, solution_.indirect,
+                                                     {.tolerance = 2.5 * options_.error_target() * scale}, report, stop_);
+            const double own = scale > 0 ? report.error / scale : 0;
+            statistics().relative_error_estimate_interpolant = std::hypot(own, statistics().relative_error_estimate);
+            progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
+                                       solution_.interpolant.tree.leaves().size(), 100 * own));
+        }
+        statistics().energy = energy_balance(solution_, direct_);
         statistics().seconds["reconstruct"] += watch.seconds();
-        progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
-                                   solution_.interpolant.tree.leaves().size(), 100 * own));
-    }
-
-    /// Mean of E where nothing reflects: then E itself is what errors are relative to.
-    double mean_direct_light() const {
-        double flux = 0;
-        DirectLight::Workspace workspace;
-        for (const auto& [region, patch] : stage_.pieces)
-            flux += patch.area() * mean(stage_.direct.irradiance(patch.centre(), stage_.scene.regions()[region].plane.n,
-                                                                 region, workspace));
-        return flux / stage_.area;
     }
 
     const SolveOptions& options_;
@@ -194,8 +247,8 @@ class Solver {
     const StopRequest& stop_;
     Solution solution_;
     Stage stage_;
+    Knobs knobs_;
     DirectProjection direct_;
-    GlobalLight light_;
     Certificate certificate_;
 };
 
@@ -204,10 +257,11 @@ class Solver {
 Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
                              const StopRequest& stop) {
     if (options.threads > 0) set_threads(options.threads);
-    Stopwatch watch;
-    Solution solution = Solver(scene, options, progress, stop).run();
-    solution.statistics.seconds["total"] = watch.seconds();
-    solution.statistics.peak_memory_bytes = peak_memory_bytes();
+    const Stopwatch watch;
+    Result<Solution> solution = Solver(scene, options, progress, stop).run();
+    if (!solution) return solution;
+    solution->statistics.seconds["total"] = watch.seconds();
+    solution->statistics.peak_memory_bytes = peak_memory_bytes();
     return solution;
 }
 

@@ -82,10 +82,10 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     if (out.mean_reflected <= 0) return out;
 
     constexpr std::size_t batches = 32;
-    out.points = 48 * batches;
+    out.points = 40 * batches;
     const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(out.points)));
     const auto rays_at = [&](ElementId leaf) {
-        const double known = options.leaves ? 0.5 * (*options.leaves)[leaf].rays : wanted;
+        const double known = options.leaves ? 0.25 * (*options.leaves)[leaf].rays : wanted;
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
     const std::vector<WeightedSample> places =

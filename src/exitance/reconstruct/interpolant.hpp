@@ -2,16 +2,14 @@
 
 #include "exitance/core/progress.hpp"
 #include "exitance/reconstruct/solution.hpp"
-#include "exitance/transport/stage.hpp"
+#include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
 
 struct InterpolantOptions {
-    double edge = 0;          ///< Longest edge of an element to begin with, metres.
-    double tolerance = 0;     ///< RMS error of rho E over all surfaces that is aimed at, W/m^2.
-    int max_depth = 12;       ///< Cuts below the first mesh.
+    double tolerance = 0;  ///< RMS error of rho E over all surfaces that is to be held, W/m^2.
+    int max_depth = 12;    ///< Rounds of cutting.
     std::size_t max_elements = 2'000'000;
-    bool add_direct = true;   ///< Exact direct light on top of `indirect`, or is it in there already?
 };
 
 struct InterpolantReport {
@@ -20,10 +18,10 @@ struct InterpolantReport {
 };
 
 /// Direct and indirect irradiance together as plain elements, for files and for readers that hold no exact direct
-/// light: on each leaf the polynomial nearest in the mean square to E_dir + E_ind at the points of a quadrature rule (3
-/// x 3 Gauss on parallelograms, 7 points on triangles). A leaf is cut while its misfit has more than its share of the
-/// tolerance. O(elements x points x visible emitters).
-ElementFunction make_interpolant(const Stage& stage, const ElementFunction& indirect,
+/// light: the direct projection, plus on each of its leaves the polynomial nearest to the indirect light. Leaves are cut
+/// while their misfits together exceed the tolerance, those with the largest shares first.
+/// O(elements x places), and exact direct light for the leaves that are new.
+ElementFunction make_interpolant(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
                                  const InterpolantOptions& options, InterpolantReport& report, const StopRequest& stop);
 
 }  // namespace exitance

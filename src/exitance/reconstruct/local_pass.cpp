@@ -26,14 +26,22 @@ class LocalPass {
         mean_area_ = stage.area / static_cast<double>(out_.tree.leaves().size());
     }
 
-    ElementFunction run(LocalPassReport& report, const StopRequest& stop) {
+    ElementFunction run(LocalPassReport& report, Progress& progress, const StopRequest& stop) {
         std::vector<ElementId> active = out_.tree.leaves();
         for (int depth = 0; !active.empty(); ++depth) {
             sampled_.resize(out_.tree.size());
-            parallel_ranges(active.size(), 4, [&](std::size_t begin, std::size_t end) {
-                GatherWorkspace workspace;
-                for (std::size_t i = begin; i < end; ++i) sampled_[active[i]] = sample(active[i], workspace);
-            });
+            // In slices, so that progress can be told and a request to stop is heard.
+            const std::size_t slice = std::max<std::size_t>(64, active.size() / 32 + 1);
+            for (std::size_t first = 0; first < active.size() && !stop.requested(); first += slice) {
+                parallel_ranges(std::min(slice, active.size() - first), 4, [&](std::size_t begin, std::size_t end) {
+                    GatherWorkspace workspace;
+                    for (std::size_t i = first + begin; i < first + end; ++i)
+                        sampled_[active[i]] = sample(active[i], workspace);
+                });
+                // The first round is about half of the work, every further one half of what is left.
+                const double done = static_cast<double>(first) / static_cast<double>(active.size());
+                progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
+            }
             for (ElementId e : active) report.rays += sampled_[e].rays;
             report.interrupted = stop.requested();
             if (depth == options_.max_depth || report.interrupted) break;
@@ -128,8 +136,8 @@ class LocalPass {
 }  // namespace
 
 ElementFunction gather_indirect_light(const Stage& stage, const RadiosityAt& b, const LocalPassOptions& options,
-                                      LocalPassReport& report, const StopRequest& stop) {
-    return LocalPass(stage, b, options).run(report, stop);
+                                      LocalPassReport& report, Progress& progress, const StopRequest& stop) {
+    return LocalPass(stage, b, options).run(report, progress, stop);
 }
 
 }  // namespace exitance

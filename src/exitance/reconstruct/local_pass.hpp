@@ -36,6 +36,6 @@ struct LocalPassReport {
 /// An element is cut where the gather at its centre departs from its polynomial by more than its share of the
 /// tolerance and than the rays' own noise. O(elements x rays).
 ElementFunction gather_indirect_light(const Stage& stage, const RadiosityAt& b, const LocalPassOptions& options,
-                                      LocalPassReport& report, const StopRequest& stop);
+                                      LocalPassReport& report, Progress& progress, const StopRequest& stop);
 
 }  // namespace exitance

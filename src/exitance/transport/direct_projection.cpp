@@ -5,37 +5,31 @@
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
-namespace {
-
-/// Exact values on one leaf, and what the polynomial makes of them.
-void fit_leaf(const Stage& stage, ElementId e, ReceiverLight& light, DirectLight::Workspace& workspace,
-              DirectProjection& out) {
-    const Patch& patch = out.tree.patch(e);
-    const RegionId region = out.tree.region(e);
-    const Normal& n = stage.scene.regions()[region].plane.n;
-    const std::vector<WeightedPlace> rule = element_rule(out.tree, e, RuleOrder::fine);
-    stage.direct.prepare(out.tree.outline(e), n, region, light, workspace);
+DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
+                           DirectLight::Workspace& workspace) {
+    const Patch& patch = tree.patch(e);
+    const RegionId region = tree.region(e);
+    const std::vector<WeightedPlace> rule = element_rule(tree, e, RuleOrder::fine);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, light, workspace);
+    DirectFit out;
+    if (light.is_dark()) return out;
     std::vector<Spectrum> value(rule.size());
-    Spectrum mean;
     for (std::size_t i = 0; i < rule.size(); ++i) {
         value[i] = stage.direct.irradiance(light, patch.at(rule[i].uv), workspace);
-        mean += rule[i].weight * value[i];
+        out.mean += rule[i].weight * value[i];
     }
-    const ElementFit fit(out.tree, e, rule, value);
-    for (int i = 0; i < patch.corner_count(); ++i) out.corners[e][static_cast<std::size_t>(i)] = fit.corner(i);
+    const ElementFit fit(tree, e, rule, value);
+    for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = fit.corner(i);
     const Spectrum w = light_weight(stage.scene.material(region));
-    double misfit = 0;
     for (std::size_t i = 0; i < rule.size(); ++i)
-        misfit += rule[i].weight * squared(w * (value[i] - fit.at(rule[i].uv))) / static_cast<double>(bands);
-    out.mean[e] = mean;
-    out.misfit_squared[e] = misfit;
+        out.misfit_squared +=
+            rule[i].weight * squared(w * (value[i] - fit.at(rule[i].uv))) / static_cast<double>(bands);
+    return out;
 }
-
-}  // namespace
 
 Spectrum DirectProjection::at(ElementTree::Place place) const {
     const auto [u, v] = place.uv;
-    const std::array<Spectrum, 4>& c = corners[place.element];
+    const std::array<Spectrum, 4>& c = fit[place.element].corners;
     if (tree.patch(place.element).is_triangle()) return (1 - u - v) * c[0] + u * c[1] + v * c[2];
     return (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
 }
@@ -49,30 +43,30 @@ Spectrum light_weight(const Material& material) {
 
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
                                       const StopRequest& stop) {
-    DirectProjection out{stage.make_elements(options.mesh), {}, {}, {}};
+    DirectProjection out{stage.make_elements(options.mesh), {}};
     std::vector<ElementId> active = out.tree.leaves();
     const double mean_area = stage.area / static_cast<double>(active.size());
     double share = 0;  // of the squared error that one element may have
     for (int depth = 0; !active.empty(); ++depth) {
-        out.corners.resize(out.tree.size());
-        out.mean.resize(out.tree.size());
-        out.misfit_squared.resize(out.tree.size());
+        out.fit.resize(out.tree.size());
         parallel_ranges(active.size(), 8, [&](std::size_t begin, std::size_t end) {
             DirectLight::Workspace workspace;
             ReceiverLight light;
-            for (std::size_t i = begin; i < end; ++i) fit_leaf(stage, active[i], light, workspace, out);
+            for (std::size_t i = begin; i < end; ++i)
+                out.fit[active[i]] = fit_direct_light(stage, out.tree, active[i], light, workspace);
         });
         if (depth == 0) {
             double flux = 0;
             for (ElementId e : active)
-                flux += out.tree.area(e) * mean(light_weight(stage.scene.material(out.tree.region(e))) * out.mean[e]);
+                flux += out.tree.area(e) * mean(light_weight(stage.scene.material(out.tree.region(e))) * out.fit[e].mean);
             const double allowed = options.tolerance * flux / stage.area;
             share = allowed * allowed * mean_area;
         }
         if (depth == options.max_depth || stop.requested()) break;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            if (out.tree.area(e) * out.misfit_squared[e] <= share) continue;
+            if (out.tree.area(e) * out.fit[e].misfit_squared <= share) continue;
+            if (options.least_area && out.tree.area(e) < 2 * *options.least_area) continue;
             for (ElementId child : refine_element(out.tree, e)) fresh.push_back(child);
         }
         active = std::move(fresh);

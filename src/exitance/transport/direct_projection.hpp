@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "exitance/core/progress.hpp"
@@ -11,6 +12,15 @@ struct DirectProjectionOptions {
     MeshSize mesh;
     double tolerance = 0;  ///< RMS error of rho E_dir over all surfaces, relative to the mean of rho E_dir.
     int max_depth = 8;     ///< Cuts below the first mesh.
+    /// Elements of less than this are not cut, m^2; empty: as the tolerance asks.
+    std::optional<double> least_area = {};
+};
+
+/// Exact direct light on one element, and the polynomial nearest to it.
+struct DirectFit {
+    std::array<Spectrum, 4> corners;
+    Spectrum mean;              ///< W/m^2
+    double misfit_squared = 0;  ///< Mean of (w (E - polynomial))^2, see light_weight().
 };
 
 /// Direct light projected onto elements, for readers that come in great numbers, such as rays.
@@ -20,9 +30,7 @@ struct DirectProjectionOptions {
 /// the same mesh, its elements follow the shadows.
 struct DirectProjection {
     ElementTree tree;
-    Field<ElementId, std::array<Spectrum, 4>> corners;  ///< Of a leaf: values at its patch's corners, W/m^2.
-    Field<ElementId, Spectrum> mean;                    ///< Of a leaf, W/m^2.
-    Field<ElementId, double> misfit_squared;            ///< Of a leaf: mean of (w (E - polynomial))^2, see light_weight().
+    Field<ElementId, DirectFit> fit;  ///< Of every leaf; of inner elements: what was there before they were cut.
 
     Spectrum at(ElementTree::Place place) const;
 };
@@ -30,6 +38,10 @@ struct DirectProjection {
 /// How much an error of E counts on a region: as much as it reflects, and a little on black ones, where E is still
 /// looked at.
 Spectrum light_weight(const Material& material);
+
+/// Of one element, by exact values at the places of its fine rule. `light` and `workspace` are room to work in.
+DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
+                           DirectLight::Workspace& workspace);
 
 /// O(elements x places x visible emitters).
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,

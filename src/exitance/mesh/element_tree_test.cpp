@@ -1,0 +1,76 @@
+#include "exitance/mesh/element_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/core/random.hpp"
+
+namespace exitance {
+namespace {
+
+Patch patch(Patch::Shape shape) { return {{1, 2, 3}, {2, 0.5, 0}, {-0.3, 1, 0.4}, shape}; }
+
+/// A tree that has been cut in every way there is.
+ElementTree well_cut_tree(Patch::Shape shape) {
+    ElementTree tree;
+    tree.add_root(RegionId(0), patch(shape));
+    tree.split(ElementId(0), Cut::both);
+    const IdRange<ElementId> children = tree.children(ElementId(0));
+    tree.split(children[1], shape == Patch::Shape::triangle ? Cut::both : Cut::u, 0.3);
+    tree.split_by_line(children[2], {{0.6, 0.8}, 0.45});
+    tree.split_by_line(tree.children(children[2])[1], {{-0.8, 0.6}, -0.1});
+    return tree;
+}
+
+class EveryShape : public testing::TestWithParam<Patch::Shape> {};
+INSTANTIATE_TEST_SUITE_P(Patches, EveryShape,
+                         testing::Values(Patch::Shape::parallelogram, Patch::Shape::triangle));
+
+TEST_P(EveryShape, LeavesTileTheRoot) {
+    const ElementTree tree = well_cut_tree(GetParam());
+    double area = 0;
+    for (ElementId e : tree.leaves()) area += tree.area(e);
+    EXPECT_NEAR(area, patch(GetParam()).area(), 1e-14);  // a dozen roundings
+    EXPECT_GT(tree.leaves().size(), 6u);
+}
+
+TEST_P(EveryShape, TheLeafThatHoldsAPointHoldsIt) {
+    const ElementTree tree = well_cut_tree(GetParam());
+    RandomStream random(1, Stream::mesh);
+    for (int k = 0; k < 2000; ++k) {
+        const Vec2 uv = uniform_in_shape(GetParam(), random.uniform(), random.uniform());
+        const ElementTree::Place place = tree.leaf_at(ElementId(0), uv);
+        ASSERT_TRUE(tree.is_leaf(place.element));
+        const Point x = tree.patch(ElementId(0)).at(uv);
+        EXPECT_LT(norm(tree.patch(place.element).at(place.uv) - x), 1e-13);
+        const std::vector<Vec2> domain = tree.domain(place.element);
+        for (std::size_t i = 0; i < domain.size(); ++i) {
+            const Vec2 edge = domain[(i + 1) % domain.size()] - domain[i];
+            EXPECT_GT(cross(edge, place.uv - domain[i]), -1e-12);  // inside but for rounding
+        }
+    }
+}
+
+TEST_P(EveryShape, UniformPlacesHaveTheDomainsCentre) {
+    const ElementTree tree = well_cut_tree(GetParam());
+    for (ElementId e : tree.leaves()) {
+        Vec2 sum;
+        constexpr int n = 64;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) sum = sum + tree.uniform(e, (i + 0.5) / n, (j + 0.5) / n);
+        const Vec2 mean = (1.0 / (n * n)) * sum;
+        // A midpoint rule of 64 x 64 cells: up to half a cell is lost at each seam of a cell's fan of triangles.
+        EXPECT_NEAR(mean.x, tree.centre(e).x, 0.5 / n);
+        EXPECT_NEAR(mean.y, tree.centre(e).y, 0.5 / n);
+    }
+}
+
+TEST(ElementTree, ALineThatMissesAnElementCutsNothing) {
+    ElementTree tree;
+    tree.add_root(RegionId(0), patch(Patch::Shape::parallelogram));
+    EXPECT_TRUE(tree.split_by_line(ElementId(0), {{1, 0}, 1.5}).is_none());
+    EXPECT_TRUE(tree.split_by_line(ElementId(0), {{1, 0}, 0}).is_none());
+    EXPECT_TRUE(tree.is_leaf(ElementId(0)));
+}
+
+}  // namespace
+}  // namespace exitance

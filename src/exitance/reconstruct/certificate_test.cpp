@@ -1,0 +1,77 @@
+#include "exitance/reconstruct/certificate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/transport/direct_projection.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// A furnace, whose exact indirect light is known everywhere, with an error of a known size planted in it.
+struct PlantedError {
+    static constexpr double rho = 0.5, exact = rho / (1 - rho);  // E_ind of M = 1
+    Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
+    Stage stage{scene};
+    GlobalLight light;
+    ElementFunction delivered;
+
+    explicit PlantedError(const std::function<double(const Point&)>& error) {
+        light.tree = stage.make_elements({.edge = 0.5, .grading_levels = 0});
+        light.numbering = LeafNumbering(light.tree);
+        const std::size_t n = light.numbering.leaves.size();
+        light.direct.assign(n, Spectrum(1.0));
+        light.indirect.assign(n, Spectrum(exact));
+        light.reflected.assign(n, Spectrum(rho * (1 + exact)));
+        delivered.tree = light.tree;
+        delivered.first_value.resize(light.tree.size(), 0);
+        for (ElementId e : light.numbering.leaves) {
+            delivered.first_value[e] = static_cast<std::uint32_t>(delivered.values.size());
+            for (int i = 0; i < 4; ++i)
+                delivered.add_value(Spectrum(exact + error(light.tree.patch(e).centre())));
+        }
+    }
+
+    Certificate certificate(std::uint64_t seed) const {
+        const ElementLocator locator(delivered.tree, scene.regions().size());
+        const RadiosityAt b = [&](RegionId region, const Point& y) {
+            return rho * (Spectrum(1.0) + delivered.at(locator.find(region, y)));
+        };
+        return certify(stage, light, delivered, b, {.error = 0.02, .seed = seed});
+    }
+
+    /// Relative RMS of the planted error of B.
+    double error(const std::function<double(const Point&)>& planted) const {
+        double square = 0;
+        for (ElementId e : light.numbering.leaves)
+            square += light.tree.area(e) * std::pow(rho * planted(light.tree.patch(e).centre()), 2);
+        return std::sqrt(square / stage.area) / (rho * (1 + exact));
+    }
+};
+
+double rough(const Point& p) { return std::sin(40 * p.x) * std::cos(37 * p.y) * std::sin(43 * p.z + 1) > 0 ? 0.1 : -0.1; }
+double smooth(const Point&) { return 0.06; }
+
+TEST(Certificate, FindsNoErrorInAnExactFurnace) {
+    const PlantedError furnace([](const Point&) { return 0.0; });
+    EXPECT_LT(furnace.certificate(1).bound, 1e-5);  // values are stored in single precision
+}
+
+class EveryError : public testing::TestWithParam<double (*)(const Point&)> {};
+INSTANTIATE_TEST_SUITE_P(Errors, EveryError, testing::Values(&rough, &smooth));
+
+TEST_P(EveryError, IsEstimatedAndBounded) {
+    const PlantedError planted(GetParam());
+    const double truth = planted.error(GetParam());
+    ASSERT_GT(truth, 0.01);
+    int within = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Certificate c = planted.certificate(seed);
+        EXPECT_GE(c.bound, truth * (1 - 1e-6));  // values are stored in single precision
+        within += truth <= 1.25 * c.estimate + 1e-3 && c.estimate <= 2 * truth + 1e-3;
+    }
+    EXPECT_GE(within, 9);  // the estimate is right nearly always; its resolution is a fifth of the error asked for
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,101 @@
+#include "exitance/solve/relaxation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/core/random.hpp"
+
+namespace exitance {
+namespace {
+
+/// A reciprocal system of form factors between elements of different areas: A_i F_ij = A_j F_ji, rows below 1.
+class SmallTransport final : public TransportOperator {
+  public:
+    explicit SmallTransport(std::size_t n) : n_(n), F_(n * n), area_(n) {
+        RandomStream random(7, Stream::mesh);
+        for (double& a : area_) a = 0.5 + random.uniform();
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const double exchange = random.uniform() / static_cast<double>(2 * n);
+                F_[i * n + j] = exchange / area_[i];
+                F_[j * n + i] = exchange / area_[j];
+            }
+    }
+    std::size_t size() const override { return n_; }
+    Spectrum gather_at(std::size_t i, std::span<const Spectrum> b) const override {
+        Spectrum sum;
+        for (std::size_t j = 0; j < n_; ++j) sum += F_[i * n_ + j] * b[j];
+        return sum;
+    }
+    void gather(std::span<const Spectrum> b, std::span<Spectrum> E) const override {
+        for (std::size_t i = 0; i < n_; ++i) E[i] = gather_at(i, b);
+    }
+    std::size_t memory_bytes() const override { return 8 * F_.size(); }
+    const std::vector<double>& area() const { return area_; }
+
+  private:
+    std::size_t n_;
+    std::vector<double> F_, area_;
+};
+
+struct Problem {
+    SmallTransport F{60};
+    std::vector<Spectrum> rho, rhs;
+    Problem() {
+        RandomStream random(8, Stream::mesh);
+        for (std::size_t i = 0; i < F.size(); ++i) {
+            Spectrum r, e;
+            for (std::size_t b = 0; b < bands; ++b) r[b] = 0.95 * random.uniform(), e[b] = random.uniform();
+            rho.push_back(i % 7 == 0 ? Spectrum() : r);  // some black ones
+            rhs.push_back(i % 5 == 0 ? Spectrum() : e);
+        }
+    }
+    RadiositySystem system() const { return {F, rho, rhs, F.area()}; }
+};
+
+class EveryRelaxation : public testing::TestWithParam<Relaxation> {};
+INSTANTIATE_TEST_SUITE_P(Relaxations, EveryRelaxation,
+                         testing::Values(Relaxation::jacobi, Relaxation::gauss_seidel, Relaxation::cg,
+                                         Relaxation::gmres));
+
+TEST_P(EveryRelaxation, LeavesNoResidual) {
+    const Problem problem;
+    std::vector<Spectrum> b(problem.F.size()), E(problem.F.size());
+    const SolveReport report = solve_radiosity(problem.system(), GetParam(), b, {.residual = 1e-10});
+    EXPECT_TRUE(report.converged);
+    problem.F.gather(b, E);
+    for (std::size_t i = 0; i < b.size(); ++i)
+        // The rule bounds the norm of 60 residuals of size about 1 by 1e-10 of that of the right-hand side.
+        EXPECT_LT(max(problem.rhs[i] + problem.rho[i] * E[i] - b[i]), 2e-9);
+}
+
+TEST_P(EveryRelaxation, SaysThatItRanOutOfIterations) {
+    const Problem problem;
+    std::vector<Spectrum> b(problem.F.size());
+    const SolveReport report = solve_radiosity(problem.system(), GetParam(), b, {.residual = 1e-14, .max_iterations = 2});
+    EXPECT_FALSE(report.converged);
+    EXPECT_GT(report.residual, 1e-14);
+}
+
+TEST(Relaxation, KrylovNeedsFewerGathersThanJacobi) {
+    const Problem problem;
+    const auto gathers = [&](Relaxation method) {
+        std::vector<Spectrum> b(problem.F.size());
+        return solve_radiosity(problem.system(), method, b, {.residual = 1e-10}).iterations;
+    };
+    EXPECT_LT(gathers(Relaxation::cg), gathers(Relaxation::jacobi));
+    EXPECT_LT(gathers(Relaxation::gmres), gathers(Relaxation::jacobi));
+}
+
+TEST(Relaxation, AStopRequestEndsIt) {
+    const Problem problem;
+    StopRequest stop;
+    stop.interrupt();
+    std::vector<Spectrum> b(problem.F.size());
+    const SolveReport report =
+        solve_radiosity(problem.system(), Relaxation::jacobi, b, {.residual = 0, .request = &stop});
+    EXPECT_TRUE(report.interrupted);
+    EXPECT_EQ(report.iterations, 1u);
+}
+
+}  // namespace
+}  // namespace exitance
