@@ -47,11 +47,10 @@ TEST_P(CompareScript, MeasuresTheSameErrors) {
         EXPECT_FALSE(surfaces.back().is_none());
     }
     ASSERT_TRUE(writer->commit());
-    const ErrorMeasure m =
-        measure_error({result, reference->irradiance, reference->standard_errors, surfaces}, scene);
+    const ErrorMeasure m = measure_error({result, reference->irradiance, reference->standard_errors, surfaces}, scene);
 
-    const Ran ran = run("python3 '" + script + "' '" + reference_file + "' '" + (folder / "result.csv") + "' '" +
-                        scene_file + "'");
+    const Ran ran =
+        run("python3 '" + script + "' '" + reference_file + "' '" + (folder / "result.csv") + "' '" + scene_file + "'");
     ASSERT_EQ(ran.status, 0) << ran.output;
     const auto figure = [&](const std::string& before, std::size_t from = 0) {
         const std::size_t at = ran.output.find(before, from);

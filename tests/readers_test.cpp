@@ -9,7 +9,9 @@ namespace exitance {
 namespace {
 
 /// Other programs' readers, as far as this machine has them.
-bool have_readers() { return run("/usr/bin/python3 -c 'import h5py, numpy, vtk'").status == 0; }
+bool have_readers() {
+    return run("/usr/bin/python3 -c 'import h5py, numpy, vtk'").status == 0;
+}
 
 const std::string scripts = std::string(EXITANCE_SOURCE_DIR) + "/tests/readers/";
 

@@ -29,7 +29,9 @@ struct ElementMesh {
 ElementMesh make_element_mesh(const Solution& solution);
 
 /// VTK's type of a polygon of so many corners: triangle, quadrilateral or polygon.
-constexpr std::uint8_t vtk_cell_type(std::size_t corners) { return corners == 3 ? 5 : corners == 4 ? 9 : 7; }
+constexpr std::uint8_t vtk_cell_type(std::size_t corners) {
+    return corners == 3 ? 5 : corners == 4 ? 9 : 7;
+}
 
 /// Numbers in rows, one row after the other.
 template <class T, std::size_t n>

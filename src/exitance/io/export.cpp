@@ -15,8 +15,11 @@ Result<void> export_solution(const Solution& solution, const std::string& path) 
     const struct {
         const char* ending;
         Result<void> (*write)(const Solution&, const std::string&);
-    } formats[] = {{".vtkhdf", write_vtkhdf_file}, {".vtu", write_vtu},           {".glb", write_glb},
-                   {".obj", write_obj},            {".csv", write_surface_table}};
+    } formats[] = {{".vtkhdf", write_vtkhdf_file},
+                   {".vtu", write_vtu},
+                   {".glb", write_glb},
+                   {".obj", write_obj},
+                   {".csv", write_surface_table}};
     if (path.ends_with(".curves.csv"))
         return Error{ErrorCode::usage, "the solution holds no discontinuity curves to write to " + path, path, ""};
     std::string known;

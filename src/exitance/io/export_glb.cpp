@@ -17,7 +17,9 @@ namespace {
 using Float3 = std::array<float, 3>;
 
 /// glTF has Y up where scenes have Z up.
-Float3 y_up(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)}; }
+Float3 y_up(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)};
+}
 
 /// Polygons of one group and one material, as a range of all vertices and of all indices.
 struct Primitive {
@@ -43,8 +45,9 @@ Triangles make_triangles(const Solution& solution, const ElementMesh& mesh, cons
     for (std::size_t k = 0; k < order.size(); ++k) {
         const std::size_t i = order[k];
         if (k == 0 || key(i) != key(order[k - 1]))
-            out.primitives.push_back({static_cast<std::size_t>(mesh.group[i]), static_cast<std::size_t>(mesh.material[i]),
-                                      out.position.size(), 0, out.index.size(), 0});
+            out.primitives.push_back({static_cast<std::size_t>(mesh.group[i]),
+                                      static_cast<std::size_t>(mesh.material[i]), out.position.size(), 0,
+                                      out.index.size(), 0});
         Primitive& primitive = out.primitives.back();
         const Normal& n = solution.scene.regions()[RegionId(static_cast<std::size_t>(mesh.region[i]))].plane.n;
         for (std::uint32_t c = 2; c < mesh.corner_count(i); ++c)
@@ -63,7 +66,8 @@ Triangles make_triangles(const Solution& solution, const ElementMesh& mesh, cons
             out.normal.push_back(y_up(n));
             out.radiosity.push_back(radiosity);
             out.irradiance.push_back(irradiance);
-            out.colour.push_back({static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])});
+            out.colour.push_back(
+                {static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])});
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 primitive.lo[axis] = std::min(primitive.lo[axis], out.position.back()[axis]);
                 primitive.hi[axis] = std::max(primitive.hi[axis], out.position.back()[axis]);
@@ -78,15 +82,20 @@ Triangles make_triangles(const Solution& solution, const ElementMesh& mesh, cons
 std::string json_text(const std::string& text) {
     std::string out(1, '"');
     for (char c : text) {
-        if (c == '"' || c == '\\') out += '\\', out += c;
-        else if (static_cast<unsigned char>(c) < 0x20) out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else out += c;
+        if (c == '"' || c == '\\')
+            out += '\\', out += c;
+        else if (static_cast<unsigned char>(c) < 0x20)
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            out += c;
     }
     out += '"';
     return out;
 }
 
-std::string json_triple(const auto& v) { return fmt::format("[{},{},{}]", v[0], v[1], v[2]); }
+std::string json_triple(const auto& v) {
+    return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
+}
 
 /// The bands that stand for red, green and blue.
 std::array<double, 3> triple(const Spectrum& s) {
@@ -94,15 +103,18 @@ std::array<double, 3> triple(const Spectrum& s) {
 }
 
 std::string material_json(const Material& material) {
-    std::array<double, 3> rho = triple(material.reflectance), radiance = triple(radiance_of_exitance(material.exitance));
-    const std::string out = fmt::format("{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{},{},{},1],"
-                                        "\"metallicFactor\":0,\"roughnessFactor\":1}}", json_text(material.name),
-                                        rho[0], rho[1], rho[2]);
+    std::array<double, 3> rho = triple(material.reflectance),
+                          radiance = triple(radiance_of_exitance(material.exitance));
+    const std::string out = fmt::format(
+        "{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{},{},{},1],"
+        "\"metallicFactor\":0,\"roughnessFactor\":1}}",
+        json_text(material.name), rho[0], rho[1], rho[2]);
     if (!material.emits()) return out + ",\"extensions\":{\"KHR_materials_unlit\":{}}}";
     const double strength = std::max({radiance[0], radiance[1], radiance[2], 1e-30});
     for (double& value : radiance) value /= strength;
-    return fmt::format("{},\"emissiveFactor\":{},\"extensions\":{{\"KHR_materials_emissive_strength\":{{\"emissiveStrength\":{}}}}}}}",
-                       out, json_triple(radiance), strength);
+    return fmt::format(
+        "{},\"emissiveFactor\":{},\"extensions\":{{\"KHR_materials_emissive_strength\":{{\"emissiveStrength\":{}}}}}}}",
+        out, json_triple(radiance), strength);
 }
 
 /// Byte ranges of the binary chunk: five vertex arrays of one length, then the indices.
@@ -112,14 +124,17 @@ constexpr std::size_t attributes = std::size(attribute_names);
 std::string make_json(const Scene& scene, const Triangles& triangles, const ToneMap& tone) {
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
-    const std::size_t array_bytes = triangles.position.size() * sizeof(Float3), index_bytes = triangles.index.size() * 4;
+    const std::size_t array_bytes = triangles.position.size() * sizeof(Float3),
+                      index_bytes = triangles.index.size() * 4;
     bool unlit = false, emits = false;
     for (const Material& m : scene.materials()) (m.emits() ? emits : unlit) = true;
     const std::string used = fmt::format("{}{}{}", unlit ? "\"KHR_materials_unlit\"" : "", unlit && emits ? "," : "",
                                          emits ? "\"KHR_materials_emissive_strength\"" : "");
-    fmt::format_to(out, "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"W/m^2\","
-                   "\"radianceUnit\":\"W/(m^2 sr)\",\"exposure\":{},\"white\":{}}}}},\"extensionsUsed\":[{}],\"scene\":0,",
-                   EXITANCE_VERSION, tone.scale, tone.white, used);
+    fmt::format_to(
+        out,
+        "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"W/m^2\","
+        "\"radianceUnit\":\"W/(m^2 sr)\",\"exposure\":{},\"white\":{}}}}},\"extensionsUsed\":[{}],\"scene\":0,",
+        EXITANCE_VERSION, tone.scale, tone.white, used);
 
     // A node and a mesh a group; a primitive a material in it.
     std::string nodes, meshes, scene_nodes, accessors;
@@ -137,26 +152,32 @@ std::string make_json(const Scene& scene, const Triangles& triangles, const Tone
             meshes += k == first ? "{\"attributes\":{" : ",{\"attributes\":{";
             for (std::size_t a = 0; a < attributes; ++a) {
                 meshes += fmt::format("{}\"{}\":{}", a == 0 ? "" : ",", attribute_names[a], accessor);
-                accessors += fmt::format("{}{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
-                                         accessor == 0 ? "" : ",", a, p.first_vertex * sizeof(Float3), p.vertices);
+                accessors += fmt::format(
+                    "{}{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
+                    accessor == 0 ? "" : ",", a, p.first_vertex * sizeof(Float3), p.vertices);
                 if (a == 0) accessors += fmt::format(",\"min\":{},\"max\":{}", json_triple(p.lo), json_triple(p.hi));
                 accessors += "}", ++accessor;
             }
-            accessors += fmt::format(",{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
-                                     attributes, p.first_index * 4, p.indices);
+            accessors += fmt::format(
+                ",{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
+                attributes, p.first_index * 4, p.indices);
             meshes += fmt::format("}},\"indices\":{},\"material\":{}}}", accessor++, p.material);
         }
         meshes += "]}";
     }
     std::string materials, views;
-    for (const Material& m : scene.materials()) materials += fmt::format("{}{}", materials.empty() ? "" : ",", material_json(m));
+    for (const Material& m : scene.materials())
+        materials += fmt::format("{}{}", materials.empty() ? "" : ",", material_json(m));
     for (std::size_t a = 0; a < attributes; ++a)
         views += fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"byteStride\":12,\"target\":34962}},",
                              a * array_bytes, array_bytes);
-    views += fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}", attributes * array_bytes, index_bytes);
-    fmt::format_to(out, "\"scenes\":[{{\"nodes\":[{}]}}],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],"
-                   "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
-                   scene_nodes, nodes, meshes, materials, accessors, views, attributes * array_bytes + index_bytes);
+    views += fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
+                         attributes * array_bytes, index_bytes);
+    fmt::format_to(
+        out,
+        "\"scenes\":[{{\"nodes\":[{}]}}],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],"
+        "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
+        scene_nodes, nodes, meshes, materials, accessors, views, attributes * array_bytes + index_bytes);
     std::string json(text.data(), text.size());
     json.resize((json.size() + 3) / 4 * 4, ' ');
     return json;
@@ -172,8 +193,10 @@ Result<void> write_glb(const Solution& solution, const std::string& path) {
     const std::size_t binary = triangles.position.size() * sizeof(Float3) * attributes + triangles.index.size() * 4;
     const std::size_t total = 12 + 8 + json.size() + 8 + binary;
     if (total > 0xffffffffu)
-        return Error{ErrorCode::cannot_write, "cannot write " + path + ": a .glb file holds at most 4 GiB, this mesh needs " +
-                     std::to_string(total >> 20) + " MiB", path, "export .vtkhdf, or solve with a larger --error"};
+        return Error{ErrorCode::cannot_write,
+                     "cannot write " + path + ": a .glb file holds at most 4 GiB, this mesh needs " +
+                         std::to_string(total >> 20) + " MiB",
+                     path, "export .vtkhdf, or solve with a larger --error"};
 
     Result<AtomicFile> file = AtomicFile::create(path);
     if (!file) return file.error();
@@ -186,7 +209,8 @@ Result<void> write_glb(const Solution& solution, const std::string& path) {
     words({0x46546c67, 2, total, json.size(), 0x4e4f534a});  // "glTF", version, length; "JSON"
     file->write(json);
     words({binary, 0x004e4942});  // "BIN"
-    for (const auto* array : {&triangles.position, &triangles.normal, &triangles.radiosity, &triangles.irradiance, &triangles.colour})
+    for (const auto* array :
+         {&triangles.position, &triangles.normal, &triangles.radiosity, &triangles.irradiance, &triangles.colour})
         file->write(std::as_bytes(std::span(*array)));
     file->write(std::as_bytes(std::span(triangles.index)));
     return file->commit();

@@ -30,7 +30,8 @@ class Replay {
             if (!good) return "makes no tree at element " + std::to_string(at);
         }
         for (ElementId e : tree.ids())
-            if (tree.is_leaf(e) && cut_[e.value] != 0) return "lacks the children of element " + std::to_string(e.value);
+            if (tree.is_leaf(e) && cut_[e.value] != 0)
+                return "lacks the children of element " + std::to_string(e.value);
         if (root != region_.size()) return "has fewer roots than patches";
         return {};
     }
@@ -41,7 +42,9 @@ class Replay {
         const double* p = &patch_[9 * i];
         for (int k = 0; k < 9; ++k)
             if (!std::isfinite(p[k])) return false;
-        tree.add_root(RegionId(region_[i]), {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, {p[6], p[7], p[8]},
+        tree.add_root(RegionId(region_[i]), {{p[0], p[1], p[2]},
+                                             {p[3], p[4], p[5]},
+                                             {p[6], p[7], p[8]},
                                              shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram});
         return true;
     }
@@ -89,7 +92,8 @@ std::vector<float> leaf_values(const ElementFunction& function) {
     out.reserve(bands * function.values.size());
     for (ElementId e : tree.ids()) {
         if (!tree.is_leaf(e)) continue;
-        const std::size_t first = function.first_value[e], count = static_cast<std::size_t>(tree.patch(e).corner_count());
+        const std::size_t first = function.first_value[e],
+                          count = static_cast<std::size_t>(tree.patch(e).corner_count());
         EXI_CHECK(first + count <= function.values.size());
         for (std::size_t i = first; i < first + count; ++i)
             out.insert(out.end(), function.values[i].begin(), function.values[i].end());
@@ -121,7 +125,8 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
     const auto in = [&](const char* name) { return group + "/" + name; };
     file.make_group(group);
     file.write(in("parent"), parent, 1, {"1", "parent of an element; 4294967295 for a root"});
-    file.write(in("cut"), way, 1, {"1", "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line"});
+    file.write(in("cut"), way, 1,
+               {"1", "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line"});
     file.write(in("ratio"), ratio, 1, {"1", "where a cut across one direction stands, in (0, 1)"});
     file.write(in("line_element"), line_element, 1, {"1", "elements that are cut along a line, ascending"});
     file.write(in("line"), line, 3, {"1", "n and d of a cut n . (u, v) = d in the element's coordinates"});
@@ -147,8 +152,8 @@ ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::s
         count += static_cast<std::size_t>(function.tree.patch(e).corner_count());
     }
     if (count * bands != values.size() || count >= none)
-        return file.fail(group + "/values", "has " + std::to_string(values.size() / bands) + " rows in place of " +
-                                                std::to_string(count)),
+        return file.fail(group + "/values",
+                         "has " + std::to_string(values.size() / bands) + " rows in place of " + std::to_string(count)),
                ElementFunction();
     function.values.resize(count);
     for (std::size_t i = 0; i < count; ++i)

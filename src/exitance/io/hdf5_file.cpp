@@ -13,11 +13,11 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t big_bytes = 4096;             ///< From here on compression pays.
-constexpr std::size_t chunk_bytes = 1 << 18;        ///< A quarter of the library's cache of chunks.
-constexpr std::size_t largest_chunk = 1 << 26;      ///< That we agree to read.
+constexpr std::size_t big_bytes = 4096;         ///< From here on compression pays.
+constexpr std::size_t chunk_bytes = 1 << 18;    ///< A quarter of the library's cache of chunks.
+constexpr std::size_t largest_chunk = 1 << 26;  ///< That we agree to read.
 constexpr std::size_t largest_text = 1 << 26;
-constexpr double gzip_at_best = 1100;               ///< Deflate cannot shrink more than 1032 times.
+constexpr double gzip_at_best = 1100;  ///< Deflate cannot shrink more than 1032 times.
 
 /// A handle of the library, given back at the end of its scope. Negative when what made it failed.
 class Handle {
@@ -36,12 +36,18 @@ class Handle {
 
 hid_t native(Hdf5Type type) {
     switch (type) {
-        case Hdf5Type::uint8: return H5T_NATIVE_UINT8;
-        case Hdf5Type::int32: return H5T_NATIVE_INT32;
-        case Hdf5Type::uint32: return H5T_NATIVE_UINT32;
-        case Hdf5Type::int64: return H5T_NATIVE_INT64;
-        case Hdf5Type::float32: return H5T_NATIVE_FLOAT;
-        case Hdf5Type::float64: break;
+        case Hdf5Type::uint8:
+            return H5T_NATIVE_UINT8;
+        case Hdf5Type::int32:
+            return H5T_NATIVE_INT32;
+        case Hdf5Type::uint32:
+            return H5T_NATIVE_UINT32;
+        case Hdf5Type::int64:
+            return H5T_NATIVE_INT64;
+        case Hdf5Type::float32:
+            return H5T_NATIVE_FLOAT;
+        case Hdf5Type::float64:
+            break;
     }
     return H5T_NATIVE_DOUBLE;
 }
@@ -49,12 +55,18 @@ hid_t native(Hdf5Type type) {
 /// Little-endian in the file, wherever it is written.
 hid_t stored(Hdf5Type type) {
     switch (type) {
-        case Hdf5Type::uint8: return H5T_STD_U8LE;
-        case Hdf5Type::int32: return H5T_STD_I32LE;
-        case Hdf5Type::uint32: return H5T_STD_U32LE;
-        case Hdf5Type::int64: return H5T_STD_I64LE;
-        case Hdf5Type::float32: return H5T_IEEE_F32LE;
-        case Hdf5Type::float64: break;
+        case Hdf5Type::uint8:
+            return H5T_STD_U8LE;
+        case Hdf5Type::int32:
+            return H5T_STD_I32LE;
+        case Hdf5Type::uint32:
+            return H5T_STD_U32LE;
+        case Hdf5Type::int64:
+            return H5T_STD_I64LE;
+        case Hdf5Type::float32:
+            return H5T_IEEE_F32LE;
+        case Hdf5Type::float64:
+            break;
     }
     return H5T_IEEE_F64LE;
 }
@@ -82,7 +94,9 @@ std::string library_says() {
     return words.empty() ? "" : " (" + words + ")";
 }
 
-void quieten_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void quieten_library() {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 /// Metadata in the layout of version 1.10: every block of it carries a checksum.
 hid_t file_access() {
@@ -313,7 +327,8 @@ bool Hdf5Reader::holds_really(std::int64_t set, std::size_t item_bytes, std::siz
         if (H5Pget_nfilters(creation) > 0) grows = gzip_at_best;
     }
     const hsize_t held = H5Dget_storage_size(set);
-    return held <= bytes_ && static_cast<double>(items) * static_cast<double>(item_bytes) <= grows * static_cast<double>(held);
+    return held <= bytes_ &&
+           static_cast<double>(items) * static_cast<double>(item_bytes) <= grows * static_cast<double>(held);
 }
 
 std::optional<std::size_t> Hdf5Reader::open_numbers(const std::string& name, Hdf5Type type, std::size_t columns,
@@ -364,8 +379,8 @@ std::vector<std::string> Hdf5Reader::read_texts(const std::string& name, std::op
     const Handle set(*opened), space(H5Dget_space(set)), type(H5Dget_type(set));
     const std::size_t length = H5Tget_size(type);
     hsize_t extent = 0;
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
-        H5Sget_simple_extent_ndims(space) != 1 || H5Sget_simple_extent_dims(space, &extent, nullptr) != 1)
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Sget_simple_extent_ndims(space) != 1 ||
+        H5Sget_simple_extent_dims(space, &extent, nullptr) != 1)
         return fail(name, "is not a row of texts of fixed length"), std::vector<std::string>();
     if (count && extent != *count)
         return fail(name, "has " + std::to_string(extent) + " rows in place of " + std::to_string(*count)),

@@ -64,9 +64,7 @@ class Hdf5Writer {
         set_numbers(object, name, values.data(), hdf5_type<T>(), values.size(), true);
     }
     template <class T>
-    void set_attribute(const std::string& object, const char* name, const T& value)
-        requires std::is_arithmetic_v<T>
-    {
+    void set_attribute(const std::string& object, const char* name, const T& value) requires std::is_arithmetic_v<T> {
         set_numbers(object, name, &value, hdf5_type<T>(), 1, false);
     }
 
@@ -94,7 +92,9 @@ class Hdf5Reader {
     static Result<Hdf5Reader> open(const std::string& path);
 
     Hdf5Reader(Hdf5Reader&& other) noexcept
-        : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)), bytes_(other.bytes_),
+        : path_(std::move(other.path_)),
+          file_(std::exchange(other.file_, -1)),
+          bytes_(other.bytes_),
           error_(std::move(other.error_)) {}
     Hdf5Reader& operator=(Hdf5Reader&&) = delete;
     ~Hdf5Reader();

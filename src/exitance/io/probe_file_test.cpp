@@ -27,9 +27,10 @@ class ProbeFiles : public testing::Test {
 };
 
 TEST_F(ProbeFiles, HoldColumnsInAnyOrderAmongOthers) {
-    const auto read = load_probe_points(file("p.csv", "\xef\xbb\xbfname, z,y,x ,\"nz\",ny,nx,E_r\r\n"
-                                                      "\"a,b\",3,2,1,1,0,0,\r\n"
-                                                      "\r\n# a comment\r\nc,6,5,+4e0,0,0,-2,7\r\n"));
+    const auto read = load_probe_points(file("p.csv",
+                                             "\xef\xbb\xbfname, z,y,x ,\"nz\",ny,nx,E_r\r\n"
+                                             "\"a,b\",3,2,1,1,0,0,\r\n"
+                                             "\r\n# a comment\r\nc,6,5,+4e0,0,0,-2,7\r\n"));
     ASSERT_TRUE(read) << read.error().message;
     ASSERT_EQ(read->size(), 2u);
     EXPECT_EQ(read->points[0], (Point{1, 2, 3}));

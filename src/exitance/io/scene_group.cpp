@@ -41,14 +41,16 @@ class Columns {
         std::vector<T> values = file_.read<T>(group_ + name, columns, rows);
         if constexpr (std::is_floating_point_v<T>)
             for (T value : values)
-                if (!std::isfinite(value)) return file_.fail(group_ + name, "holds a number that is not finite"), std::vector<T>();
+                if (!std::isfinite(value))
+                    return file_.fail(group_ + name, "holds a number that is not finite"), std::vector<T>();
         return values;
     }
     std::vector<std::uint32_t> indices(const char* name, std::size_t below, std::optional<std::size_t> rows = {}) {
         std::vector<std::uint32_t> values = read<std::uint32_t>(name, 1, rows);
         for (std::uint32_t value : values)
             if (value >= below)
-                return file_.fail(group_ + name, "holds " + std::to_string(value) + ", not below " + std::to_string(below)),
+                return file_.fail(group_ + name,
+                                  "holds " + std::to_string(value) + ", not below " + std::to_string(below)),
                        std::vector<std::uint32_t>();
         return values;
     }
@@ -60,7 +62,8 @@ class Columns {
         bool enough = true;
         for (std::uint32_t value : values) total += value, enough = enough && value >= least;
         if (!file_.failed() && (total != sum || !enough))
-            return file_.fail(group_ + name, "holds counts that do not fit the sets they count"), std::vector<std::uint32_t>();
+            return file_.fail(group_ + name, "holds counts that do not fit the sets they count"),
+                   std::vector<std::uint32_t>();
         return values;
     }
     std::vector<Point> points(const char* name, std::optional<std::size_t> rows = {}) {
@@ -72,7 +75,8 @@ class Columns {
     std::vector<Normal> normals(const char* name, std::size_t rows) {
         std::vector<Normal> out = points(name, rows);
         for (const Normal& n : out)
-            if (std::abs(norm(n) - 1) > 1e-6) return file_.fail(group_ + name, "holds a normal whose length is not 1"), out;
+            if (std::abs(norm(n) - 1) > 1e-6)
+                return file_.fail(group_ + name, "holds a normal whose length is not 1"), out;
         return out;
     }
 
@@ -99,12 +103,17 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     const auto face = [&]<class T>(const char* name, T, auto get, Hdf5Label label) {
         file.write(in(name), column<T>(faces, get), 1, label);
     };
-    face("face_corner_count", std::uint32_t(), [](const Surface& s) { return s.corner_count; }, {"1", "corners of a face"});
-    face("face_first_corner", std::uint32_t(), [](const Surface& s) { return s.first_corner; }, {"1", "row of a face's first corner"});
-    face("face_material", std::uint32_t(), [](const Surface& s) { return s.material.value; }, {"1", "row of a face's material"});
+    face("face_corner_count", std::uint32_t(), [](const Surface& s) { return s.corner_count; },
+         {"1", "corners of a face"});
+    face("face_first_corner", std::uint32_t(), [](const Surface& s) { return s.first_corner; },
+         {"1", "row of a face's first corner"});
+    face("face_material", std::uint32_t(), [](const Surface& s) { return s.material.value; },
+         {"1", "row of a face's material"});
     face("face_group", std::uint32_t(), [](const Surface& s) { return s.group.value; }, {"1", "row of a face's group"});
-    face("face_region", std::uint32_t(), [](const Surface& s) { return s.region.value; }, {"1", "row of a face's region"});
-    face("face_line", std::int32_t(), [](const Surface& s) { return s.line; }, {"1", "line of a face in the scene's file"});
+    face("face_region", std::uint32_t(), [](const Surface& s) { return s.region.value; },
+         {"1", "row of a face's region"});
+    face("face_line", std::int32_t(), [](const Surface& s) { return s.line; },
+         {"1", "line of a face in the scene's file"});
     face("face_area", double(), [](const Surface& s) { return s.area; }, {"m^2", "area of a face"});
     file.write(in("face_normal"), flat(column<Normal>(faces, [](const Surface& s) { return s.normal; })), 3,
                {"1", "unit normal of a face, towards its front"});
@@ -133,10 +142,13 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     const auto region = [&]<class T>(const char* name, T, auto get, Hdf5Label label) {
         file.write(in(name), column<T>(regions, get), 1, label);
     };
-    region("region_material", std::uint32_t(), [](const Region& r) { return r.material.value; }, {"1", "row of a region's material"});
+    region("region_material", std::uint32_t(), [](const Region& r) { return r.material.value; },
+           {"1", "row of a region's material"});
     region("region_area", double(), [](const Region& r) { return r.area; }, {"m^2", "area of a region"});
-    region("region_face_count", std::uint32_t(), [](const Region& r) { return r.surfaces.size(); }, {"1", "faces of a region"});
-    region("region_loop_count", std::uint32_t(), [](const Region& r) { return r.loops.size(); }, {"1", "border loops of a region"});
+    region("region_face_count", std::uint32_t(), [](const Region& r) { return r.surfaces.size(); },
+           {"1", "faces of a region"});
+    region("region_loop_count", std::uint32_t(), [](const Region& r) { return r.loops.size(); },
+           {"1", "border loops of a region"});
     file.write(in("region_plane"), planes, 4, {"1", "plane of a region: unit normal n, and n . x in metres"});
     file.write(in("region_face"), members, 1, {"1", "faces of the regions, one region after the other"});
     file.write(in("loop_corner_count"), loop_corners, 1, {"1", "corners of a border loop"});
@@ -193,8 +205,11 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
                              RegionId(region_of[i]), line[i], normal[i], area[i]});
     std::size_t member = 0, loop = 0, point = 0;
     for (std::size_t i = 0; i < region_count; ++i) {
-        Region region = {MaterialId(region_material[i]), {{plane[4 * i], plane[4 * i + 1], plane[4 * i + 2]}, plane[4 * i + 3]},
-                         region_area[i], {}, {}};
+        Region region = {MaterialId(region_material[i]),
+                         {{plane[4 * i], plane[4 * i + 1], plane[4 * i + 2]}, plane[4 * i + 3]},
+                         region_area[i],
+                         {},
+                         {}};
         for (std::uint32_t k = 0; k < member_count[i]; ++k) region.surfaces.emplace_back(members[member++]);
         for (std::uint32_t k = 0; k < loop_count[i]; ++k) {
             const auto first = loop_points.begin() + static_cast<std::ptrdiff_t>(point);

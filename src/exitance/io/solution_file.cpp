@@ -36,7 +36,8 @@ Result<Solution> load_solution(const std::string& path) {
     const auto found = file.integer_attribute("exitance", "format");
     if (!found) return wrong("is an HDF5 file, but no solution of exitance");
     if (*found != format)
-        return wrong("is of format " + std::to_string(*found) + "; this program reads format " + std::to_string(format));
+        return wrong("is of format " + std::to_string(*found) + "; this program reads format " +
+                     std::to_string(format));
     const std::int64_t held = file.integer_attribute("exitance", "bands").value_or(0);
     if (held != static_cast<std::int64_t>(bands))
         return wrong("has " + std::to_string(held) + " bands; this program carries " + std::to_string(bands));

@@ -11,7 +11,9 @@
 #include "support/sample_solution.hpp"
 
 /// HDF5 1.10 loses some of its own memory when it meets damaged metadata; builds that look for leaks pass over that.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libhdf5";
+}
 
 namespace exitance {
 namespace {
@@ -81,7 +83,8 @@ void expect_same(const ElementFunction& a, const ElementFunction& b) {
         } else {
             ASSERT_EQ(a.tree.ratio(e), b.tree.ratio(e));
             if (a.tree.way(e) == Cut::line) {
-                ASSERT_TRUE(a.tree.line(e).normal == b.tree.line(e).normal && a.tree.line(e).offset == b.tree.line(e).offset);
+                ASSERT_TRUE(a.tree.line(e).normal == b.tree.line(e).normal &&
+                            a.tree.line(e).offset == b.tree.line(e).offset);
             }
             ASSERT_EQ(a.tree.children(e).front(), b.tree.children(e).front());
         }

@@ -63,8 +63,14 @@ Result<LineReader> LineReader::open(const std::string& path) {
 }
 
 LineReader::LineReader(LineReader&& other) noexcept
-    : name_(std::move(other.name_)), buffer_(std::move(other.buffer_)), begin_(other.begin_), end_(other.end_),
-      file_(std::exchange(other.file_, -1)), line_(other.line_), error_(other.error_), at_end_(other.at_end_) {}
+    : name_(std::move(other.name_)),
+      buffer_(std::move(other.buffer_)),
+      begin_(other.begin_),
+      end_(other.end_),
+      file_(std::exchange(other.file_, -1)),
+      line_(other.line_),
+      error_(other.error_),
+      at_end_(other.at_end_) {}
 
 LineReader::~LineReader() {
     if (file_ >= 0) ::close(file_);

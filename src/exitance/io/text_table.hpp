@@ -26,9 +26,9 @@ class LineReader {
     std::optional<std::string_view> next_content();
 
     bool failed() const { return error_ != 0; }
-    Error read_error() const;                             ///< When failed().
+    Error read_error() const;                                       ///< When failed().
     Error error(std::string message, std::string hint = {}) const;  ///< bad_input at the present line.
-    int line() const { return line_; }                    ///< Of the line returned last, from 1.
+    int line() const { return line_; }                              ///< Of the line returned last, from 1.
 
   private:
     LineReader() = default;

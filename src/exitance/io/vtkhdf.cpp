@@ -7,7 +7,8 @@ void write_vtkhdf(Hdf5Writer& file, const Solution& solution) {
     const ElementMesh mesh = make_element_mesh(solution);
     const auto point_count = static_cast<std::int64_t>(mesh.points.size());
     const auto cell_count = static_cast<std::int64_t>(mesh.size());
-    std::vector<std::int64_t> connectivity(mesh.points.size()), offsets(mesh.first_point.begin(), mesh.first_point.end());
+    std::vector<std::int64_t> connectivity(mesh.points.size()),
+        offsets(mesh.first_point.begin(), mesh.first_point.end());
     for (std::size_t i = 0; i < connectivity.size(); ++i) connectivity[i] = static_cast<std::int64_t>(i);
     std::vector<std::uint8_t> types(mesh.size());
     for (std::size_t i = 0; i < types.size(); ++i) types[i] = vtk_cell_type(mesh.corner_count(i));
@@ -25,7 +26,8 @@ void write_vtkhdf(Hdf5Writer& file, const Solution& solution) {
     file.write("VTKHDF/Types", types, 1, {"1", "VTK's cell types: 5 triangle, 7 polygon, 9 quadrilateral"});
     file.make_group("VTKHDF/PointData");
     file.write("VTKHDF/PointData/radiosity", flat(mesh.radiosity), bands, {"W/m^2", "flux leaving the front per area"});
-    file.write("VTKHDF/PointData/irradiance", flat(mesh.irradiance), bands, {"W/m^2", "flux arriving on the front per area"});
+    file.write("VTKHDF/PointData/irradiance", flat(mesh.irradiance), bands,
+               {"W/m^2", "flux arriving on the front per area"});
     file.make_group("VTKHDF/CellData");
     for (const auto& [name, ids] : mesh.cell_ids())
         file.write(std::string("VTKHDF/CellData/") + name, *ids, 1, {"1", "row in /exitance/scene"});

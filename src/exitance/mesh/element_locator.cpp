@@ -33,8 +33,12 @@ std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count
 
 }  // namespace
 
-std::uint32_t ElementLocator::Grid::column(double x) const { return cell_of(x, s0, s_scale, columns); }
-std::uint32_t ElementLocator::Grid::row(double y) const { return cell_of(y, t0, t_scale, rows); }
+std::uint32_t ElementLocator::Grid::column(double x) const {
+    return cell_of(x, s0, s_scale, columns);
+}
+std::uint32_t ElementLocator::Grid::row(double y) const {
+    return cell_of(y, t0, t_scale, rows);
+}
 
 ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count)
     : tree_(&tree), first_root_(region_count + 1, 0), roots_(tree.roots().size()), grid_of_(region_count, -1) {

@@ -11,10 +11,10 @@ namespace {
 
 /// Sums over points and bands, once with every difference weighted by the reflectance and once as they are.
 struct Sums {
-    double squares = 0;     ///< (w (E - E_ref))^2
-    double differences = 0; ///< w (E - E_ref)
-    double noise = 0;       ///< (w se)^2
-    double level = 0;       ///< w E_ref
+    double squares = 0;      ///< (w (E - E_ref))^2
+    double differences = 0;  ///< w (E - E_ref)
+    double noise = 0;        ///< (w se)^2
+    double level = 0;        ///< w E_ref
 
     void add(double weight, double difference, double error, double reference) {
         squares += weight * difference * weight * difference;
@@ -56,7 +56,9 @@ BothSums sum(const ErrorSamples& samples, const Scene& scene, Indices points) {
 }
 
 /// a / b, where 0 / 0 is no error and anything else over 0 an infinite one.
-double ratio(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : std::copysign(HUGE_VAL, a); }
+double ratio(double a, double b) {
+    return a == 0 ? 0 : b > 0 ? a / b : std::copysign(HUGE_VAL, a);
+}
 
 std::vector<double> relative_errors(const ErrorSamples& samples, Indices points) {
     std::vector<double> out;

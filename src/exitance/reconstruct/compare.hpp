@@ -31,8 +31,8 @@ struct ErrorMeasure {
 /// The error measure over points that are uniform in area, all bands together, with B - B_ref = rho (E - E_ref) and
 /// B_ref - M = rho E_ref. Where nothing reflects, E takes the place of B. The error of one point is
 /// sqrt(mean over bands (E - E_ref)^2) / mean over bands E_ref. Points in free space are left out, unless all are: then
-/// E is measured. Everything is infinite when a result is not finite, or deviates from a reference that is 0 throughout.
-/// O(n log n). All spans are of one size, or empty where that is said.
+/// E is measured. Everything is infinite when a result is not finite, or deviates from a reference that is 0
+/// throughout. O(n log n). All spans are of one size, or empty where that is said.
 ErrorMeasure measure_error(const ErrorSamples& samples, const Scene& scene);
 
 /// The same over the points of each face that has any, by face.

@@ -25,8 +25,12 @@ struct Samples {
 const SurfaceId floor_face(0u), wall(2u), lamp(3u);
 
 /// mean over bands of rho and of rho^2
-double mean_of(const Spectrum& s) { return mean(s); }
-double mean_square(const Spectrum& s) { return squared(s) / double(bands); }
+double mean_of(const Spectrum& s) {
+    return mean(s);
+}
+double mean_square(const Spectrum& s) {
+    return squared(s) / double(bands);
+}
 
 TEST(ErrorMeasure, IsTheRmsOfRadiosityOverTheMeanReflectedRadiosity) {
     Samples s;

@@ -6,7 +6,8 @@ namespace exitance {
 namespace {
 
 /// The part of a face inside a convex leaf; may run to and fro along the leaf's edges.
-void clip_to_leaf(std::span<const Point> face, const std::vector<Point>& leaf, const Normal& n, std::vector<Point>& out) {
+void clip_to_leaf(std::span<const Point> face, const std::vector<Point>& leaf, const Normal& n,
+                  std::vector<Point>& out) {
     out.assign(face.begin(), face.end());
     std::vector<Point> rest;
     for (std::size_t i = 0; i < leaf.size() && !out.empty(); ++i) {

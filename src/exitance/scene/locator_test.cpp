@@ -49,7 +49,7 @@ TEST(Locator, LeavesPointsInFreeSpaceAlone) {
     const Locator locator(scene);
     EXPECT_TRUE(locator.find({1, 0.5, 0.5}, {0, 0, 1}).is_none());
     EXPECT_TRUE(locator.find({1, 0.5, 2 * locator.tolerance()}, {0, 0, 1}).is_none());
-    EXPECT_TRUE(locator.find({1, 0.5, 0}, {0, 0, -1}).is_none());                  // seen from behind
+    EXPECT_TRUE(locator.find({1, 0.5, 0}, {0, 0, -1}).is_none());                // seen from behind
     EXPECT_TRUE(locator.find({1, 0.5, 0}, normalized({0.05, 0, 1})).is_none());  // 2.9 degrees off
     EXPECT_FALSE(locator.find({1, 0.5, 0}, normalized({0.04, 0, 1})).is_none());
     EXPECT_TRUE(locator.find({NAN, 0, 0}, {0, 0, 1}).is_none());
@@ -97,8 +97,7 @@ TEST(Locator, FindsItsWayAmongManyFaces) {
             for (int i = 0; i < 20; ++i) faces.push_back(rectangle(i, j, i + 0.9, j + 0.9, k));
     const Scene scene = scene_of(faces);
     const Locator locator(scene);
-    for (SurfaceId s : scene.surfaces().ids())
-        EXPECT_EQ(locator.find(centroid(scene.outline(s)), {0, 0, 1}), s);
+    for (SurfaceId s : scene.surfaces().ids()) EXPECT_EQ(locator.find(centroid(scene.outline(s)), {0, 0, 1}), s);
 }
 
 }  // namespace
