@@ -60,17 +60,17 @@ class Boundary {
         const Vec3 &p = scratch.source[0], &q = scratch.source[1], &r = scratch.source[2];
         source_normal_ = cross(q - p, r - p);
         source_height_ = dot(source_normal_, p);
-        axes_[0] = q - p, axes_[1] = cross(source_normal_, q - p);
+        scratch.lit.begin(scratch.source);
         scratch.boxes.clear();
         for (const Workspace::Shadow& shadow : scratch.shadows)
-            scratch.boxes.push_back(box(scratch.outlines[shadow.outline]));
-        source_box_ = box(scratch.source);
+            scratch.boxes.push_back(scratch.lit.bounds(scratch.outlines[shadow.outline]));
+        source_box_ = scratch.lit.bounds(scratch.source);
     }
 
     void add_edge(const Edge& edge) {
         double from = 0, to = 1;
         const std::array<Vec3, 2> ends{edge.a, edge.b};
-        const Workspace::Rectangle bounds = box(ends);
+        const Rectangle bounds = scratch_.lit.bounds(ends);
         if (!bounds.meets(source_box_)) return;
         if (edge.owner >= 0)
             for (const Vec3& plane : scratch_.source_pyramid) {
@@ -102,22 +102,6 @@ class Boundary {
     double total() const { return norm(gap_) > open_loop ? std::numeric_limits<double>::quiet_NaN() : sum_.total(); }
 
   private:
-    /// Bounds of a shape as thrown from x onto the source's plane, in axes of that plane; all of the plane where a
-    /// corner is not thrown there.
-    Workspace::Rectangle box(std::span<const Vec3> corners) const {
-        Workspace::Rectangle bounds;
-        for (const Vec3& r : corners) {
-            const double stretch = source_height_ / dot(source_normal_, r);
-            if (!(stretch > 0 && stretch < 1e9)) return {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
-            const double u = stretch * dot(axes_[0], r), v = stretch * dot(axes_[1], r);
-            bounds.x0 = std::min(bounds.x0, u), bounds.x1 = std::max(bounds.x1, u);
-            bounds.y0 = std::min(bounds.y0, v), bounds.y1 = std::max(bounds.y1, v);
-        }
-        const double margin =
-            1e-9 * (std::abs(bounds.x0) + std::abs(bounds.x1) + std::abs(bounds.y0) + std::abs(bounds.y1));
-        return {bounds.x0 - margin, bounds.y0 - margin, bounds.x1 + margin, bounds.y1 + margin};
-    }
-
     Vec3 on_source(const Vec3& r) const { return (source_height_ / dot(source_normal_, r)) * r; }
 
     void add_piece(const Edge& edge, double from, double to) {
@@ -134,8 +118,7 @@ class Boundary {
     Workspace& scratch_;
     EdgeSum sum_;
     Vec3 source_normal_, gap_;
-    std::array<Vec3, 2> axes_;
-    Workspace::Rectangle source_box_;
+    Rectangle source_box_;
     double source_height_;
 };
 

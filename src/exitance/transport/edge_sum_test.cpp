@@ -34,7 +34,6 @@ void compare(std::vector<Face> occluding, std::uint64_t seed, Tally& tally) {
         tally.given_up += std::isnan(summed);
         if (!std::isnan(summed)) tally.worst = std::max(tally.worst, std::abs(summed - cut));
         EXPECT_NEAR(visible_form_factor(occluders, at, source, scratch, VisiblePartMethod::edge_sums), cut, 1e-12);
-        EXPECT_NEAR(visible_form_factor(occluders, at, source, scratch), cut, 1e-12);
     }
 }
 

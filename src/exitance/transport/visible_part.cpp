@@ -12,9 +12,6 @@ namespace {
 constexpr double on_plane = 1e-14;  ///< Sine of an angle that rounding alone may make.
 constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle are points.
 
-constexpr std::size_t edges_from = 4;  ///< Occluders in view from which edge sums can be faster than cutting,
-constexpr double sparse = 1;           ///< if they hide less than this share of the source, overlaps counted twice.
-
 using Workspace = VisibilityWorkspace;
 
 /// The part of a convex polygon with heights[i] >= 0; the cut runs through the same place from either side.
@@ -173,59 +170,6 @@ Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPie
     return hides;
 }
 
-/// Heights of a polygon's corners over a plane through x, as sines; rounding counts as zero.
-struct Sides {
-    bool any_in = false, any_out = false;
-};
-Sides measure(std::span<const Vec3> polygon, const Vec3& plane, std::vector<double>& heights) {
-    heights.clear();
-    Sides sides;
-    for (const Vec3& r : polygon) {
-        double h = dot(plane, r);
-        if (std::abs(h) <= on_plane * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z))) h = 0;
-        heights.push_back(h);
-        sides.any_in |= h > 0, sides.any_out |= h < 0;
-    }
-    return sides;
-}
-
-/// Adds to `out` what an occluder leaves of one lit fragment.
-void subtract(std::span<const Vec3> fragment, std::span<const Vec3> planes, Workspace& scratch,
-              Workspace::Polygons& out) {
-    scratch.offcuts.clear();
-    scratch.rest.assign(fragment.begin(), fragment.end());
-    bool hidden = true;
-    for (const Vec3& plane : planes) {
-        const Sides sides = measure(scratch.rest, plane, scratch.heights);
-        if (!sides.any_in) hidden = false;  // the fragment lies beside the occluder
-        if (!hidden) break;
-        if (!sides.any_out) continue;
-        scratch.side.clear();
-        cut_above(scratch.rest, scratch.heights, scratch.side);
-        for (double& h : scratch.heights) h = -h;
-        cut_above(scratch.rest, scratch.heights, scratch.offcuts.corners);
-        scratch.offcuts.close();
-        std::swap(scratch.rest, scratch.side);
-    }
-    if (!hidden) {
-        out.corners.insert(out.corners.end(), fragment.begin(), fragment.end());
-        out.close();
-        return;
-    }
-    for (std::size_t i = 0; i < scratch.offcuts.size(); ++i) {
-        const std::span<const Vec3> piece = scratch.offcuts[i];
-        if (piece.size() < 3) continue;
-        out.corners.insert(out.corners.end(), piece.begin(), piece.end());
-        out.close();
-    }
-}
-
-void begin_lit(Workspace& scratch) {
-    scratch.lit.clear();
-    scratch.lit.corners.assign(scratch.source.begin(), scratch.source.end());
-    scratch.lit.close();
-}
-
 /// Cuts what is lit by the shadows from the given one on; false if nothing is left.
 bool cut_lit(std::size_t first, Workspace& scratch) {
     // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
@@ -233,42 +177,24 @@ bool cut_lit(std::size_t first, Workspace& scratch) {
               [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
                   return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
               });
+    if (first == 0) scratch.lit.begin(scratch.source);
     for (std::size_t k = first; k < scratch.shadows.size(); ++k) {
         const Workspace::Shadow& shadow = scratch.shadows[k];
         const std::span<const Vec3> planes = std::span(scratch.planes).subspan(shadow.first_plane, shadow.plane_count);
-        scratch.next.clear();
-        for (std::size_t i = 0; i < scratch.lit.size(); ++i) subtract(scratch.lit[i], planes, scratch, scratch.next);
-        std::swap(scratch.lit, scratch.next);
-        if (scratch.lit.size() == 0) return false;
+        if (!scratch.lit.cut(planes, scratch.lit.bounds(scratch.outlines[shadow.outline]))) return false;
     }
     return true;
 }
 
-double sum_lit(const Normal& n, const Workspace& scratch) {
-    double sum = 0;
-    for (std::size_t i = 0; i < scratch.lit.size(); ++i) sum += contour_sum(n, scratch.lit[i]);
-    return std::clamp(sum, 0.0, 1.0);
-}
-
-/// Do many occluders hide little, so that each edge meets few others? Then the boundary is quicker than cutting.
-bool shadows_are_sparse(const Occluders& occluders, const Receiver& at, PieceId source, const Workspace& scratch) {
-    if (scratch.shadows.size() < edges_from) return false;
-    double hidden = 0;
-    for (const Workspace::Shadow& shadow : scratch.shadows) hidden += shadow.solid_angle;
-    const ConvexPiece& piece = occluders.pieces()[source];
-    return hidden < sparse * rough_solid_angle(scratch.source, dot(piece.plane.n, at.x - occluders.corners(source)[0]));
-}
-
 /// The form factor to what the shadows leave, the first `cut` of which have cut the source already.
-double finish(const Occluders& occluders, const Receiver& at, PieceId source, std::size_t cut, Workspace& scratch,
-              VisiblePartMethod method) {
-    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(at.n, scratch.source));
-    if (method == VisiblePartMethod::edge_sums ||
-        (method == VisiblePartMethod::automatic && shadows_are_sparse(occluders, at, source, scratch))) {
-        const double f = edge_sum(at.n, scratch);
+double finish(const Normal& n, std::size_t cut, Workspace& scratch, VisiblePartMethod method) {
+    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(n, scratch.source));
+    if (method == VisiblePartMethod::edge_sums) {
+        const double f = edge_sum(n, scratch);
         if (!std::isnan(f)) return std::clamp(f, 0.0, 1.0);
+        cut = 0;
     }
-    return cut_lit(cut, scratch) ? sum_lit(at.n, scratch) : 0;
+    return cut_lit(cut, scratch) ? scratch.lit.form_factor(n) : 0;
 }
 
 void begin(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
@@ -277,7 +203,6 @@ void begin(const Occluders& occluders, const Receiver& at, PieceId source, Works
     scratch.shadows.clear();
     scratch.outlines.clear();
     scratch.uncovering.clear();
-    begin_lit(scratch);
 }
 
 }  // namespace
@@ -305,7 +230,7 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
     const std::size_t large = scratch.shadows.size();
     if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
     if (occluders.visit_region(Occluders::Size::small, scratch.region, hides_everything, scratch.source[0])) return 0;
-    return finish(occluders, at, source, large > 1 ? large : 0, scratch, method);
+    return finish(at.n, large > 1 ? large : 0, scratch, method);
 }
 
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
@@ -316,7 +241,7 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
     const ConvexPiece& emitter = occluders.pieces()[source];
     for (PieceId p : candidates)
         if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
-    return finish(occluders, at, source, 0, scratch, method);
+    return finish(at.n, 0, scratch, method);
 }
 
 }  // namespace exitance

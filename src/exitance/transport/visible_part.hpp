@@ -7,6 +7,7 @@
 
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/geometry/vec.hpp"
+#include "exitance/transport/lit_part.hpp"
 #include "exitance/transport/occluders.hpp"
 #include "exitance/transport/shaft.hpp"
 
@@ -42,16 +43,12 @@ class VisibilityWorkspace {
         std::uint32_t outline = 0;  ///< Its polygon among the outlines,
         bool reversed = false;      ///< which runs clockwise as seen from the receiver.
     };
-    /// Bounds in a plane.
-    struct Rectangle {
-        double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
-        bool meets(const Rectangle& o) const { return x0 <= o.x1 && o.x0 <= x1 && y0 <= o.y1 && o.y0 <= y1; }
-    };
 
-    std::vector<Vec3> source, source_pyramid, clipped, rest, side;
+    std::vector<Vec3> source, source_pyramid, clipped, side;
     std::vector<Vec3> planes;
     std::vector<Shadow> shadows;
-    Polygons outlines, lit, next, offcuts;
+    Polygons outlines;
+    LitPart lit;
     std::vector<Rectangle> boxes;
     std::vector<std::pair<double, double>> intervals;
     std::vector<PieceId> candidates;
@@ -76,8 +73,9 @@ class VisibilityWorkspace {
     std::array<Blocker, 1024> blockers_;
 };
 
-/// How the visible part is found: by cutting the source, or by its boundary (edge_sum.hpp). Both are exact.
-enum class VisiblePartMethod : std::uint8_t { automatic, subtraction, edge_sums };
+/// How the visible part is found: by cutting the source, or by its boundary (edge_sum.hpp). Both are exact, and test
+/// each other; cutting is faster (10 occluders in view 10 and 12 microseconds, 72 of them 104 and 162).
+enum class VisiblePartMethod : std::uint8_t { subtraction, edge_sums };
 
 /// Form factor from a receiver to the visible part of one convex piece of a source: exact but for rounding, occluders
 /// taken from the tree. What lies in the plane of the source or on the receiver's own region never blocks; everything
@@ -86,12 +84,12 @@ enum class VisiblePartMethod : std::uint8_t { automatic, subtraction, edge_sums 
 /// The source is cut by the planes through x and the occluders' edges; what falls inside an occluder's pyramid goes.
 /// Source: [Nishita85], as polygon subtraction. O(f k) for k occluders in the pyramid over the source and f fragments.
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
-                           VisiblePartMethod method = VisiblePartMethod::automatic);
+                           VisiblePartMethod method = VisiblePartMethod::subtraction);
 
 /// The same with occluders given by the caller: all pieces that may reach into the pyramid, in any order, harmless ones
 /// included. Pieces of the receiver's and of the source's own region may be among them.
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
                            std::span<const PieceId> candidates, VisibilityWorkspace& scratch,
-                           VisiblePartMethod method = VisiblePartMethod::automatic);
+                           VisiblePartMethod method = VisiblePartMethod::subtraction);
 
 }  // namespace exitance
