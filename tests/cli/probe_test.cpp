@@ -71,6 +71,24 @@ TEST_F(ProgramProbe, DirectAndIndirectLightMakeTheTotal) {
     EXPECT_NEAR(red[0] + red[1], red[2], 1e-8 * red[2]);  // ten digits are printed
 }
 
+TEST_F(ProgramProbe, PathsGiveTheLightThatTheSolutionGivesWithTheirStandardErrors) {
+    const Finished run = run_program({"probe", solution(), "--points", "-", "--reference", "4096"}, points);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::vector<std::string> lines = lines_of(run.out);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0], "x,y,z,nx,ny,nz,E_r,E_g,E_b,B_r,B_g,B_b,se_r,se_g,se_b");
+    const auto field = [](const std::string& line, int wanted) {
+        std::istringstream row(line);
+        std::string word;
+        for (int i = 0; i <= wanted; ++i) std::getline(row, word, ',');
+        return std::stod(word);
+    };
+    const std::string own = lines_of(run_program({"probe", solution(), "--points", "-"}, points).out).at(1);
+    EXPECT_GT(field(lines[1], 12), 0);
+    // The solution was asked for 10%; the paths' own error comes on top.
+    EXPECT_NEAR(field(lines[1], 6) / field(own, 6), 1, 0.15);
+}
+
 TEST_F(ProgramProbe, ABadPointIsBadInputWithItsLine) {
     const Finished run =
         run_program({"probe", solution(), "--points", "-"}, "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n1,oops,0,0,0,1\n");

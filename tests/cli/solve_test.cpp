@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/small_scene.hpp"
 
@@ -135,6 +136,22 @@ TEST(ProgramSolve, ADryRunForecastsAndWritesNothing) {
     for (const char* key : {"solve_elements", "gather_elements", "rays", "seconds", "memory_bytes"})
         EXPECT_GT(json[key], 0) << key;
     EXPECT_EQ(folder.count(), 2u);
+}
+
+TEST(ProgramSolve, ProgressAsJsonIsALineAnEventAndPhasesComeInOrder) {
+    const TemporaryFolder folder;
+    const Finished run = run_program(
+        {"solve", write_small_room(folder), "-o", folder / "room.h5", "--error", "0.1", "--progress", "json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    std::istringstream lines(run.err);
+    std::vector<std::string> phases;
+    for (std::string line; std::getline(lines, line);) {
+        const Json event = Json::parse(line);
+        EXPECT_EQ(keys(event), (std::vector<std::string>{"phase", "fraction", "detail", "elapsed", "remaining"}));
+        if (phases.empty() || phases.back() != event["phase"]) phases.push_back(event["phase"]);
+    }
+    ASSERT_GE(phases.size(), 3u);
+    EXPECT_EQ(phases.back(), "write");
 }
 
 TEST(ProgramSolve, QuietSaysNothingAndFindsTheSame) {
