@@ -17,7 +17,7 @@ struct Forecast {
 
 /// Counts elements by the knobs that the error asked for leads to, and times a few hundred gathers and direct lights of
 /// this scene on this machine. How much further elements are cut where the light asks for it, and whether the
-/// certificate sends everything round once more, is unknown until then: good to a factor of about four. Some 0.1 s and
+/// certificate sends everything round once more, is unknown until then: good to a factor of about five. Some 0.1 s and
 /// what the scene's ray tracer takes to make.
 Forecast forecast_solve(const Scene& scene, const SolveOptions& options);
 
