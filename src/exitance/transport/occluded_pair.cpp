@@ -105,21 +105,47 @@ void OccludedExchange::measure(Cell& cell) {
 }
 
 /// Gauss points of a triangle or quadrilateral: n x n on the square, on triangles those of degree 2n - 1.
-template <class Value>
-double OccludedExchange::apply(const Cell& cell, int points, const Value& value) {
+void OccludedExchange::place_nodes(const Cell& cell, int points) {
+    nodes_.clear();
     const Vec2 o = cell.corner[0], a = cell.corner[1] - o;
-    double sum = 0;
     if (cell.count == 3) {
         const Vec2 b = cell.corner[2] - o;
         const double area = std::abs(cross(a, b)) / 2;
         for (const PlanarNode& k : triangle_rule(points == 2 ? 2 : 2 * points - 1))
-            sum += area * k.weight * value(o + k.at.x * a + k.at.y * b);
-        return sum;
+            nodes_.push_back({frame_.at(o + k.at.x * a + k.at.y * b), area * k.weight});
+        return;
     }
     const Vec2 b = cell.corner[3] - o, c = cell.corner[2] - cell.corner[1] - b;
     for (const PlanarNode& k : square_rule(points)) {
-        const double u = k.at.x, v = k.at.y, area = cross(a + v * c, b + u * c);
-        sum += k.weight * area * value(o + u * a + v * b + (u * v) * c);
+        const double u = k.at.x, v = k.at.y;
+        nodes_.push_back({frame_.at(o + u * a + v * b + (u * v) * c), k.weight * cross(a + v * c, b + u * c)});
+    }
+}
+
+/// The rule's sum of visible form factors: four points at a time while they see alike.
+double OccludedExchange::apply(const Cell& cell, int points, Glance& glance) {
+    place_nodes(cell, points);
+    evaluations += nodes_.size();
+    double sum = 0;
+    const auto take = [&](double weight, double F, Seen seen) {
+        sum += weight * F;
+        ++glance.count, glance.dark += seen <= Seen::nothing_past_several;
+        glance.lowest = std::min(glance.lowest, F), glance.highest = std::max(glance.highest, F);
+    };
+    for (std::size_t first = 0; first < nodes_.size(); first += 4) {
+        const std::size_t used = std::min<std::size_t>(4, nodes_.size() - first);
+        std::array<Point, 4> x;
+        for (std::size_t i = 0; i < 4; ++i) x[i] = nodes_[first + std::min(i, used - 1)].at;
+        std::array<double, 4> F;
+        Seen seen;
+        if (used > 1 && visible_from_four_(pair_.source, pair_.blockers, x, frame_.n, F, seen)) {
+            for (std::size_t i = 0; i < used; ++i) take(nodes_[first + i].weight, F[i], seen);
+            continue;
+        }
+        for (std::size_t i = 0; i < used; ++i) {
+            const double alone = visible_(x[i], frame_.n, seen);
+            take(nodes_[first + i].weight, alone, seen);
+        }
     }
     return sum;
 }
@@ -161,13 +187,16 @@ double OccludedExchange::convergence(const Cell& cell) const {
 /// A cell that sees all of the source: as many Gauss points as its distance asks for.
 double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int depth) {
     const double rho = convergence(cell);
-    const auto value = [&](Vec2 p) { return visible_.unoccluded(frame_.at(p), frame_.n); };
-    const double whole = std::abs(cross_area(cell.corners())) * value(middle_of(cell.corners()));
+    const double middle = visible_.unoccluded(frame_.at(middle_of(cell.corners())), frame_.n);
+    const double whole = std::abs(cross_area(cell.corners())) * middle;
     const double wanted = std::max(allowed, 1e-16 * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
     if (points > 8 && depth < deepest) return integrate_halves(cell, allowed, depth, true);
-    return apply(cell, std::min(points, 8), value);
+    place_nodes(cell, std::min(points, 8));
+    double sum = 0;
+    for (const Node& node : nodes_) sum += node.weight * visible_.unoccluded(node.at, frame_.n);
+    return sum;
 }
 
 /// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; the
@@ -176,28 +205,20 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int 
 /// a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones, every bend counts. Shares are from cells of rooms with blocks: of a hundred cells
 /// accepted one errs by more than its allowance, none by ten times that.
 double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
-    std::size_t dark = 0, count = 0;
-    double lowest = HUGE_VAL, highest = 0;
-    const auto value = [&](Vec2 p) {
-        Seen seen;
-        const double f = seen_from(p, seen);
-        ++count, dark += seen <= Seen::nothing_past_several;
-        lowest = std::min(lowest, f), highest = std::max(highest, f);
-        return f;
-    };
+    Glance glance;
     const bool fine = relative_ < 1e-5;
     const double rho = convergence(cell), step = 1 / (rho * rho);
-    double before = apply(cell, fine ? 3 : 2, value);
-    if (!fine && dark == 0) {
+    double before = apply(cell, fine ? 3 : 2, glance);
+    if (!fine && glance.dark == 0) {
         const double middle = std::max(cell.at_middle, 1e-300);
-        const double most = std::max(highest / middle - 1, 1 - lowest / middle), varies = 3 * most * most;
+        const double most = std::max(glance.highest / middle - 1, 1 - glance.lowest / middle), varies = 3 * most * most;
         const double witness = before * (varies * varies / 270 + 10 * step * step + (matters_ ? 0.005 * most : 0));
         const double part = cell.count == 3 ? 0.2 : 0.03;  // three points of a triangle are but of degree 2
         if (part * std::abs(before - cell.area * middle) + witness <= allowed) return before;
     }
     for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
-        const double sum = apply(cell, points, value);
-        if (dark == count) return 0;
+        const double sum = apply(cell, points, glance);
+        if (glance.dark == glance.count) return 0;
         const double share = fine || matters_ ? 0.1 : 0.03;
         if (share * std::abs(sum - before) + 10 * sum * std::pow(step, points) <= allowed) return sum;
         before = sum;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/transport/critical_lines.hpp"
+#include "exitance/transport/visible_from_four.hpp"
 #include "exitance/transport/visible_source.hpp"
 
 namespace exitance {
@@ -47,6 +48,16 @@ class OccludedExchange {
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
     };
 
+    struct Node {
+        Point at;
+        double weight;  ///< m^2
+    };
+    /// What the points of a rule saw.
+    struct Glance {
+        std::size_t count = 0, dark = 0;
+        double lowest = HUGE_VAL, highest = 0;
+    };
+
     void cut_into_cells();
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
     void measure(Cell& cell);
@@ -54,13 +65,15 @@ class OccludedExchange {
     double integrate(const Cell& cell, double allowed, int depth);
     double integrate_smooth(const Cell& cell, double allowed, int depth);
     double integrate_halves(const Cell& cell, double allowed, int depth, bool smooth);
-    template <class Value>
-    double apply(const Cell& cell, int points, const Value& value);
+    void place_nodes(const Cell& cell, int points);
+    double apply(const Cell& cell, int points, Glance& glance);
     double seen_from(Vec2 p, Seen& seen);
 
     OccludedPair pair_;
     PlaneFrame frame_{{}, {0, 0, 1}};
     VisibleSource visible_;
+    VisibleFromFour visible_from_four_;
+    std::vector<Node> nodes_;
     CriticalLineFinder finder_;
     std::vector<CriticalLine> lines_;
     std::vector<Cell> cells_, next_;

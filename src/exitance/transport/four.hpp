@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "exitance/geometry/vec.hpp"
+
+// Four numbers at a time, for the kernels of this folder, in the compiler's own vector types, which become whatever the
+// processor has.
+namespace exitance::four {
+
+constexpr std::size_t lanes = 4;
+using Real = double __attribute__((vector_size(32)));
+using Mask = long long __attribute__((vector_size(32)));
+
+struct Vec {
+    Real x, y, z;
+};
+inline Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Real dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Real dot(const Normal& n, const Vec& a) { return n.x * a.x + n.y * a.y + n.z * a.z; }
+inline Vec cross(const Vec& a, const Vec& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+inline Real load(const double* p) { return Real{p[0], p[1], p[2], p[3]}; }
+inline Real sqrt(const Real& v) { return Real{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
+inline Real max(const Real& a, const Real& b) { return a > b ? a : b; }
+inline Real min(const Real& a, const Real& b) { return a < b ? a : b; }
+inline bool any(const Mask& m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
+inline bool all(const Mask& m) { return (m[0] & m[1] & m[2] & m[3]) != 0; }
+
+/// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
+/// quotients share one division; then a polynomial in t^2 that interpolates atan(t)/t at Chebyshev points to 4e-17.
+inline Real angle_over_sine(const Real& y, const Real& x) {
+    constexpr double c[11] = {1.0,
+                              -0.3333333333332844,
+                              0.1999999999885511,
+                              -0.14285714180976467,
+                              0.11111106180455946,
+                              -0.09090773074808414,
+                              0.07689953496306857,
+                              -0.06640233930429408,
+                              0.056883492268090106,
+                              -0.04348052215716462,
+                              0.021135373157693246};
+    const Real away = max(x, -x), low = min(y, away), high = max(y, away);
+    const Mask turned = low > 0.41421356237309503 * high;
+    const Real under = turned ? low + high : high, inverse = 1 / (under * y);
+    const Real t = (turned ? low - high : low) * y * inverse, z = t * t, w = z * z, v = w * w;
+    // Estrin's scheme: short chains, so that edges overlap in the pipeline.
+    const Real p = (c[0] + c[1] * z) + w * (c[2] + c[3] * z) + v * ((c[4] + c[5] * z) + w * (c[6] + c[7] * z)) +
+                   v * v * ((c[8] + c[9] * z) + w * c[10]);
+    // The angle is base + sign t p, by octant.
+    const Mask steep = y > away, back = x < 0;
+    const Real eighth = turned ? Real{} + pi / 4 : Real{};
+    Real a = t * p + eighth;
+    a = steep ? pi / 2 - a : a;
+    a = back ? pi - a : a;
+    return a * under * inverse;
+}
+
+}  // namespace exitance::four

@@ -1,0 +1,220 @@
+#include "exitance/transport/visible_from_four.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "exitance/transport/four.hpp"
+
+namespace exitance {
+namespace {
+
+using namespace four;
+
+constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as none, as for single points.
+constexpr std::size_t most_corners = 20, most_planes = 160, most_fragments = 160;
+
+/// A convex polygon as each of the four points sees it.
+struct Polygon {
+    std::size_t count;
+    Vec corner[most_corners];
+};
+
+/// Yes, no, or not alike.
+enum class Verdict { no, yes, split };
+inline Verdict verdict(const Mask& m) {
+    const long long some = m[0] | m[1] | m[2] | m[3], every = m[0] & m[1] & m[2] & m[3];
+    return some == 0 ? Verdict::no : every != 0 ? Verdict::yes : Verdict::split;
+}
+
+inline Vec spread(const Vec3& p) { return {Real{} + p.x, Real{} + p.y, Real{} + p.z}; }
+inline Real absolute(const Real& v) { return max(v, -v); }
+
+}  // namespace
+
+/// The subtraction of VisibleSource, step by step, with every decision taken by all four points.
+class VisibleFromFour::Work {
+  public:
+    bool run(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers, const std::array<Point, 4>& x,
+             const Normal& n, std::array<double, 4>& out, Seen& seen) {
+        if (source.size() > 12) return false;
+        alike_ = true, lit_ = hidden_ = hidden_by_one_ = false;
+        n_ = n;
+        plane_count_ = pyramid_count_ = fragments_ = 0;
+        total_ = Real{};
+        x_ = {Real{x[0].x, x[1].x, x[2].x, x[3].x}, Real{x[0].y, x[1].y, x[2].y, x[3].y},
+              Real{x[0].z, x[1].z, x[2].z, x[3].z}};
+        Polygon& whole = pool_[fragments_++];
+        whole.count = 0;
+        size_ = Real{};
+        for (const Point& p : source) {
+            const Vec r = spread(p) - x_;
+            size_ = max(size_, absolute(r.x) + absolute(r.y) + absolute(r.z));
+            whole.corner[whole.count++] = r;
+        }
+        for (const ConvexBlocker* blocker : blockers) {
+            bool inside = false;
+            if (!add_pyramid(*blocker, inside)) return false;
+            if (inside) {
+                out.fill(0);
+                seen = Seen::nothing;
+                return true;
+            }
+        }
+        subtract(whole, 0, true);
+        if (!alike_) return false;
+        seen = !lit_ ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several) : hidden_ ? Seen::part : Seen::all;
+        const Real F = max(total_ * (1 / (2 * pi)), Real{});
+        for (std::size_t i = 0; i < 4; ++i) out[i] = lit_ ? F[i] : 0;
+        return true;
+    }
+
+  private:
+    struct Pyramid {
+        std::size_t first, last;
+    };
+
+    /// False when the points see different faces of the blocker, or there is no room for more planes.
+    bool add_pyramid(const ConvexBlocker& blocker, bool& inside) {
+        std::array<bool, ConvexBlocker::most_faces + 1> in_front;
+        bool any_front = false;
+        for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
+            const Verdict v = verdict(dot(blocker.faces[k].n, x_) - blocker.faces[k].offset > 0);
+            if (v == Verdict::split) return false;
+            in_front[k] = v == Verdict::yes;
+            any_front |= in_front[k];
+        }
+        inside = blocker.is_solid() && !any_front;
+        if (inside) return true;
+        if (plane_count_ + blocker.edges.size() > most_planes || pyramid_count_ == pyramids_.size()) return false;
+        const std::size_t first = plane_count_;
+        for (const ConvexBlocker::Edge& e : blocker.edges) {
+            const bool left = in_front[static_cast<std::size_t>(e.left)];
+            if (e.right != ConvexBlocker::no_face && left == in_front[static_cast<std::size_t>(e.right)]) continue;
+            const Vec a = spread(blocker.points[e.a]) - x_, b = spread(blocker.points[e.b]) - x_;
+            planes_[plane_count_++] = left ? cross(b, a) : cross(a, b);
+        }
+        if (plane_count_ - first >= 3)
+            pyramids_[pyramid_count_++] = {first, plane_count_};
+        else
+            plane_count_ = first;
+        return true;
+    }
+
+    /// Heights of the corners over a plane, as -1, 0 or 1 a corner; `any_in` and `any_out` sum up.
+    void measure(const Polygon& polygon, const Vec& plane, Real* heights, int* signs, bool& any_in, bool& any_out) {
+        const Real none = on_plane * size_ * (absolute(plane.x) + absolute(plane.y) + absolute(plane.z));
+        any_in = any_out = false;
+        for (std::size_t i = 0; i < polygon.count; ++i) {
+            heights[i] = dot(plane, polygon.corner[i]);
+            const Verdict above = verdict(heights[i] > none), below = verdict(heights[i] < -none);
+            if (above == Verdict::split || below == Verdict::split) alike_ = false;
+            signs[i] = above == Verdict::yes ? 1 : below == Verdict::yes ? -1 : 0;
+            any_in |= signs[i] > 0, any_out |= signs[i] < 0;
+        }
+    }
+
+    /// The part where sign * height >= 0.
+    static void cut(const Polygon& polygon, const Real* heights, const int* signs, int sign, Polygon& out) {
+        out.count = 0;
+        for (std::size_t i = 0; i < polygon.count; ++i) {
+            const std::size_t j = i + 1 == polygon.count ? 0 : i + 1;
+            if (sign * signs[i] >= 0 && out.count < most_corners) out.corner[out.count++] = polygon.corner[i];
+            if (signs[i] * signs[j] < 0 && out.count < most_corners) {
+                const Real t = heights[i] / (heights[i] - heights[j]);
+                const Vec &p = polygon.corner[i], e = polygon.corner[j] - p;
+                out.corner[out.count++] = {p.x + t * e.x, p.y + t * e.y, p.z + t * e.z};
+            }
+        }
+    }
+
+    void add_edges(const Polygon& polygon, double weight) {
+        Real sum{};
+        for (std::size_t i = 0; i < polygon.count; ++i) {
+            const Vec &a = polygon.corner[i], &b = polygon.corner[i + 1 == polygon.count ? 0 : i + 1];
+            const Vec c = cross(a, b - a);
+            const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);
+            sum -= angle_over_sine(sine, dot(a, b)) * dot(n_, c);
+        }
+        total_ += weight * sum;
+    }
+
+    void subtract(const Polygon& fragment, std::size_t next, bool is_whole) {
+        Real heights[most_corners];
+        int signs[most_corners];
+        std::array<std::size_t, 40> cuts;
+        std::size_t cut_count = 0;
+        bool any_in = false, any_out = false;
+        for (; alike_ && next < pyramid_count_; ++next) {
+            cut_count = 0;
+            bool beside = false;
+            for (std::size_t k = pyramids_[next].first; alike_ && !beside && k < pyramids_[next].last; ++k) {
+                measure(fragment, planes_[k], heights, signs, any_in, any_out);
+                beside = !any_in;
+                if (any_out && cut_count < cuts.size()) cuts[cut_count++] = k;
+            }
+            if (!beside) break;
+        }
+        if (!alike_) return;
+        if (next == pyramid_count_) {
+            lit_ = true;
+            add_edges(fragment, 1);
+            return;
+        }
+        if (cut_count == 0) {
+            hidden_ = true;
+            hidden_by_one_ |= is_whole;
+            return;
+        }
+        const std::size_t mark = fragments_;
+        if (fragments_ + cut_count + 2 > most_fragments) {
+            alike_ = false;
+            return;
+        }
+        const bool last = next + 1 == pyramid_count_;
+        std::size_t rest = fragments_++, spare = fragments_++;
+        const std::size_t first_offcut = fragments_;
+        const Polygon* polygon = &fragment;
+        bool beside = false;
+        for (std::size_t c = 0; alike_ && !beside && c < cut_count; ++c) {
+            measure(*polygon, planes_[cuts[c]], heights, signs, any_in, any_out);
+            beside = !any_in;
+            if (beside || !any_out) continue;
+            if (!last) cut(*polygon, heights, signs, -1, pool_[fragments_++]);
+            cut(*polygon, heights, signs, 1, pool_[spare]);
+            std::swap(rest, spare);
+            polygon = &pool_[rest];
+        }
+        if (alike_ && beside) {
+            fragments_ = mark;
+            subtract(fragment, next + 1, is_whole);
+        } else if (alike_ && last) {
+            hidden_ = lit_ = true;
+            add_edges(fragment, 1);
+            add_edges(*polygon, -1);
+        } else if (alike_) {
+            hidden_ = true;
+            const std::size_t end = fragments_;
+            for (std::size_t i = first_offcut; alike_ && i < end; ++i) subtract(pool_[i], next + 1, false);
+        }
+        fragments_ = mark;
+    }
+
+    Vec x_;
+    Normal n_;
+    Real size_, total_;
+    bool alike_, lit_, hidden_, hidden_by_one_;
+    std::size_t plane_count_ = 0, pyramid_count_ = 0, fragments_ = 0;
+    std::array<Vec, most_planes> planes_;
+    std::array<Pyramid, 64> pyramids_;
+    std::array<Polygon, most_fragments> pool_;
+};
+
+VisibleFromFour::VisibleFromFour() : work_(new Work) {}
+VisibleFromFour::~VisibleFromFour() { delete work_; }
+
+bool VisibleFromFour::operator()(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers,
+                                 const std::array<Point, 4>& x, const Normal& n, std::array<double, 4>& out, Seen& seen) {
+    return work_->run(source, blockers, x, n, out, seen);
+}
+
+}  // namespace exitance
