@@ -99,9 +99,11 @@ void OccludedExchange::cut_into_cells() {
     cells_.swap(next_);
 }
 
-void OccludedExchange::measure(Cell& cell) {
+/// Looks at a cell with two Gauss points a side.
+void OccludedExchange::look(Cell& cell) {
     cell.area = std::max(0.0, cross_area(cell.corners()));
-    cell.at_middle = seen_from(middle_of(cell.corners()), cell.seen);
+    cell.glance = {};
+    cell.two_points = apply(cell, 2, cell.glance);
 }
 
 /// Gauss points of a triangle or quadrilateral: n x n on the square, on triangles those of degree 2n - 1.
@@ -129,7 +131,8 @@ double OccludedExchange::apply(const Cell& cell, int points, Glance& glance) {
     double sum = 0;
     const auto take = [&](double weight, double F, Seen seen) {
         sum += weight * F;
-        ++glance.count, glance.dark += seen <= Seen::nothing_past_several;
+        ++glance.count, glance.dark += seen == Seen::nothing, glance.lit += seen == Seen::all;
+        glance.black += seen <= Seen::nothing_past_several;
         glance.lowest = std::min(glance.lowest, F), glance.highest = std::max(glance.highest, F);
     };
     for (std::size_t first = 0; first < nodes_.size(); first += 4) {
@@ -170,7 +173,7 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
         two.add(p), two.add(q), two.add(at(3)), two.add(at(0));
     }
     if (smooth) return integrate_smooth(one, 0.5 * allowed, depth + 1) + integrate_smooth(two, 0.5 * allowed, depth + 1);
-    measure(one), measure(two);
+    look(one), look(two);
     return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
 }
 
@@ -187,11 +190,12 @@ double OccludedExchange::convergence(const Cell& cell) const {
 /// A cell that sees all of the source: as many Gauss points as its distance asks for.
 double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int depth) {
     const double rho = convergence(cell);
-    const double middle = visible_.unoccluded(frame_.at(middle_of(cell.corners())), frame_.n);
-    const double whole = std::abs(cross_area(cell.corners())) * middle;
+    const double whole = std::abs(cross_area(cell.corners())) *
+                         (depth == 0 ? cell.glance.highest : visible_.unoccluded(frame_.at(middle_of(cell.corners())), frame_.n));
     const double wanted = std::max(allowed, 1e-16 * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
+    if (depth == 0 && points == 2 && cell.count == 4) return cell.two_points;
     if (points > 8 && depth < deepest) return integrate_halves(cell, allowed, depth, true);
     place_nodes(cell, std::min(points, 8));
     double sum = 0;
@@ -205,12 +209,15 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int 
 /// a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones, every bend counts. Shares are from cells of rooms with blocks: of a hundred cells
 /// accepted one errs by more than its allowance, none by ten times that.
 double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
-    Glance glance;
     const bool fine = relative_ < 1e-5;
     const double rho = convergence(cell), step = 1 / (rho * rho);
-    double before = apply(cell, fine ? 3 : 2, glance);
-    if (!fine && glance.dark == 0) {
-        const double middle = std::max(cell.at_middle, 1e-300);
+    Glance glance = cell.glance;
+    double before = cell.two_points;
+    if (fine) {
+        before = apply(cell, 3, glance);
+    } else if (glance.black == 0) {
+        Seen seen;
+        const double middle = std::max(seen_from(middle_of(cell.corners()), seen), 1e-300);
         const double most = std::max(glance.highest / middle - 1, 1 - glance.lowest / middle), varies = 3 * most * most;
         const double witness = before * (varies * varies / 270 + 10 * step * step + (matters_ ? 0.005 * most : 0));
         const double part = cell.count == 3 ? 0.2 : 0.03;  // three points of a triangle are but of degree 2
@@ -218,7 +225,7 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
     }
     for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
         const double sum = apply(cell, points, glance);
-        if (glance.dark == glance.count) return 0;
+        if (glance.black == glance.count) return 0;
         const double share = fine || matters_ ? 0.1 : 0.03;
         if (share * std::abs(sum - before) + 10 * sum * std::pow(step, points) <= allowed) return sum;
         before = sum;
@@ -246,14 +253,15 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     finder_.find(frame_, whole.corners(), pair.source, pair.blockers, nearest_line * size_, most_lines, lines_);
     cut_into_cells();
 
-    bool all = true;
+    const bool complete = lines_.size() < most_lines;
+    bool all = complete;
     double estimate = 0;
     for (Cell& cell : cells_) {
-        measure(cell);
-        all &= cell.seen == Seen::all;
-        estimate += cell.area * cell.at_middle;
+        look(cell);
+        all &= cell.glance.lit == cell.glance.count;
+        estimate += cell.two_points;
     }
-    if (all && lines_.size() < most_lines) return unoccluded = true, 0;
+    if (all) return unoccluded = true, 0;
 
     matters_ = estimate > demand.large;
     const double allowed = std::max(demand.relative * estimate, demand.absolute);
@@ -262,13 +270,12 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
     double total = 0;
     for (const Cell& cell : cells_) {
-        const double value = cell.area * cell.at_middle;
-        if (cell.seen == Seen::nothing && lines_.size() < most_lines)
+        if (complete && cell.glance.dark == cell.glance.count)
             continue;
-        else if (cell.seen == Seen::all && lines_.size() < most_lines)
+        else if (complete && cell.glance.lit == cell.glance.count)
             total += integrate_smooth(cell, 0.3 * share, 0);
         else if (cell.area * brightest < 0.3 * share)
-            total += value;
+            total += cell.two_points;
         else
             total += integrate(cell, share, 0);
     }

@@ -35,12 +35,19 @@ class OccludedExchange {
     std::size_t evaluations = 0;  ///< Exact visible parts so far.
 
   private:
+    /// What the points of a rule saw.
+    struct Glance {
+        std::size_t count = 0, lit = 0, dark = 0;  ///< Of how many points, seeing all, hidden by one blocker alone.
+        std::size_t black = 0;                    ///< Seeing nothing.
+        double lowest = HUGE_VAL, highest = 0;
+    };
+
     struct Cell {
         static constexpr std::size_t most = 16;
         std::size_t count = 0;
         std::array<Vec2, most> corner;
-        Seen seen = Seen::part;
-        double area = 0, at_middle = 0;
+        double area = 0, two_points = 0;  ///< m^2; the second is the integral by two Gauss points a side.
+        Glance glance;
 
         void add(Vec2 p) {
             if (count < most) corner[count++] = p;
@@ -52,15 +59,9 @@ class OccludedExchange {
         Point at;
         double weight;  ///< m^2
     };
-    /// What the points of a rule saw.
-    struct Glance {
-        std::size_t count = 0, dark = 0;
-        double lowest = HUGE_VAL, highest = 0;
-    };
-
     void cut_into_cells();
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
-    void measure(Cell& cell);
+    void look(Cell& cell);
     double convergence(const Cell& cell) const;
     double integrate(const Cell& cell, double allowed, int depth);
     double integrate_smooth(const Cell& cell, double allowed, int depth);

@@ -19,13 +19,6 @@ struct Polygon {
     Vec corner[most_corners];
 };
 
-/// Yes, no, or not alike.
-enum class Verdict { no, yes, split };
-inline Verdict verdict(const Mask& m) {
-    const long long some = m[0] | m[1] | m[2] | m[3], every = m[0] & m[1] & m[2] & m[3];
-    return some == 0 ? Verdict::no : every != 0 ? Verdict::yes : Verdict::split;
-}
-
 inline Vec spread(const Vec3& p) { return {Real{} + p.x, Real{} + p.y, Real{} + p.z}; }
 inline Real absolute(const Real& v) { return max(v, -v); }
 
@@ -46,8 +39,10 @@ class VisibleFromFour::Work {
         Polygon& whole = pool_[fragments_++];
         whole.count = 0;
         size_ = Real{};
+        towards_ = spread({});
         for (const Point& p : source) {
             const Vec r = spread(p) - x_;
+            towards_ = towards_ + r;
             size_ = max(size_, absolute(r.x) + absolute(r.y) + absolute(r.z));
             whole.corner[whole.count++] = r;
         }
@@ -73,25 +68,35 @@ class VisibleFromFour::Work {
         std::size_t first, last;
     };
 
-    /// False when the points see different faces of the blocker, or there is no room for more planes.
+    /// Adds the planes of a blocker's silhouette. Where only some of the points have an edge on theirs, the others get a
+    /// plane with all of the source inside. False when only some are inside the blocker, or there is no room.
     bool add_pyramid(const ConvexBlocker& blocker, bool& inside) {
-        std::array<bool, ConvexBlocker::most_faces + 1> in_front;
-        bool any_front = false;
+        std::array<int, ConvexBlocker::most_faces + 1> in_front;
+        int any_front = 0;
         for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
-            const Verdict v = verdict(dot(blocker.faces[k].n, x_) - blocker.faces[k].offset > 0);
-            if (v == Verdict::split) return false;
-            in_front[k] = v == Verdict::yes;
+            in_front[k] = bits(dot(blocker.faces[k].n, x_) - blocker.faces[k].offset > 0);
             any_front |= in_front[k];
         }
-        inside = blocker.is_solid() && !any_front;
+        inside = blocker.is_solid() && any_front == 0;
         if (inside) return true;
+        if (blocker.is_solid() && any_front != 15) return false;
         if (plane_count_ + blocker.edges.size() > most_planes || pyramid_count_ == pyramids_.size()) return false;
         const std::size_t first = plane_count_;
         for (const ConvexBlocker::Edge& e : blocker.edges) {
-            const bool left = in_front[static_cast<std::size_t>(e.left)];
-            if (e.right != ConvexBlocker::no_face && left == in_front[static_cast<std::size_t>(e.right)]) continue;
+            const int left = in_front[static_cast<std::size_t>(e.left)];
+            const int outline = e.right == ConvexBlocker::no_face ? 15 : left ^ in_front[static_cast<std::size_t>(e.right)];
+            if (outline == 0) continue;
             const Vec a = spread(blocker.points[e.a]) - x_, b = spread(blocker.points[e.b]) - x_;
-            planes_[plane_count_++] = left ? cross(b, a) : cross(a, b);
+            Vec plane = cross(b, a);
+            if ((left & outline) != outline) {  // seen from behind by some
+                const Real side = {left & 1 ? 1. : -1., left & 2 ? 1. : -1., left & 4 ? 1. : -1., left & 8 ? 1. : -1.};
+                plane = {side * plane.x, side * plane.y, side * plane.z};
+            }
+            if (outline != 15)
+                for (int lane = 0; lane < 4; ++lane)
+                    if ((outline >> lane & 1) == 0)
+                        plane.x[lane] = towards_.x[lane], plane.y[lane] = towards_.y[lane], plane.z[lane] = towards_.z[lane];
+            planes_[plane_count_++] = plane;
         }
         if (plane_count_ - first >= 3)
             pyramids_[pyramid_count_++] = {first, plane_count_};
@@ -100,17 +105,42 @@ class VisibleFromFour::Work {
         return true;
     }
 
-    /// Heights of the corners over a plane, as -1, 0 or 1 a corner; `any_in` and `any_out` sum up.
-    void measure(const Polygon& polygon, const Vec& plane, Real* heights, int* signs, bool& any_in, bool& any_out) {
+    /// Where a polygon stands to a plane. `inside` has a bit for each point that sees some of it inside.
+    struct Standing {
+        int inside = 0;
+        bool any_out = false, alike = true;
+    };
+
+    /// Heights of the corners over a plane, and as -1, 0 or 1 a corner.
+    Standing measure(const Polygon& polygon, const Vec& plane, Real* heights, int* signs) const {
         const Real none = on_plane * size_ * (absolute(plane.x) + absolute(plane.y) + absolute(plane.z));
-        any_in = any_out = false;
+        Standing standing;
         for (std::size_t i = 0; i < polygon.count; ++i) {
             heights[i] = dot(plane, polygon.corner[i]);
-            const Verdict above = verdict(heights[i] > none), below = verdict(heights[i] < -none);
-            if (above == Verdict::split || below == Verdict::split) alike_ = false;
-            signs[i] = above == Verdict::yes ? 1 : below == Verdict::yes ? -1 : 0;
-            any_in |= signs[i] > 0, any_out |= signs[i] < 0;
+            const int above = bits(heights[i] > none), below = bits(heights[i] < -none);
+            standing.alike &= (above == 0 || above == 15) && (below == 0 || below == 15);
+            signs[i] = (above != 0) - (below != 0);
+            standing.inside |= above, standing.any_out |= below != 0;
         }
+        return standing;
+    }
+
+    /// Do all points see the fragment beside a pyramid, each perhaps beyond another side? If none does, `cuts` takes the
+    /// planes that run through it.
+    bool is_beside(const Polygon& fragment, const Pyramid& pyramid, std::array<std::size_t, 40>& cuts, std::size_t& count) {
+        Real heights[most_corners];
+        int signs[most_corners], beside = 0;
+        bool alike = true;
+        count = 0;
+        for (std::size_t k = pyramid.first; k < pyramid.last; ++k) {
+            const Standing standing = measure(fragment, planes_[k], heights, signs);
+            beside |= 15 & ~standing.inside;
+            if (beside == 15) return true;
+            alike &= standing.alike;
+            if (standing.any_out && count < cuts.size()) cuts[count++] = k;
+        }
+        alike_ &= alike && beside == 0;
+        return false;
     }
 
     /// The part where sign * height >= 0.
@@ -139,21 +169,9 @@ class VisibleFromFour::Work {
     }
 
     void subtract(const Polygon& fragment, std::size_t next, bool is_whole) {
-        Real heights[most_corners];
-        int signs[most_corners];
         std::array<std::size_t, 40> cuts;
         std::size_t cut_count = 0;
-        bool any_in = false, any_out = false;
-        for (; alike_ && next < pyramid_count_; ++next) {
-            cut_count = 0;
-            bool beside = false;
-            for (std::size_t k = pyramids_[next].first; alike_ && !beside && k < pyramids_[next].last; ++k) {
-                measure(fragment, planes_[k], heights, signs, any_in, any_out);
-                beside = !any_in;
-                if (any_out && cut_count < cuts.size()) cuts[cut_count++] = k;
-            }
-            if (!beside) break;
-        }
+        while (next < pyramid_count_ && is_beside(fragment, pyramids_[next], cuts, cut_count)) ++next;
         if (!alike_) return;
         if (next == pyramid_count_) {
             lit_ = true;
@@ -176,9 +194,12 @@ class VisibleFromFour::Work {
         const Polygon* polygon = &fragment;
         bool beside = false;
         for (std::size_t c = 0; alike_ && !beside && c < cut_count; ++c) {
-            measure(*polygon, planes_[cuts[c]], heights, signs, any_in, any_out);
-            beside = !any_in;
-            if (beside || !any_out) continue;
+            Real heights[most_corners];
+            int signs[most_corners];
+            const Standing standing = measure(*polygon, planes_[cuts[c]], heights, signs);
+            beside = standing.inside == 0;
+            alike_ &= standing.alike;
+            if (beside || !standing.any_out) continue;
             if (!last) cut(*polygon, heights, signs, -1, pool_[fragments_++]);
             cut(*polygon, heights, signs, 1, pool_[spare]);
             std::swap(rest, spare);
@@ -199,7 +220,7 @@ class VisibleFromFour::Work {
         fragments_ = mark;
     }
 
-    Vec x_;
+    Vec x_, towards_;
     Normal n_;
     Real size_, total_;
     bool alike_, lit_, hidden_, hidden_by_one_;
