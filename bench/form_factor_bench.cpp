@@ -25,7 +25,8 @@ Sources make_sources(std::size_t count, double distance) {
     Sources sources;
     while (sources.quads.size() < count) {
         const Normal towards = normalized({random.uniform() - 0.5, random.uniform() - 0.5, 0.3 + random.uniform()});
-        const Frame frame(normalized(-1.0 * towards + 0.3 * Vec3{random.uniform(), random.uniform(), random.uniform()}));
+        const Frame frame(
+            normalized(-1.0 * towards + 0.3 * Vec3{random.uniform(), random.uniform(), random.uniform()}));
         const Point o = distance * towards;
         if (o.z < 1) continue;
         sources.quads.push_back({o - 0.5 * frame.u - 0.5 * frame.v, o + 0.5 * frame.u - 0.5 * frame.v,
@@ -47,8 +48,9 @@ void points_to_quads(benchmark::State& state) {
     for (std::size_t k = 0; k < count; ++k)
         error = std::max(error, std::abs(F[k] / point_to_polygon({0, 0, 0}, {0, 0, 1}, sources.quads[k]) - 1));
     state.counters["error"] = error;
-    state.counters["per_quad"] = benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(count),
-                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["per_quad"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(count),
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(points_to_quads)->ArgsProduct({{16, 256, 4096}, {2, 20, 100}})->ArgNames({"quads", "distance"});
 

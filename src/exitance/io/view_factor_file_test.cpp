@@ -9,7 +9,9 @@
 namespace exitance {
 namespace {
 
-ViewFactors two_faces() { return {{1, 2}, {0.5, 0.25}, {0, 1.0 / 3, 1.0 / 6, 0}, {1.0 / 3, 1.0 / 6}, 0}; }
+ViewFactors two_faces() {
+    return {{1, 2}, {0.5, 0.25}, {0, 1.0 / 3, 1.0 / 6, 0}, {1.0 / 3, 1.0 / 6}, 0};
+}
 
 TEST(ViewFactorFile, CsvGivesTheSameDoublesBack) {
     std::istringstream in(view_factors_csv(two_faces()));

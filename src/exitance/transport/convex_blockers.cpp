@@ -92,7 +92,8 @@ class Bodies {
             body.faces.push_back(occluders_.pieces()[piece].plane);
             std::vector<std::uint32_t>& loop = body.loops.emplace_back();
             for (const Point& p : occluders_.corners(piece)) {
-                const auto [known, is_new] = numbers.try_emplace(place(p), static_cast<std::uint32_t>(body.points.size()));
+                const auto [known, is_new] =
+                    numbers.try_emplace(place(p), static_cast<std::uint32_t>(body.points.size()));
                 if (is_new) body.points.push_back(p);
                 loop.push_back(known->second);
             }
@@ -109,7 +110,8 @@ class Bodies {
     bool is_convex_body(const ConvexBlocker& body) const {
         std::size_t sides = 0;
         for (const auto& loop : body.loops) sides += loop.size();
-        if (2 * body.edges.size() != sides || body.points.size() + body.faces.size() != body.edges.size() + 2) return false;
+        if (2 * body.edges.size() != sides || body.points.size() + body.faces.size() != body.edges.size() + 2)
+            return false;
         for (const Plane& face : body.faces)
             for (const Point& p : body.points)
                 if (face.signed_distance(p) > slack_) return false;

@@ -14,7 +14,9 @@ void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point
         if (high <= nearness_) continue;
         for (const ConvexBlocker::Edge& e : near.edges) {
             const Point &a = near.points[e.a], &b = near.points[e.b];
-            const auto faces_w = [&](std::int32_t k) { return near.faces[static_cast<std::size_t>(k)].signed_distance(w) > 0; };
+            const auto faces_w = [&](std::int32_t k) {
+                return near.faces[static_cast<std::size_t>(k)].signed_distance(w) > 0;
+            };
             if (e.right != ConvexBlocker::no_face && faces_w(e.left) == faces_w(e.right)) continue;
             const double low_a = std::max(0.0, frame.height(a)), low_b = std::max(0.0, frame.height(b));
             if (low_a >= high && low_b >= high) continue;
@@ -43,7 +45,8 @@ void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Poin
         }
         const double x = dot(face.n, frame.u), y = dot(face.n, frame.v), length = std::sqrt(x * x + y * y);
         if (!over || !under || length < 1e-12 || lines.size() >= most_) continue;
-        const CriticalLine line{{x / length, y / length}, -face.signed_distance(frame.origin) / length, -HUGE_VAL, HUGE_VAL};
+        const CriticalLine line{
+            {x / length, y / length}, -face.signed_distance(frame.origin) / length, -HUGE_VAL, HUGE_VAL};
         if (crosses_receiver(line)) keep(line, lines);
     }
 }
@@ -126,9 +129,9 @@ void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> rec
         outlines_.assign(source.size() * corners, 0);
         for (std::size_t s = 0; s < source.size(); ++s)
             for (const ConvexBlocker::Edge& e : blocker->edges) {
-                const bool silhouette = e.right == ConvexBlocker::no_face ||
-                                        in_front_[s * faces + static_cast<std::size_t>(e.left)] !=
-                                            in_front_[s * faces + static_cast<std::size_t>(e.right)];
+                const bool silhouette =
+                    e.right == ConvexBlocker::no_face || in_front_[s * faces + static_cast<std::size_t>(e.left)] !=
+                                                             in_front_[s * faces + static_cast<std::size_t>(e.right)];
                 if (!silhouette) continue;
                 outlines_[s * corners + e.a] = outlines_[s * corners + e.b] = 1;
                 add(shadows_[s * corners + e.a], shadows_[s * corners + e.b], lines);
@@ -136,7 +139,8 @@ void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> rec
         for (std::size_t s = 0; s < source.size(); ++s) {
             const std::size_t next = s + 1 == source.size() ? 0 : s + 1;
             // Faces seen alike from both ends of an edge are seen alike from all of it.
-            const bool alike = std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
+            const bool alike =
+                std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
             for (std::size_t c = 0; c < corners; ++c)
                 if (!alike || outlines_[s * corners + c])
                     add(shadows_[s * corners + c], shadows_[next * corners + c], lines);

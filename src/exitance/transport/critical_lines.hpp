@@ -11,7 +11,7 @@ namespace exitance {
 /// A line on a receiver across which the visible part of a source changes its corners, so that the form factor bends.
 /// It matters between two places along it only. In the receiver's own coordinates.
 struct CriticalLine {
-    Vec2 n;             ///< The line is n . p = offset, |n| = 1; along it runs (-n.y, n.x).
+    Vec2 n;  ///< The line is n . p = offset, |n| = 1; along it runs (-n.y, n.x).
     double offset = 0;
     double first = 0, last = 0;  ///< Where along it something changes.
 
@@ -51,8 +51,8 @@ class CriticalLineFinder {
     struct Shadow {
         double x, y, weight;
     };
-    void add_gaps(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& far, const ConvexBlocker& near,
-                  std::vector<CriticalLine>& lines) const;
+    void add_gaps(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& far,
+                  const ConvexBlocker& near, std::vector<CriticalLine>& lines) const;
     void add_faces(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& body,
                    std::vector<CriticalLine>& lines) const;
     bool crosses_receiver(const CriticalLine& line) const;

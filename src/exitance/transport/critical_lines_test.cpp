@@ -10,7 +10,8 @@ namespace {
 
 using Outline = std::vector<Point>;
 
-std::vector<CriticalLine> lines_of(const Outline& receiver, const Outline& source, const std::vector<const ConvexBlocker*>& blockers) {
+std::vector<CriticalLine> lines_of(const Outline& receiver, const Outline& source,
+                                   const std::vector<const ConvexBlocker*>& blockers) {
     const PlaneFrame frame(receiver[0], normalized(area_vector(receiver)));
     std::vector<Vec2> flat;
     for (const Point& p : receiver) flat.push_back(frame.flat(p));
@@ -25,7 +26,8 @@ const Outline ceiling = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
 TEST(CriticalLines, AStripHalfWayThrowsThePenumbraOfItsTwoEdges) {
     // A strip x in [0.4, 0.7], beyond the receiver in y: the ends of the source at x = 0 and 1 are seen over its edges
     // from x = 0.8 and 0.4 (over 0.4, 0.7); -0.2 and 1.4 lie outside.
-    const ConvexBlocker strip = make_sheet(Outline{{0.4, -2, 0.5}, {0.7, -2, 0.5}, {0.7, 3, 0.5}, {0.4, 3, 0.5}}, {{0, 0, 1}, 0.5});
+    const ConvexBlocker strip =
+        make_sheet(Outline{{0.4, -2, 0.5}, {0.7, -2, 0.5}, {0.7, 3, 0.5}, {0.4, 3, 0.5}}, {{0, 0, 1}, 0.5});
     const std::vector<CriticalLine> lines = lines_of(floor_square, ceiling, {&strip});
     const PlaneFrame frame(floor_square[0], {0, 0, 1});
     std::vector<double> places;
@@ -41,7 +43,8 @@ TEST(CriticalLines, AStripHalfWayThrowsThePenumbraOfItsTwoEdges) {
 }
 
 TEST(CriticalLines, AFinOnTheReceiverBendsTheLightAlongItsFoot) {
-    const ConvexBlocker fin = make_sheet(Outline{{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 0.6}, {0.5, 0, 0.6}}, {{1, 0, 0}, 0.5});
+    const ConvexBlocker fin =
+        make_sheet(Outline{{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 0.6}, {0.5, 0, 0.6}}, {{1, 0, 0}, 0.5});
     const PlaneFrame frame(floor_square[0], {0, 0, 1});
     bool foot = false;
     for (const CriticalLine& line : lines_of(floor_square, ceiling, {&fin}))
@@ -55,9 +58,12 @@ TEST(CriticalLines, ABlockerBesideThePairThrowsNone) {
 }
 
 TEST(CriticalLines, TheGapBetweenTwoPlatesClosesOnALine) {
-    // Plates with edges x = 0.5 at heights 0.3 (to the left) and 0.6 (to the right, from 0.6): seen along both, x = 0.4.
-    const ConvexBlocker low = make_sheet(Outline{{-3, -3, 0.3}, {0.5, -3, 0.3}, {0.5, 4, 0.3}, {-3, 4, 0.3}}, {{0, 0, 1}, 0.3});
-    const ConvexBlocker high = make_sheet(Outline{{0.6, -3, 0.6}, {4, -3, 0.6}, {4, 4, 0.6}, {0.6, 4, 0.6}}, {{0, 0, 1}, 0.6});
+    // Plates with edges x = 0.5 at heights 0.3 (to the left) and 0.6 (to the right, from 0.6): seen along both, x =
+    // 0.4.
+    const ConvexBlocker low =
+        make_sheet(Outline{{-3, -3, 0.3}, {0.5, -3, 0.3}, {0.5, 4, 0.3}, {-3, 4, 0.3}}, {{0, 0, 1}, 0.3});
+    const ConvexBlocker high =
+        make_sheet(Outline{{0.6, -3, 0.6}, {4, -3, 0.6}, {4, 4, 0.6}, {0.6, 4, 0.6}}, {{0, 0, 1}, 0.6});
     const PlaneFrame frame(floor_square[0], {0, 0, 1});
     bool closes = false;
     for (const CriticalLine& line : lines_of(floor_square, ceiling, {&low, &high}))

@@ -33,7 +33,9 @@ struct Node {
 struct SmallRules {
     Node seven[7], twelve[12];
     SmallRules() {
-        const auto at = [](double s, double t, double weight) { return Node{0.5 + 0.5 * s, 0.5 + 0.5 * t, weight / 4}; };
+        const auto at = [](double s, double t, double weight) {
+            return Node{0.5 + 0.5 * s, 0.5 + 0.5 * t, weight / 4};
+        };
         const double q = std::sqrt(14.0 / 15), r = std::sqrt(0.6), h = std::sqrt(1.0 / 3);
         seven[0] = at(0, 0, 8.0 / 7), seven[1] = at(0, q, 20.0 / 63), seven[2] = at(0, -q, 20.0 / 63);
         const double root = 3 * std::sqrt(583.0), axis = std::sqrt(6.0 / 7);

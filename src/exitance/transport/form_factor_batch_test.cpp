@@ -32,7 +32,8 @@ TEST(PointToQuads, AgreesWithTheScalarSumAtEveryDistance) {
         for (std::size_t k = 0; k < quads.size(); ++k) {
             // A grazing quad's F keeps fewer digits in either sum: measured against what it is face to face.
             const double solid = 1 / (distance * distance);
-            EXPECT_NEAR(F[k], point_to_polygon(x, n, quads[k]), 2e-12 * std::min(1.0, solid)) << distance << " quad " << k;
+            EXPECT_NEAR(F[k], point_to_polygon(x, n, quads[k]), 2e-12 * std::min(1.0, solid))
+                << distance << " quad " << k;
         }
     }
 }

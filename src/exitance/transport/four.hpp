@@ -16,19 +16,37 @@ using Mask = long long __attribute__((vector_size(32)));
 struct Vec {
     Real x, y, z;
 };
-inline Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Real dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Real dot(const Normal& n, const Vec& a) { return n.x * a.x + n.y * a.y + n.z * a.z; }
+inline Vec operator-(const Vec& a, const Vec& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec operator+(const Vec& a, const Vec& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec operator*(double s, const Vec& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+inline Real dot(const Vec& a, const Vec& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Real dot(const Normal& n, const Vec& a) {
+    return n.x * a.x + n.y * a.y + n.z * a.z;
+}
 inline Vec cross(const Vec& a, const Vec& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-inline Real load(const double* p) { return Real{p[0], p[1], p[2], p[3]}; }
-inline Real sqrt(const Real& v) { return Real{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
-inline Real max(const Real& a, const Real& b) { return a > b ? a : b; }
-inline Real min(const Real& a, const Real& b) { return a < b ? a : b; }
+inline Real load(const double* p) {
+    return Real{p[0], p[1], p[2], p[3]};
+}
+inline Real sqrt(const Real& v) {
+    return Real{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+}
+inline Real max(const Real& a, const Real& b) {
+    return a > b ? a : b;
+}
+inline Real min(const Real& a, const Real& b) {
+    return a < b ? a : b;
+}
 /// A bit for each lane whose sign bit is set, as it is where a comparison holds.
 inline int bits(const Mask& m) {
 #ifdef __AVX__
@@ -37,7 +55,9 @@ inline int bits(const Mask& m) {
     return (m[0] < 0 ? 1 : 0) | (m[1] < 0 ? 2 : 0) | (m[2] < 0 ? 4 : 0) | (m[3] < 0 ? 8 : 0);
 #endif
 }
-inline bool any(const Mask& m) { return bits(m) != 0; }
+inline bool any(const Mask& m) {
+    return bits(m) != 0;
+}
 
 /// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
 /// quotients share one division; then a polynomial in t^2 that interpolates atan(t)/t at Chebyshev points to 4e-17.

@@ -9,7 +9,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t most_lines = 24, most_cells = 96;
-constexpr int deepest = 10;          ///< Halvings of a cell: what is left is 1e-3 of its size.
+constexpr int deepest = 10;            ///< Halvings of a cell: what is left is 1e-3 of its size.
 constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
 
 double cross_area(std::span<const Vec2> corners) {
@@ -28,7 +28,8 @@ Vec2 middle_of(std::span<const Vec2> corners) {
 double diameter(std::span<const Vec2> corners) {
     double squared = 0;
     for (std::size_t i = 0; i < corners.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) squared = std::max(squared, dot(corners[i] - corners[j], corners[i] - corners[j]));
+        for (std::size_t j = 0; j < i; ++j)
+            squared = std::max(squared, dot(corners[i] - corners[j], corners[i] - corners[j]));
     return std::sqrt(squared);
 }
 
@@ -172,13 +173,14 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
         one.add(p), one.add(at(1)), one.add(at(2)), one.add(q);
         two.add(p), two.add(q), two.add(at(3)), two.add(at(0));
     }
-    if (smooth) return integrate_smooth(one, 0.5 * allowed, depth + 1) + integrate_smooth(two, 0.5 * allowed, depth + 1);
+    if (smooth)
+        return integrate_smooth(one, 0.5 * allowed, depth + 1) + integrate_smooth(two, 0.5 * allowed, depth + 1);
     look(one), look(two);
     return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
 }
 
-/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points a
-/// side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
+/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points
+/// a side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
 double OccludedExchange::convergence(const Cell& cell) const {
     Box box;
     for (Vec2 p : cell.corners()) box.add(frame_.at(p));
@@ -190,8 +192,9 @@ double OccludedExchange::convergence(const Cell& cell) const {
 /// A cell that sees all of the source: as many Gauss points as its distance asks for.
 double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int depth) {
     const double rho = convergence(cell);
-    const double whole = std::abs(cross_area(cell.corners())) *
-                         (depth == 0 ? cell.glance.highest : visible_.unoccluded(frame_.at(middle_of(cell.corners())), frame_.n));
+    const double whole =
+        std::abs(cross_area(cell.corners())) *
+        (depth == 0 ? cell.glance.highest : visible_.unoccluded(frame_.at(middle_of(cell.corners())), frame_.n));
     const double wanted = std::max(allowed, 1e-16 * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
@@ -206,8 +209,9 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int 
 /// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; the
 /// better one's is a small share of it, but no less than the source's distance lets expect. Two points a side need a
 /// second witness, as bends of opposite sign cancel in their difference from the middle: exp(a s) on [-1, 1] errs by
-/// a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones, every bend counts. Shares are from cells of rooms with blocks: of a hundred cells
-/// accepted one errs by more than its allowance, none by ten times that.
+/// a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones, every bend counts.
+/// Shares are from cells of rooms with blocks: of a hundred cells accepted one errs by more than its allowance, none by
+/// ten times that.
 double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
     const bool fine = relative_ < 1e-5;
     const double rho = convergence(cell), step = 1 / (rho * rho);

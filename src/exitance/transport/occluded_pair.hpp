@@ -38,7 +38,7 @@ class OccludedExchange {
     /// What the points of a rule saw.
     struct Glance {
         std::size_t count = 0, lit = 0, dark = 0;  ///< Of how many points, seeing all, hidden by one blocker alone.
-        std::size_t black = 0;                    ///< Seeing nothing.
+        std::size_t black = 0;                     ///< Seeing nothing.
         double lowest = HUGE_VAL, highest = 0;
     };
 

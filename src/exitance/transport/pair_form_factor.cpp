@@ -57,7 +57,8 @@ class OuterIntegral {
     double part(double a, double b, double allowed, int depth) const {
         const double better = sum(better_, a, b);
         const double error = std::abs(better - sum(coarse_, a, b));
-        if (depth == max_depth || error <= std::max(allowed, rounding * (b - a) * width_ * inner_.length)) return better;
+        if (depth == max_depth || error <= std::max(allowed, rounding * (b - a) * width_ * inner_.length))
+            return better;
         const double middle = 0.5 * (a + b);
         return part(a, middle, 0.5 * allowed, depth + 1) + part(middle, b, 0.5 * allowed, depth + 1);
     }
@@ -71,7 +72,8 @@ class OuterIntegral {
                 stretch *= 30 * y * y * z * z;
                 y = y <= 0.5 ? y * y * y * (10 - 15 * y + 6 * y * y) : 1 - z * z * z * (10 - 15 * z + 6 * z * z);
             }
-            total += rule.weights[k] * stretch * log_integral(outer_.from + (first_ + width_ * y) * outer_.along, inner_);
+            total +=
+                rule.weights[k] * stretch * log_integral(outer_.from + (first_ + width_ * y) * outer_.along, inner_);
         }
         return (b - a) * total;
     }
@@ -155,7 +157,8 @@ std::vector<AreaNode> area_nodes(const std::vector<Point>& outline, const Normal
 
 double area_integral(const std::vector<Point>& receiver, const Normal& n_receiver, const std::vector<Point>& source,
                      const Normal& n_source, int degree) {
-    const std::vector<AreaNode> xs = area_nodes(receiver, n_receiver, degree), ys = area_nodes(source, n_source, degree);
+    const std::vector<AreaNode> xs = area_nodes(receiver, n_receiver, degree),
+                                ys = area_nodes(source, n_source, degree);
     double total = 0;
     for (const AreaNode& x : xs) {
         double sum = 0;

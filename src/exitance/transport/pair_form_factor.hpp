@@ -16,7 +16,8 @@ namespace exitance {
 /// and take Gauss points on both areas instead. Source: [Schroder93], [Baum89]; after Lambert's contour sum.
 /// receiver, source  simple planar polygons, metres, counter-clockwise seen from the front; need not be convex
 /// tolerance         relative error asked for, down to 1e-13; double rounding leaves about 1e-13 of touching pairs
-/// returns 0 when either lies behind the other. O(corners^2) logarithms: about 5 us for squares at 1e-4, 30 us at 1e-10.
+/// returns 0 when either lies behind the other. O(corners^2) logarithms: about 5 us for squares at 1e-4, 30 us at
+/// 1e-10.
 double exchange_area(std::span<const Point> receiver, std::span<const Point> source, double tolerance = 1e-12);
 
 /// F_ij, the share of the receiver's diffuse flux that would reach the front of `source`, nothing in between.

@@ -67,8 +67,9 @@ TEST(PairFormFactor, FarPairsAgreeWithTheContourSumWhereBothHold) {
     for (double z : {28.2, 28.4}) {
         const double F = pair_form_factor(floor, square(z, false));
         const double X = 1 / z, q = std::sqrt(1 + X * X);  // identical squares, closed form
-        const double exact = 2 / (pi * X * X) * (std::log(q * q / std::sqrt(1 + 2 * X * X)) + 2 * X * q * std::atan(X / q) -
-                                                 2 * X * std::atan(X));
+        const double exact =
+            2 / (pi * X * X) *
+            (std::log(q * q / std::sqrt(1 + 2 * X * X)) + 2 * X * q * std::atan(X / q) - 2 * X * std::atan(X));
         EXPECT_NEAR(F / exact, 1, 1e-8) << z;  // the closed form itself loses 1/X^4 of its digits
     }
 }

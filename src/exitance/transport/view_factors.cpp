@@ -1,177 +1,39 @@
 #include "exitance/transport/view_factors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/geometry/quadrature.hpp"
-#include "exitance/geometry/triangulation.hpp"
-#include "exitance/transport/form_factor.hpp"
 #include "exitance/transport/form_factor_batch.hpp"
 #include "exitance/transport/occluded_pair.hpp"
 #include "exitance/transport/pair_form_factor.hpp"
+#include "exitance/transport/view_pairs.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr double smallest_entry = 1e-6;  ///< Entries below it need no digits of their own.
 constexpr double large_entry = 3e-4;     ///< Entries above it may be among the largest of their rows.
-constexpr std::size_t most_corners = 12; ///< Of a convex piece.
 constexpr int most_points = 8;           ///< Gauss points a side; nearer pairs take the contour integral.
-
-/// One face of the scene, ready to receive and to send.
-struct Face {
-    std::span<const Point> outline;
-    Plane plane;
-    double area = 0;
-    Box box;
-    std::vector<std::vector<Point>> pieces;  ///< Convex, of few corners.
-    double diameter = 0;
-    bool is_quad = false;  ///< Convex, three or four corners.
-};
-
-/// Where a blocker stands to a face's plane, as bits.
-enum Standing : std::uint8_t { in_front = 1, behind = 2 };
-
-/// Everything that rows share.
-class Pairs {
-  public:
-    Pairs(const Scene& scene, double tolerance)
-        : occluders_(scene), slack_(std::max(1e-8 * scene.size(), occluders_.rounding())), tolerance_(tolerance) {
-        for (SurfaceId s : scene.surfaces().ids()) faces_.push_back(make_face(scene, s));
-        blockers_ = make_convex_blockers(occluders_, slack_);
-        for (const ConvexBlocker& b : blockers_) {
-            Box box;
-            for (const Point& p : b.points) box.add(p);
-            boxes_.push_back(box);
-        }
-        sides_.resize(faces_.size() * blockers_.size());
-        standing_.resize(sides_.size());
-        parallel_for(faces_.size(), 16, [&](std::size_t i) {
-            for (std::size_t b = 0; b < blockers_.size(); ++b) {
-                sides_[i * blockers_.size() + b] = sides(blockers_[b], faces_[i].outline, slack_);
-                standing_[i * blockers_.size() + b] = standing(blockers_[b], faces_[i].plane);
-            }
-        });
-    }
-
-    const std::vector<Face>& faces() const { return faces_; }
-    const std::vector<ConvexBlocker>& blockers() const { return blockers_; }
-    double slack() const { return slack_; }
-    double tolerance() const { return tolerance_; }
-
-    std::uint8_t standing(const ConvexBlocker& blocker, const Plane& plane) const {
-        std::uint8_t bits = 0;
-        for (const Point& p : blocker.points) {
-            const double d = plane.signed_distance(p);
-            bits |= d > slack_ ? in_front : d < -slack_ ? behind : 0;
-        }
-        return bits;
-    }
-
-    /// Blockers that may hide some of j from some of i.
-    void find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> of_row,
-                       std::vector<std::uint32_t>& found) const;
-    bool crosses(std::size_t face, std::uint32_t b) const {
-        return standing_[face * blockers_.size() + b] == (in_front | behind);
-    }
-    bool is_before(std::size_t face, std::uint32_t b) const { return standing_[face * blockers_.size() + b] & in_front; }
-
-  private:
-    static Face make_face(const Scene& scene, SurfaceId s) {
-        const Surface& surface = scene.surfaces()[s];
-        Face face{scene.outline(s), {surface.normal, dot(surface.normal, scene.outline(s)[0])}, surface.area, {}, {}, 0, false};
-        for (const Point& p : face.outline) face.box.add(p);
-        face.diameter = face.box.diagonal();
-        for (const auto& piece : convex_pieces(face.outline, surface.normal))
-            for (std::size_t first = 1; first + 1 < piece.size(); first += most_corners - 2) {
-                std::vector<Point>& part = face.pieces.emplace_back();
-                part.push_back(face.outline[piece[0]]);
-                for (std::size_t k = first; k < piece.size() && k < first + most_corners - 1; ++k)
-                    part.push_back(face.outline[piece[k]]);
-            }
-        face.is_quad = face.pieces.size() == 1 && face.outline.size() <= 4;
-        return face;
-    }
-
-    Occluders occluders_;
-    double slack_, tolerance_;
-    std::vector<Face> faces_;
-    std::vector<ConvexBlocker> blockers_;
-    std::vector<Box> boxes_;
-    std::vector<std::uint32_t> sides_;    ///< A face's row, a column a blocker.
-    std::vector<std::uint8_t> standing_;  ///< Likewise.
-};
-
-/// A box-to-box shaft: planes parallel to an axis that have both boxes on one side. Source: [Haines91].
-class Shaft {
-  public:
-    Shaft(const Box& a, const Box& b) {
-        both_ = a;
-        both_.add(b);
-        for (std::size_t s = 0; s < 3; ++s) {
-            const std::size_t t = (s + 1) % 3;
-            for (int corner = 0; corner < 4; ++corner) {
-                const bool up_s = corner & 1, up_t = corner & 2;
-                const auto at = [&](const Box& box, std::size_t axis, bool up) { return up ? box.hi[axis] : box.lo[axis]; };
-                const double ds = at(b, s, up_s) - at(a, s, up_s), dt = at(b, t, up_t) - at(a, t, up_t);
-                // The normal across this corner's line that points away from both boxes, if there is one.
-                const double sign = dt * (up_s ? 1 : -1) > 0 ? 1 : -1, ns = sign * dt, nt = -sign * ds;
-                if (ns * (up_s ? 1 : -1) <= 0 || nt * (up_t ? 1 : -1) <= 0) continue;
-                sides_[count_++] = {s, t, ns, nt, ns * at(a, s, up_s) + nt * at(a, t, up_t)};
-            }
-        }
-    }
-    bool misses(const Box& box) const {
-        for (std::size_t s = 0; s < 3; ++s)
-            if (box.lo[s] >= both_.hi[s] || box.hi[s] <= both_.lo[s]) return true;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const Side& side = sides_[k];
-            const double nearest = side.ns * (side.ns > 0 ? box.lo : box.hi)[side.s] + side.nt * (side.nt > 0 ? box.lo : box.hi)[side.t];
-            if (nearest >= side.offset) return true;
-        }
-        return false;
-    }
-
-  private:
-    struct Side {
-        std::size_t s, t;
-        double ns, nt, offset;
-    };
-    Box both_;
-    std::array<Side, 12> sides_;
-    std::size_t count_ = 0;
-};
-
-void Pairs::find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> of_row,
-                          std::vector<std::uint32_t>& found) const {
-    found.clear();
-    const std::uint32_t* sides_i = &sides_[i * blockers_.size()];
-    const std::uint32_t* sides_j = &sides_[j * blockers_.size()];
-    for (std::uint32_t b : of_row)
-        if ((sides_i[b] & sides_j[b]) == 0 && is_before(j, b)) found.push_back(b);
-    if (found.empty()) return;
-    const Shaft shaft(faces_[i].box, faces_[j].box);
-    std::erase_if(found, [&](std::uint32_t b) { return shaft.misses(boxes_[b]); });
-}
 
 /// Computes rows, one after the other, with scratch memory of its own.
 class RowWorker {
   public:
-    explicit RowWorker(const Pairs& pairs) : pairs_(pairs) {}
+    RowWorker(const ViewPairs& pairs, double tolerance) : pairs_(pairs), tolerance_(tolerance) {}
 
     void compute(std::size_t i, std::span<double> row);
 
   private:
-    bool face_each_other(std::size_t i, std::size_t j, bool& cut) const;
-    int points_for(const Face& receiver, const Face& source) const;
+    int points_for(const ViewFace& receiver, const ViewFace& source) const;
     double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
-    double occluded_pieces(const Face& receiver, const Face& source, std::span<const Point> r, std::span<const Point> s,
-                           bool& unoccluded);
+    double occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
+                           std::span<const Point> s, bool& unoccluded);
     void add_unoccluded(std::size_t i, std::size_t j, bool cut);
     void flush_batches(std::size_t i, std::span<double> row);
-    void make_nodes(const Face& receiver, int points);
+    void make_nodes(const ViewFace& receiver, int points);
 
     struct Batch {
         QuadBatch quads;
@@ -182,7 +44,8 @@ class RowWorker {
         double weight;
     };
 
-    const Pairs& pairs_;
+    const ViewPairs& pairs_;
+    double tolerance_;
     std::vector<std::uint32_t> of_row_, of_pair_;
     std::array<Batch, most_points + 1> batches_;
     std::vector<std::uint32_t> exact_;  ///< Unoccluded pairs for the contour integral.
@@ -194,35 +57,17 @@ class RowWorker {
     OccludedExchange exchange_;
 };
 
-/// Is some of each in front of the other? `cut` when only some of one is.
-bool RowWorker::face_each_other(std::size_t i, std::size_t j, bool& cut) const {
-    const Face &a = pairs_.faces()[i], &b = pairs_.faces()[j];
-    bool any = false, all = true;
-    for (const Point& p : b.outline) {
-        const double d = a.plane.signed_distance(p);
-        any |= d > pairs_.slack(), all &= d >= -pairs_.slack();
-    }
-    if (!any) return false;
-    any = false;
-    for (const Point& p : a.outline) {
-        const double d = b.plane.signed_distance(p);
-        any |= d > pairs_.slack(), all &= d >= -pairs_.slack();
-    }
-    cut = !all;
-    return any;
-}
-
 /// How many Gauss points a side an unoccluded receiver takes; more than most_points when the pair is too near. What
 /// the receiver sees of the source is analytic but at the source, g of the receiver's sizes away.
-int RowWorker::points_for(const Face& receiver, const Face& source) const {
+int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) const {
     const Vec3 apart = max(max(source.box.lo - receiver.box.hi, receiver.box.lo - source.box.hi), Vec3{});
     const double g = norm(apart) / receiver.diameter, rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
     if (rho < 1.5) return most_points + 1;
-    return std::max(2, static_cast<int>(std::ceil(-std::log(0.01 * pairs_.tolerance()) / (2 * std::log(rho)))));
+    return std::max(2, static_cast<int>(std::ceil(-std::log(0.01 * tolerance_) / (2 * std::log(rho)))));
 }
 
 void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {
-    const Face &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
+    const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
     const int points = cut || !source.is_quad ? most_points + 1 : points_for(receiver, source);
     if (points > most_points) {
         exact_.push_back(static_cast<std::uint32_t>(j));
@@ -235,7 +80,7 @@ void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {
 }
 
 /// Gauss points of all of a receiver, weights summing to one.
-void RowWorker::make_nodes(const Face& receiver, int points) {
+void RowWorker::make_nodes(const ViewFace& receiver, int points) {
     nodes_.clear();
     for (const std::vector<Point>& piece : receiver.pieces)
         for (std::size_t first = 1; first + 1 < piece.size(); first += 2) {
@@ -259,7 +104,7 @@ void RowWorker::make_nodes(const Face& receiver, int points) {
 
 /// Unoccluded pairs: analytic in the source, Gauss points on the receiver, many sources at a time.
 void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
-    const Face& receiver = pairs_.faces()[i];
+    const ViewFace& receiver = pairs_.faces()[i];
     for (std::size_t points = 2; points < batches_.size(); ++points) {
         Batch& batch = batches_[points];
         if (batch.faces.empty()) continue;
@@ -273,20 +118,20 @@ void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
         batch.faces.clear();
     }
     for (std::uint32_t j : exact_)
-        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, 0.1 * pairs_.tolerance()) / receiver.area;
+        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, 0.1 * tolerance_) / receiver.area;
     exact_.clear();
 }
 
 /// One convex piece of the receiver and one of the source, both before each other's plane.
-double RowWorker::occluded_pieces(const Face& receiver, const Face& source, std::span<const Point> r,
+double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                                   std::span<const Point> s, bool& unoccluded) {
-    const Demand demand{pairs_.tolerance(), pairs_.tolerance() * smallest_entry * receiver.area, large_entry * receiver.area};
+    const Demand demand{tolerance_, tolerance_ * smallest_entry * receiver.area, large_entry * receiver.area};
     return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
 }
 
 /// F_ij with blockers between. A blocker that crosses the plane of either face counts with its part before both.
 double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded) {
-    const Face &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
+    const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
     standing_between_.clear();
     clipped_.clear();
     for (std::uint32_t b : blockers) {
@@ -302,8 +147,9 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
             clip(front_s_, receiver.plane, front_r_);
             if (front_r_.empty()) continue;
             ConvexBlocker sheet = make_sheet(front_r_, blocker.faces[k]);
-            const std::uint8_t by_r = pairs_.standing(sheet, receiver.plane), by_s = pairs_.standing(sheet, source.plane);
-            if (!(by_r & in_front) || !(by_s & in_front)) continue;
+            const std::uint8_t by_r = pairs_.standing(sheet, receiver.plane),
+                               by_s = pairs_.standing(sheet, source.plane);
+            if (!(by_r & ViewPairs::in_front) || !(by_s & ViewPairs::in_front)) continue;
             if (sides(sheet, receiver.outline, pairs_.slack()) & sides(sheet, source.outline, pairs_.slack())) continue;
             clipped_.push_back(std::move(sheet));
             standing_between_.push_back(&clipped_.back());
@@ -313,7 +159,6 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
 
     double total = 0;
     bool all = true;
-    std::vector<double> parts;
     for (const std::vector<Point>& piece_r : receiver.pieces)
         for (const std::vector<Point>& piece_s : source.pieces) {
             clip(piece_r, source.plane, front_r_);
@@ -330,9 +175,8 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
             else
                 part = occluded_pieces(receiver, source, front_r_, front_s_, free);
             standing_between_ = between;
-            parts.push_back(free ? -1 : part);
             all &= free;
-            if (free) part = exchange_area(front_r_, front_s_, 0.1 * pairs_.tolerance());
+            if (free) part = exchange_area(front_r_, front_s_, 0.1 * tolerance_);
             total += part;
         }
     unoccluded = all;
@@ -340,12 +184,10 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
 }
 
 void RowWorker::compute(std::size_t i, std::span<double> row) {
-    of_row_.clear();
-    for (std::uint32_t b = 0; b < pairs_.blockers().size(); ++b)
-        if (pairs_.is_before(i, b)) of_row_.push_back(b);
+    pairs_.find_blockers(i, of_row_);
     for (std::size_t j = 0; j < pairs_.faces().size(); ++j) {
         bool cut = false;
-        if (j == i || !face_each_other(i, j, cut)) continue;
+        if (j == i || !pairs_.face_each_other(i, j, cut)) continue;
         pairs_.find_blockers(i, j, of_row_, of_pair_);
         bool unoccluded = of_pair_.empty();
         if (!unoccluded) row[j] = occluded(i, j, of_pair_, unoccluded);
@@ -374,8 +216,10 @@ double defect(const ViewFactors& table) {
 
 }  // namespace
 
-Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress, const StopRequest& stop) {
-    const Pairs pairs(scene, std::clamp(tolerance, 1e-12, 0.1));
+Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
+                                         const StopRequest& stop) {
+    tolerance = std::clamp(tolerance, 1e-12, 0.1);
+    const ViewPairs pairs(scene);
     const std::size_t n = scene.surfaces().size();
     ViewFactors table;
     for (SurfaceId s : scene.surfaces().ids()) {
@@ -387,12 +231,13 @@ Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, P
     constexpr std::size_t rows_a_step = 128;  // between looks at the clock
     for (std::size_t first = 0; first < n; first += rows_a_step) {
         if (stop.requested())
-            return Error{ErrorCode::limit,
-                         "stopped after " + std::to_string(first) + " of " + std::to_string(n) + " rows of view factors", "",
-                         "allow more time or a larger --tolerance"};
+            return Error{
+                ErrorCode::limit,
+                "stopped after " + std::to_string(first) + " of " + std::to_string(n) + " rows of view factors", "",
+                "allow more time or a larger --tolerance"};
         const std::size_t count = std::min(rows_a_step, n - first);
         parallel_ranges(count, 8, [&](std::size_t from, std::size_t to) {
-            RowWorker worker(pairs);
+            RowWorker worker(pairs, tolerance);
             for (std::size_t i = first + from; i < first + to; ++i)
                 worker.compute(i, std::span(table.factors).subspan(i * n, n));
         });

@@ -29,6 +29,7 @@ struct ViewFactors {
 /// tolerance  relative error asked for of every entry above 1e-6; 1e-12 to 0.1
 /// returns an error of code `limit` when a stop is requested before the last row is done.
 /// Memory: 8 bytes a pair.
-Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress, const StopRequest& stop);
+Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
+                                         const StopRequest& stop);
 
 }  // namespace exitance

@@ -128,7 +128,9 @@ Outline outline_of(const nlohmann::json& json) {
 nlohmann::json published() {
     std::ifstream file(std::string(EXITANCE_SHARED_DIR) + "/reference/view_factors.json");
     nlohmann::json table = nlohmann::json::parse(file, nullptr, false);
-    return table.is_discarded() ? nlohmann::json{{"cases", nlohmann::json::array()}, {"enclosures", nlohmann::json::array()}} : table;
+    return table.is_discarded()
+               ? nlohmann::json{{"cases", nlohmann::json::array()}, {"enclosures", nlohmann::json::array()}}
+               : table;
 }
 
 TEST(ViewFactors, ReproduceThePublishedPairsWithThingsBetween) {

@@ -19,16 +19,20 @@ struct Polygon {
     Vec corner[most_corners];
 };
 
-inline Vec spread(const Vec3& p) { return {Real{} + p.x, Real{} + p.y, Real{} + p.z}; }
-inline Real absolute(const Real& v) { return max(v, -v); }
+inline Vec spread(const Vec3& p) {
+    return {Real{} + p.x, Real{} + p.y, Real{} + p.z};
+}
+inline Real absolute(const Real& v) {
+    return max(v, -v);
+}
 
 }  // namespace
 
 /// The subtraction of VisibleSource, step by step, with every decision taken by all four points.
 class VisibleFromFour::Work {
   public:
-    bool run(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers, const std::array<Point, 4>& x,
-             const Normal& n, std::array<double, 4>& out, Seen& seen) {
+    bool run(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers,
+             const std::array<Point, 4>& x, const Normal& n, std::array<double, 4>& out, Seen& seen) {
         if (source.size() > 12) return false;
         alike_ = true, lit_ = hidden_ = hidden_by_one_ = false;
         n_ = n;
@@ -68,8 +72,8 @@ class VisibleFromFour::Work {
         std::size_t first, last;
     };
 
-    /// Adds the planes of a blocker's silhouette. Where only some of the points have an edge on theirs, the others get a
-    /// plane with all of the source inside. False when only some are inside the blocker, or there is no room.
+    /// Adds the planes of a blocker's silhouette. Where only some of the points have an edge on theirs, the others get
+    /// a plane with all of the source inside. False when only some are inside the blocker, or there is no room.
     bool add_pyramid(const ConvexBlocker& blocker, bool& inside) {
         std::array<int, ConvexBlocker::most_faces + 1> in_front;
         int any_front = 0;
@@ -84,7 +88,8 @@ class VisibleFromFour::Work {
         const std::size_t first = plane_count_;
         for (const ConvexBlocker::Edge& e : blocker.edges) {
             const int left = in_front[static_cast<std::size_t>(e.left)];
-            const int outline = e.right == ConvexBlocker::no_face ? 15 : left ^ in_front[static_cast<std::size_t>(e.right)];
+            const int outline =
+                e.right == ConvexBlocker::no_face ? 15 : left ^ in_front[static_cast<std::size_t>(e.right)];
             if (outline == 0) continue;
             const Vec a = spread(blocker.points[e.a]) - x_, b = spread(blocker.points[e.b]) - x_;
             Vec plane = cross(b, a);
@@ -95,7 +100,8 @@ class VisibleFromFour::Work {
             if (outline != 15)
                 for (int lane = 0; lane < 4; ++lane)
                     if ((outline >> lane & 1) == 0)
-                        plane.x[lane] = towards_.x[lane], plane.y[lane] = towards_.y[lane], plane.z[lane] = towards_.z[lane];
+                        plane.x[lane] = towards_.x[lane], plane.y[lane] = towards_.y[lane],
+                        plane.z[lane] = towards_.z[lane];
             planes_[plane_count_++] = plane;
         }
         if (plane_count_ - first >= 3)
@@ -125,9 +131,10 @@ class VisibleFromFour::Work {
         return standing;
     }
 
-    /// Do all points see the fragment beside a pyramid, each perhaps beyond another side? If none does, `cuts` takes the
-    /// planes that run through it.
-    bool is_beside(const Polygon& fragment, const Pyramid& pyramid, std::array<std::size_t, 40>& cuts, std::size_t& count) {
+    /// Do all points see the fragment beside a pyramid, each perhaps beyond another side? If none does, `cuts` takes
+    /// the planes that run through it.
+    bool is_beside(const Polygon& fragment, const Pyramid& pyramid, std::array<std::size_t, 40>& cuts,
+                   std::size_t& count) {
         Real heights[most_corners];
         int signs[most_corners], beside = 0;
         bool alike = true;
@@ -231,10 +238,13 @@ class VisibleFromFour::Work {
 };
 
 VisibleFromFour::VisibleFromFour() : work_(new Work) {}
-VisibleFromFour::~VisibleFromFour() { delete work_; }
+VisibleFromFour::~VisibleFromFour() {
+    delete work_;
+}
 
 bool VisibleFromFour::operator()(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers,
-                                 const std::array<Point, 4>& x, const Normal& n, std::array<double, 4>& out, Seen& seen) {
+                                 const std::array<Point, 4>& x, const Normal& n, std::array<double, 4>& out,
+                                 Seen& seen) {
     return work_->run(source, blockers, x, n, out, seen);
 }
 

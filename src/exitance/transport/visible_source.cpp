@@ -31,7 +31,9 @@ bool VisibleSource::add_pyramid(const ConvexBlocker& blocker, const Point& x, bo
     const auto first = static_cast<std::uint32_t>(planes_.size());
     for (const ConvexBlocker::Edge& e : blocker.edges) {
         const bool left = in_front_[static_cast<std::size_t>(e.left)];
-        if (e.right != ConvexBlocker::no_face && left == static_cast<bool>(in_front_[static_cast<std::size_t>(e.right)])) continue;
+        if (e.right != ConvexBlocker::no_face &&
+            left == static_cast<bool>(in_front_[static_cast<std::size_t>(e.right)]))
+            continue;
         const Vec3 a = blocker.points[e.a] - x, b = blocker.points[e.b] - x;
         // A face seen from its front runs counter-clockwise: b x a points inwards.
         planes_.push_back(left ? cross(b, a) : cross(a, b));
@@ -155,7 +157,9 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
         if (inside) return seen = Seen::nothing, 0;
     }
     subtract(whole, 0, true);
-    seen = !anything_lit_ ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several) : anything_hidden_ ? Seen::part : Seen::all;
+    seen = !anything_lit_     ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several)
+           : anything_hidden_ ? Seen::part
+                              : Seen::all;
     return anything_lit_ ? std::max(0.0, terms_.sum()) : 0;
 }
 

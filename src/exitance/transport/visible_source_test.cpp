@@ -34,7 +34,8 @@ ConvexBlocker box(const Point& lo, const Point& hi) {
     for (int i = 0; i < 8; ++i) body.points.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
     body.loops = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     for (const auto& loop : body.loops) {
-        const Normal n = normalized(cross(body.points[loop[1]] - body.points[loop[0]], body.points[loop[2]] - body.points[loop[1]]));
+        const Normal n =
+            normalized(cross(body.points[loop[1]] - body.points[loop[0]], body.points[loop[2]] - body.points[loop[1]]));
         body.faces.push_back({n, dot(n, body.points[loop[0]])});
     }
     for (std::size_t f = 0; f < 6; ++f)
@@ -48,7 +49,8 @@ ConvexBlocker box(const Point& lo, const Point& hi) {
     return body;
 }
 
-double seen(const Point& x, const Normal& n, const Outline& source, const std::vector<const ConvexBlocker*>& blockers, Seen& how) {
+double seen(const Point& x, const Normal& n, const Outline& source, const std::vector<const ConvexBlocker*>& blockers,
+            Seen& how) {
     VisibleSource visible;
     visible.set(source, blockers);
     return visible(x, n, how);
