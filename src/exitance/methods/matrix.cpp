@@ -1,4 +1,5 @@
 #include "exitance/methods/methods.hpp"
+#include "exitance/transport/linear_rows.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -40,12 +41,38 @@ void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& li
     light.link_memory_bytes = F.memory_bytes();
 }
 
+/// Linear elements: collocation at the nodes of every leaf, E = first + H rho E, unknowns E_ind.
+void solve_linear(const MethodInput& input, GlobalLight& light) {
+    const ElementLocator locator(light.tree, input.stage.scene.regions().size());
+    const LinearRows H(input.stage, input.direct, light.numbering, locator, input.knobs.solve_rays,
+                       input.options.seed);
+    input.progress.phase("solve");
+    const std::vector<Spectrum> first = H.first_reflection(input.direct), ones(H.size(), Spectrum(1.0));
+    const std::vector<double> area = H.node_areas();
+    std::vector<Spectrum> E = first;
+    const Relaxation asked = input.options.relaxation.value_or(Relaxation::gmres);
+    // Collocation is not symmetric: conjugate gradients do not apply to it.
+    const Relaxation method = asked == Relaxation::cg ? Relaxation::gmres : asked;
+    light.report = solve_radiosity({H, ones, first, area}, method, E,
+                                   {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations,
+                                    .request = &input.stop});
+    const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
+    for (std::size_t i = 0; i < rho.size(); ++i) {
+        light.indirect_corners.push_back(H.corners(i, E));
+        light.indirect.push_back(H.mean(i, E));
+        light.reflected.push_back(rho[i] * (light.direct[i] + light.indirect[i]));
+    }
+    light.rays = light.links = H.rays();
+    light.link_memory_bytes = H.memory_bytes();
+}
+
 }  // namespace
 
 /// Matrix radiosity [Goral84]: b = rho (E_dir + F b) on constant elements, solved by relaxation. The direct light of
 /// emitters is exact and stands apart, so that b is reflected light alone. Rows of F are cast by rays (entries are
 /// noisy, what they gather is not: O(n) rays), or computed, from elements to patches one level above them [Cohen86]
-/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each).
+/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each). With `--basis linear` rows are cast from nodes, and what
+/// a ray reads is the polynomial of the element that it hits [Atkinson00].
 GlobalLight solve_matrix(const MethodInput& input) {
     const auto& [stage, options, knobs, direct, progress, stop] = input;
     GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};
@@ -53,7 +80,9 @@ GlobalLight solve_matrix(const MethodInput& input) {
     light.on_projection = true;
 
     progress.phase("link");
-    if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
+    if (options.basis == BasisKind::linear && options.bounces < 0) {
+        solve_linear(input, light);
+    } else if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
         const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed);
         relax(input, F, light);

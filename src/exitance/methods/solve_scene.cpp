@@ -54,7 +54,8 @@ ElementFunction reflected_light(const Scene& scene, const DirectProjection& dire
         const Spectrum& rho = scene.material(out.tree.region(e)).reflectance;
         out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
         for (std::size_t k = 0; k < 4; ++k)
-            out.add_value(rho * ((light.on_projection ? direct.fit[e].corners[k] : light.direct[i]) + light.indirect[i]));
+            out.add_value(rho * ((light.on_projection ? direct.fit[e].corners[k] : light.direct[i]) +
+                                 (light.indirect_corners.empty() ? light.indirect[i] : light.indirect_corners[i][k])));
     }
     return out;
 }
@@ -69,7 +70,8 @@ class Solver {
                              name_in(method_names, options.method)));
         solution_.bounces = options.bounces;
         statistics().method = name_in(method_names, method.id);
-        statistics().basis = method.basis;
+        const bool linear = method.id == Method::matrix && options.basis == BasisKind::linear && options.bounces < 0;
+        statistics().basis = linear ? "linear" : method.basis;
         statistics().threads = threads();
         statistics().schedule = "stealing";
         statistics().surfaces = scene.surfaces().size();
@@ -111,7 +113,9 @@ class Solver {
             const Stopwatch watch;
             solve_once();
             if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-            if (!demand || certificate_.estimate <= *demand) {
+            // The estimate is itself uncertain by some tenths: it has to be below the demand by as much.
+            constexpr double margin = 0.88;
+            if (!demand || certificate_.estimate <= margin * *demand) {
                 if (statistics().stopped_by.empty() || demand) statistics().converged = true, statistics().stopped_by.clear();
                 return;
             }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "exitance/mesh/solve_mesh.hpp"
@@ -13,6 +14,8 @@ struct GlobalLight {
     LeafNumbering numbering = {};
     /// By leaf number, W/m^2: mean irradiance by emitters, and by everything else.
     std::vector<Spectrum> direct = {}, indirect = {};
+    /// By leaf number, where the method holds polynomials: `indirect` at the corners of the leaf's patch, W/m^2.
+    std::vector<std::array<Spectrum, 4>> indirect_corners = {};
     /// By leaf number, W/m^2: b = rho (E_dir + E_ind), reflected radiosity.
     std::vector<Spectrum> reflected = {};
     /// Is `tree` the mesh of the direct projection, leaf for leaf?

@@ -1,0 +1,151 @@
+#include "exitance/transport/linear_rows.hpp"
+
+#include "exitance/basis/element_fit.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/transport/hemisphere.hpp"
+
+namespace exitance {
+namespace {
+
+std::uint16_t quantised(double t) {
+    return static_cast<std::uint16_t>(std::clamp(t, 0.0, 1.0) * 65535 + 0.5);
+}
+
+/// The nodes of a leaf; a cell of many corners is content with eight of them.
+std::vector<WeightedPlace> leaf_nodes(const ElementTree& tree, ElementId e) {
+    std::vector<WeightedPlace> nodes = element_rule(tree, e, RuleOrder::nodes);
+    while (nodes.size() > 8) nodes.pop_back();
+    double sum = 0;
+    for (const WeightedPlace& node : nodes) sum += node.weight;
+    for (WeightedPlace& node : nodes) node.weight /= sum;
+    return nodes;
+}
+
+}  // namespace
+
+LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const LeafNumbering& numbering,
+                       const ElementLocator& locator, RayBudget budget, std::uint64_t seed)
+    : ids_(numbering.leaves) {
+    const ElementTree& tree = direct.tree;
+    std::vector<Point> place;
+    std::vector<RegionId> region;
+    const double mean_area = stage.area / static_cast<double>(ids_.size());
+    std::size_t rays = 0;
+    for (ElementId e : ids_) {
+        Leaf leaf{.first_node = static_cast<std::uint32_t>(nodes_.size()),
+                  .triangle = tree.patch(e).is_triangle(),
+                  .reflectance = stage.scene.material(tree.region(e)).reflectance};
+        const std::vector<WeightedPlace> nodes = leaf_nodes(tree, e);
+        leaf.node_count = static_cast<std::uint32_t>(nodes.size());
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            // The polynomial of a value of 1 at node k alone gives the column of weights of that node.
+            std::vector<Spectrum> unit(nodes.size());
+            unit[k] = Spectrum(1.0);
+            const ElementFit fit(tree, e, nodes, unit);
+            for (int c = 0; c < tree.patch(e).corner_count(); ++c)
+                leaf.to_corner[static_cast<std::size_t>(c)][k] = static_cast<float>(fit.corner(c)[0]);
+            const unsigned count = budget.rays(tree.area(e), mean_area);
+            nodes_.push_back({nodes[k].weight * tree.area(e), rays, rays + count});
+            rays += count;
+            place.push_back(tree.patch(e).at(nodes[k].uv));
+            region.push_back(tree.region(e));
+        }
+        leaves_.push_back(leaf);
+    }
+    hits_.resize(rays);
+    parallel_ranges(nodes_.size(), 16, [&](std::size_t begin, std::size_t end) {
+        std::vector<Vec3> directions;
+        std::vector<RayHit> found;
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t first = nodes_[k].first_ray, count = nodes_[k].last_ray - first;
+            const Frame frame(stage.scene.regions()[region[k]].plane.n);
+            const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::rows), k));
+            directions.resize(count), found.resize(count);
+            for (std::uint32_t i = 0; i < count; ++i) directions[i] = cosine_direction(frame, points(i, 0), points(i, 1));
+            stage.tracer.nearest(directions, place[k], region[k], found);
+            for (std::size_t i = 0; i < count; ++i) {
+                if (found[i].surface.is_none() || !found[i].front) continue;
+                const Point y = place[k] + found[i].distance * directions[i];
+                const auto [element, uv] = locator.find(stage.scene.surfaces()[found[i].surface].region, y);
+                hits_[first + i] = {numbering.number[element], quantised(uv.x), quantised(uv.y)};
+            }
+        }
+    });
+}
+
+Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node) const {
+    Spectrum sum;
+    for (std::size_t i = node.first_ray; i < node.last_ray; ++i) {
+        const Hit& hit = hits_[i];
+        if (hit.leaf == missed) continue;
+        const double u = hit.u / 65535.0, v = hit.v / 65535.0;
+        const Corners& c = corners[hit.leaf];
+        if (leaves_[hit.leaf].triangle) sum += (1 - u - v) * c[0] + u * c[1] + v * c[2];
+        else sum += (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
+    }
+    return sum / static_cast<double>(node.last_ray - node.first_ray);
+}
+
+std::array<Spectrum, 4> LinearRows::corners(std::size_t leaf, std::span<const Spectrum> nodal) const {
+    const Leaf& l = leaves_[leaf];
+    Corners out{};
+    for (std::size_t c = 0; c < 4; ++c)
+        for (std::size_t k = 0; k < l.node_count; ++k)
+            out[c] += static_cast<double>(l.to_corner[c][k]) * nodal[l.first_node + k];
+    return out;
+}
+
+Spectrum LinearRows::mean(std::size_t leaf, std::span<const Spectrum> nodal) const {
+    const Leaf& l = leaves_[leaf];
+    Spectrum sum;
+    double area = 0;
+    for (std::size_t k = l.first_node; k < l.first_node + l.node_count; ++k) {
+        sum += nodes_[k].area * nodal[k];
+        area += nodes_[k].area;
+    }
+    return sum / area;
+}
+
+void LinearRows::gather(std::span<const Spectrum> nodal, std::span<Spectrum> out) const {
+    std::vector<Corners> reflected(leaves_.size());
+    parallel_for(leaves_.size(), 256, [&](std::size_t i) {
+        reflected[i] = corners(i, nodal);
+        for (Spectrum& c : reflected[i]) c *= leaves_[i].reflectance;
+    });
+    parallel_for(nodes_.size(), 64, [&](std::size_t k) { out[k] = read(reflected, nodes_[k]); });
+}
+
+Spectrum LinearRows::gather_at(std::size_t node, std::span<const Spectrum> nodal) const {
+    Spectrum sum;
+    for (std::size_t i = nodes_[node].first_ray; i < nodes_[node].last_ray; ++i) {
+        const Hit& hit = hits_[i];
+        if (hit.leaf == missed) continue;
+        const double u = hit.u / 65535.0, v = hit.v / 65535.0;
+        const Corners c = corners(hit.leaf, nodal);
+        const Spectrum E = leaves_[hit.leaf].triangle
+                               ? (1 - u - v) * c[0] + u * c[1] + v * c[2]
+                               : (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
+        sum += leaves_[hit.leaf].reflectance * E;
+    }
+    return sum / static_cast<double>(nodes_[node].last_ray - nodes_[node].first_ray);
+}
+
+std::vector<Spectrum> LinearRows::first_reflection(const DirectProjection& direct) const {
+    std::vector<Corners> reflected(leaves_.size());
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+        reflected[i] = direct.fit[ids_[i]].corners;
+        for (Spectrum& c : reflected[i]) c *= leaves_[i].reflectance;
+    }
+    std::vector<Spectrum> out(nodes_.size());
+    parallel_for(nodes_.size(), 64, [&](std::size_t k) { out[k] = read(reflected, nodes_[k]); });
+    return out;
+}
+
+std::vector<double> LinearRows::node_areas() const {
+    std::vector<double> out;
+    out.reserve(nodes_.size());
+    for (const Node& node : nodes_) out.push_back(node.area);
+    return out;
+}
+
+}  // namespace exitance
