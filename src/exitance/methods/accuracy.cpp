@@ -16,12 +16,15 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // A strip of width w along a concave edge, where light varies like w^0.7, has a share of w^1.2 in the error.
     const int strips = static_cast<int>(std::ceil(std::log2(std::max(1.0, 0.25 / error)) / 1.2));
     Knobs knobs;
-    knobs.solve_mesh = {edge_for_elements(pieces, count(16)), strips};
+    knobs.solve_mesh = {edge_for_elements(pieces, count(16)), strips + (error < 0.01 ? 1 : 0)};
     knobs.solve_rays = {.average = std::clamp(1.5 / error, 32.0, 256.0), .least = 16, .most = 1024};
     knobs.direct_tolerance = 2.5 * error;
     knobs.residual = 0.05 * error;
-    knobs.gather_mesh = {edge_for_elements(pieces, count(5)), std::max(0, strips - 1)};
-    knobs.gather_rays = {.average = std::pow(0.5 / error, 4.0 / 3), .least = 16, .most = 16384};
+    // Two strips more where the light is delivered than its mean square needs: at an edge, too, it is to be right.
+    knobs.gather_mesh = {edge_for_elements(pieces, count(5)), strips + (error < 0.01 ? 2 : 0)};
+    const double rays = std::pow(0.5 / error, 4.0 / 3);
+    knobs.gather_rays = {
+        .average = rays, .least = static_cast<unsigned>(std::max(16.0, rays / (error < 0.01 ? 1 : 4))), .most = 16384};
     knobs.gather_noise = 0.5 * error;
     knobs.gather_tolerance = 0.4 * error;
     apply_user_knobs(knobs, options);
