@@ -16,6 +16,8 @@ struct GatherWorkspace {
     std::vector<Point> origins;
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
+    std::vector<std::uint8_t> quarter;  ///< Of the points' order that a ray comes from.
+    std::vector<std::uint32_t> filled;  ///< Rays in each cell so far.
 };
 
 /// An estimate and how far it may be off.
