@@ -82,6 +82,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     }
     const std::size_t old_size = tree.size();
     for (ElementId e : leaves) refine_element(tree, e);
+    transfer_.update_places();
     numbering = LeafNumbering(tree);
     const std::size_t n = numbering.leaves.size();
     reflectance = leaf_reflectances(input_.stage.scene, tree, numbering);

@@ -7,15 +7,17 @@
 namespace exitance {
 namespace {
 
-/// Products in the field of four elements.
-constexpr std::uint8_t times[4][4] = {{0, 0, 0, 0}, {0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}};
+/// Products with the third element of the field of four elements, in which addition is exclusive or.
+constexpr unsigned twice[4] = {0, 2, 3, 1};
 
-/// Row `i` (0 to 15) of the orthogonal array OA(16, 4, 4, 2): four levels 0 to 3, every pair of columns holding every
-/// pair of levels once. Addition in the field is exclusive or.
-std::array<unsigned, 4> orthogonal_row(unsigned i) {
-    const unsigned a = i / 4, b = i % 4;
-    return {a, b, a ^ b, a ^ times[2][b]};
-}
+/// The orthogonal array OA(16, 4, 4, 2): a ray from cell (a, b) of one element leads to cell (a + b, a + 2 b) of the
+/// other. Cells are numbered row by row; a turn of the digits keeps the array orthogonal.
+constexpr std::array<unsigned, 16> partner_cell = [] {
+    std::array<unsigned, 16> cell{};
+    for (unsigned a = 0; a < 4; ++a)
+        for (unsigned b = 0; b < 4; ++b) cell[4 * a + b] = 4 * (a ^ b) + (a ^ twice[b]);
+    return cell;
+}();
 
 }  // namespace
 
@@ -50,40 +52,58 @@ std::vector<Spectrum> PatchLevel::pull(std::span<const Spectrum> leaf_values) co
     return out;
 }
 
+void PatchTransfer::update_places() {
+    const std::size_t first = places_.size() / samples_;
+    places_.resize(tree_.size() * samples_);
+    centres_.resize(tree_.size());
+    parallel_for(tree_.size() - first, 256, [&](std::size_t i) {
+        const ElementId e(first + i);
+        centres_[e.value] = tree_.patch(e).at(tree_.centre(e));
+        RandomStream random(seed_, Stream::visibility, e.value);
+        for (unsigned k = 0; k < samples_; ++k) {
+            const double s = (k % 16 / 4 + random.uniform()) / 4, t = (k % 4 + random.uniform()) / 4;
+            places_[e.value * samples_ + k] = tree_.patch(e).at(tree_.uniform(e, s, t));
+        }
+    });
+}
+
 double PatchTransfer::visible_share(ElementId receiver, ElementId source, Workspace& w) const {
-    const Patch &to = tree_.patch(receiver), &from = tree_.patch(source);
-    RandomStream random(seed_, Stream::visibility, receiver.value, source.value);
-    w.from.resize(samples_), w.to.resize(samples_);
+    const std::span<const Point> to = std::span(places_).subspan(receiver.value * samples_, samples_);
+    const std::span<const Point> from = std::span(places_).subspan(source.value * samples_, samples_);
+    const std::uint64_t turn = hash(seed_, receiver.value, source.value);
+    w.from.resize(samples_);
     for (unsigned k = 0; k < samples_; ++k) {
-        // Sixteen at a time: levels of the array, turned by a random digit in each column, with jitter inside the cell.
-        const std::array<unsigned, 4> level = orthogonal_row(k % 16);
-        std::array<double, 4> t;
-        for (std::size_t c = 0; c < 4; ++c) t[c] = (static_cast<double>(level[c]) + random.uniform()) / 4;
-        w.to[k] = to.at(tree_.uniform(receiver, t[0], t[1]));
-        w.from[k] = from.at(tree_.uniform(source, t[2], t[3]));
+        const auto digits = static_cast<unsigned>(turn >> (k / 16 * 4));
+        w.from[k] = from[k / 16 * 16 + (partner_cell[k % 16] ^ (digits & 15u))];
     }
     w.rays += samples_;
-    stage_.tracer.occluded(w.to, w.from, tree_.region(receiver), tree_.region(source), std::span(w.blocked).first(samples_));
+    stage_.tracer.occluded(to, w.from, tree_.region(receiver), tree_.region(source),
+                           std::span(w.blocked).first(samples_));
     const auto blocked = std::count(w.blocked.begin(), w.blocked.begin() + samples_, true);
     return 1 - static_cast<double>(blocked) / samples_;
 }
 
-double PatchTransfer::form_factor(ElementId receiver, ElementId source, Workspace& w) const {
-    if (tree_.region(receiver) == tree_.region(source)) return 0;
-    const Plane& plane = stage_.scene.regions()[tree_.region(receiver)].plane;
-    const Patch& from = tree_.patch(source);
-    w.source.clear();
-    for (const Vec2 corner : tree_.domain(source)) w.source.push_back(from.at(corner));
+double PatchTransfer::form_factor(ElementId receiver, ElementId source, std::span<const Point> outline,
+                                  Workspace& w) const {
+    const RegionId own = tree_.region(receiver), other = tree_.region(source);
+    const Point& x = centres_[receiver.value];
+    if (own == other || stage_.scene.regions()[other].plane.signed_distance(x) <= 0) return 0;
     ++w.form_factors;
-    const double F = point_to_polygon(tree_.patch(receiver).at(tree_.centre(receiver)), plane.n, w.source);
+    const double F = point_to_polygon(x, stage_.scene.regions()[own].plane.n, outline);
     return F > 0 ? F * visible_share(receiver, source, w) : 0;
 }
 
+double PatchTransfer::form_factor(ElementId receiver, ElementId source, Workspace& w) const {
+    w.outline = tree_.outline(source);
+    return form_factor(receiver, source, w.outline, w);
+}
+
 void PatchTransfer::column(std::span<const ElementId> receivers, ElementId source, std::span<float> out) const {
+    const std::vector<Point> outline = tree_.outline(source);
     parallel_ranges(receivers.size(), 64, [&](std::size_t begin, std::size_t end) {
         Workspace workspace;
         for (std::size_t i = begin; i < end; ++i)
-            out[i] = static_cast<float>(form_factor(receivers[i], source, workspace));
+            out[i] = static_cast<float>(form_factor(receivers[i], source, outline, workspace));
         count(workspace);
     });
 }

@@ -29,17 +29,23 @@ struct PatchLevel {
 /// Form factors between elements, and how much of them is visible, computed when asked for.
 ///
 /// F_ij is taken at the receiver's middle, exactly, towards the whole source polygon [Baum89], and times the share of
-/// `samples` rays between the two that meet nothing. The ends of the rays follow an orthogonal array of strength 2: each
-/// pair of the four coordinates is stratified [Owen92].
+/// `samples` rays between the two that meet nothing. Every element has its own places, one in each cell of a 4 x 4 grid;
+/// which of them a ray joins follows an orthogonal array of strength 2, turned by the pair of elements: each pair of
+/// the four coordinates is stratified [Owen92].
 class PatchTransfer {
   public:
     PatchTransfer(const Stage& stage, const ElementTree& tree, unsigned samples, std::uint64_t seed)
-        : stage_(stage), tree_(tree), samples_(std::clamp(samples, 1u, most_samples)), seed_(seed) {}
+        : stage_(stage), tree_(tree), samples_(std::clamp((samples + 15) / 16 * 16, 16u, most_samples)), seed_(seed) {
+        update_places();
+    }
+
+    /// Makes places for the elements that the tree has got since it was last called.
+    void update_places();
 
     static constexpr unsigned most_samples = 256;  ///< Rays a pair; more are not asked for.
 
     struct Workspace {
-        std::vector<Point> from, to, source;
+        std::vector<Point> from, outline;
         std::array<bool, most_samples> blocked;
         std::size_t rays = 0, form_factors = 0;
     };
@@ -59,11 +65,14 @@ class PatchTransfer {
     std::size_t form_factors() const { return form_factors_; }
 
   private:
+    double form_factor(ElementId receiver, ElementId source, std::span<const Point> outline, Workspace& workspace) const;
     double visible_share(ElementId receiver, ElementId source, Workspace& workspace) const;
 
     const Stage& stage_;
     const ElementTree& tree_;
-    unsigned samples_;
+    std::vector<Point> centres_;  ///< Of every element.
+    std::vector<Point> places_;   ///< `samples_` of every element, sixteen cells at a time.
+    unsigned samples_;  ///< A multiple of 16.
     std::uint64_t seed_;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
 };
