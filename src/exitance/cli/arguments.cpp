@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "exitance/cli/nearest.hpp"
 
@@ -98,7 +99,47 @@ std::size_t read_bytes(const std::string& option, const std::string& word) {
     return static_cast<std::size_t>(bytes);
 }
 
+/// Numbers between commas and blanks.
+std::vector<double> read_numbers(const std::string& option, std::string words) {
+    std::replace(words.begin(), words.end(), ',', ' ');
+    std::vector<double> numbers;
+    std::istringstream in(words);
+    for (std::string word; in >> word;) numbers.push_back(read_number(option, word));
+    return numbers;
+}
+
+/// "ex,ey,ez tx,ty,tz fov": metres and degrees; the last may be left out.
+Camera read_camera(const std::string& words) {
+    const std::vector<double> n = read_numbers("--camera", words);
+    if (n.size() != 6 && n.size() != 7)
+        throw CLI::ValidationError("--camera", fmt::format("'{}' is not 'ex,ey,ez tx,ty,tz fov'", words));
+    Camera camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (n.size() == 7) camera.fov = n[6];
+    if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "looks at where it stands");
+    if (!(camera.fov >= 1 && camera.fov <= 170))
+        throw CLI::ValidationError("--camera", fmt::format("its angle must be from 1 to 170 degrees, not {}", camera.fov));
+    return camera;
+}
+
+/// "640x400"
+PictureSize read_size(const std::string& words) {
+    std::string blank = words;
+    std::replace(blank.begin(), blank.end(), 'x', ' ');
+    const std::vector<double> n = read_numbers("--size", blank);
+    const bool whole = n.size() == 2 && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1]);
+    if (!whole || std::min(n[0], n[1]) < 1 || std::max(n[0], n[1]) > 16384)
+        throw CLI::ValidationError("--size", fmt::format("'{}' is not a size such as 640x400, at most 16384", words));
+    return {static_cast<int>(n[0]), static_cast<int>(n[1])};
+}
+
 // -------------------------------------------------------------------------------------------------- verbs
+
+constexpr std::array<std::pair<Quantity, std::string_view>, 4> quantity_names{{
+    {Quantity::radiosity, "radiosity"},
+    {Quantity::irradiance, "irradiance"},
+    {Quantity::luminance, "luminance"},
+    {Quantity::illuminance, "illuminance"},
+}};
 
 constexpr std::array<std::pair<ProgressStyle, std::string_view>, 5> progress_names{{
     {ProgressStyle::automatic, "auto"},
@@ -201,6 +242,31 @@ void declare(CLI::App& app, ExportArguments& arguments) {
         ->required();
 }
 
+void declare(CLI::App& app, RenderArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("-o,--output", arguments.output, "Picture to write (.png)")->type_name("FILE")->required();
+    app.add_option_function<std::string>(
+           "--camera", [&arguments](const std::string& w) { arguments.camera = read_camera(w); },
+           "'ex,ey,ez tx,ty,tz fov': eye, target in metres, horizontal angle in degrees; default: one that shows much")
+        ->type_name("CAMERA");
+    app.add_option_function<std::string>(
+           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 640x400")
+        ->type_name("WxH");
+    const auto read_stops = [&arguments](const std::string& word) {
+        arguments.exposure = read_number("--exposure", word);
+        if (std::abs(arguments.exposure) > 60)
+            throw CLI::ValidationError("--exposure", fmt::format("must be between -60 and 60 stops, not {}", word));
+    };
+    app.add_option_function<std::string>("--exposure", read_stops,
+                                         "Stops above the automatic exposure: 1 is twice as bright; default 0")
+        ->type_name("STOPS");
+    add_choice(app, "--false-colour", quantity_names, arguments.false_colour,
+               "Values as colours, with a legend; the last two where emitters are given in cd/m^2");
+    add_count(app, "--samples", arguments.samples, 1, "Rays a pixel, at most 1024; default 4")->check(CLI::Range(1, 1024));
+    app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges");
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, CheckArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
     declare_json(app, arguments);
@@ -288,6 +354,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<StatsArguments>},
         {"export", "Writes a solution for other programs.", "exitance export room.h5 -o room.glb",
          parse_verb<ExportArguments>},
+        {"render", "Makes a picture of a solution.", "exitance render room.h5 -o room.png",
+         parse_verb<RenderArguments>},
         {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
          parse_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",

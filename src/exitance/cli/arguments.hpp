@@ -8,6 +8,7 @@
 
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/core/result.hpp"
+#include "exitance/io/false_colour.hpp"
 #include "exitance/methods/solve_options.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 
@@ -53,6 +54,17 @@ struct ExportArguments : CommonArguments {
     std::string solution, output;
 };
 
+struct RenderArguments : CommonArguments {
+    std::string solution, output;
+    std::optional<Camera> camera;  ///< None: one that shows the scene well.
+    PictureSize size;
+    double exposure = 0;  ///< Stops above what is chosen automatically.
+    std::optional<Quantity> false_colour;
+    std::size_t samples = 4;  ///< Rays a pixel.
+    bool mesh = false;        ///< With the elements' edges.
+    int threads = 0;
+};
+
 struct CheckArguments : CommonArguments {
     std::string scene;
 };
@@ -70,7 +82,7 @@ struct ViewFactorArguments : CommonArguments {
 
 /// What the program is to do.
 using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
-                             CheckArguments, GenerateArguments, ViewFactorArguments>;
+                             RenderArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

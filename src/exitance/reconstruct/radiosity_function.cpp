@@ -4,6 +4,13 @@
 #include "exitance/reconstruct/gather.hpp"
 
 namespace exitance {
+namespace {
+
+Light light_on(const Material& material, const Spectrum& irradiance) {
+    return {irradiance, material.exitance + material.reflectance * irradiance, true};
+}
+
+}  // namespace
 
 RadiosityFunction::RadiosityFunction(const Solution& solution)
     : solution_(solution),
@@ -13,11 +20,6 @@ RadiosityFunction::RadiosityFunction(const Solution& solution)
       stage_(std::make_unique<Stage>(solution.scene)) {}
 
 RadiosityFunction::~RadiosityFunction() = default;
-
-Light RadiosityFunction::light_from(Spectrum irradiance, SurfaceId surface) const {
-    const Material& material = solution_.scene.material(surface);
-    return {irradiance, material.exitance + material.reflectance * irradiance, true};
-}
 
 Spectrum RadiosityFunction::indirect_in_free_space(const ProbePoint& point, std::size_t index) const {
     constexpr unsigned rays = 4096;
@@ -30,6 +32,18 @@ Spectrum RadiosityFunction::indirect_in_free_space(const ProbePoint& point, std:
     return gather_reflected(*stage_, point.x, point.n, RegionId(), rays, key, reflected, workspace).irradiance;
 }
 
+Spectrum RadiosityFunction::irradiance_on(const SeenPoint& point, Component component,
+                                          DirectLight::Workspace& workspace) const {
+    Spectrum irradiance;
+    if (component != Component::indirect && !solution_.direct_in_elements) {
+        const Normal& n = solution_.scene.regions()[point.region].plane.n;
+        irradiance += stage_->direct.irradiance(point.x, n, point.region, workspace);
+    }
+    if (component != Component::direct)
+        irradiance += solution_.indirect.at(indirect_locator_.find(point.region, point.x));
+    return irradiance;
+}
+
 std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Component component) const {
     std::vector<Light> out(points.size());
     parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
@@ -40,7 +54,7 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
             const bool free = surface.is_none();
             const RegionId region = free ? RegionId() : solution_.scene.surfaces()[surface].region;
             if (!free && stage_->occluders.is_covered(x, n, region)) {
-                out[i] = light_from(Spectrum(), surface);
+                out[i] = light_on(solution_.scene.material(surface), Spectrum());
                 continue;
             }
             Spectrum irradiance;
@@ -49,8 +63,18 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
             if (component != Component::direct)
                 irradiance += free ? indirect_in_free_space(points[i], i)
                                    : solution_.indirect.at(indirect_locator_.find(region, x));
-            out[i] = free ? Light{irradiance, Spectrum(), false} : light_from(irradiance, surface);
+            out[i] = free ? Light{irradiance, Spectrum(), false} : light_on(solution_.scene.material(surface), irradiance);
         }
+    });
+    return out;
+}
+
+std::vector<Light> RadiosityFunction::at(std::span<const SeenPoint> points, Component component) const {
+    std::vector<Light> out(points.size());
+    parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
+        DirectLight::Workspace workspace;
+        for (std::size_t i = begin; i < end; ++i)
+            out[i] = light_on(solution_.scene.material(points[i].region), irradiance_on(points[i], component, workspace));
     });
     return out;
 }
@@ -61,7 +85,8 @@ std::vector<Light> RadiosityFunction::interpolant_at(std::span<const ProbePoint>
         const SurfaceId surface = locator_.find(points[i].x, points[i].n);
         if (surface.is_none()) return;
         const RegionId region = solution_.scene.surfaces()[surface].region;
-        out[i] = light_from(solution_.interpolant.at(interpolant_locator_.find(region, points[i].x)), surface);
+        out[i] = light_on(solution_.scene.material(surface),
+                          solution_.interpolant.at(interpolant_locator_.find(region, points[i].x)));
     });
     return out;
 }

@@ -28,6 +28,12 @@ struct ProbePoint {
     Normal n;
 };
 
+/// A place that is known to lie on a region and to be in the open: what a ray of free space met.
+struct SeenPoint {
+    Point x;
+    RegionId region;
+};
+
 /// A solution as a function of place: B(x) = M + rho (E_dir(x) + E_ind(x)), direct light evaluated exactly from the
 /// polygons, indirect light read from the solution's elements.
 class RadiosityFunction {
@@ -40,11 +46,14 @@ class RadiosityFunction {
     /// solution where they hit. About 5 us a point and visible emitter.
     std::vector<Light> at(std::span<const ProbePoint> points, Component component = Component::total) const;
 
+    /// The same where it is known what the points lie on: neither surfaces nor what covers them are searched.
+    std::vector<Light> at(std::span<const SeenPoint> points, Component component = Component::total) const;
+
     /// The same from the elements that `export` writes, without exact direct light; zero off the surfaces.
     std::vector<Light> interpolant_at(std::span<const ProbePoint> points) const;
 
   private:
-    Light light_from(Spectrum irradiance, SurfaceId surface) const;
+    Spectrum irradiance_on(const SeenPoint& point, Component component, DirectLight::Workspace& workspace) const;
     Spectrum indirect_in_free_space(const ProbePoint& point, std::size_t index) const;
 
     const Solution& solution_;

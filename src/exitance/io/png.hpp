@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exitance/core/result.hpp"
+
+namespace exitance {
+
+/// A picture of eight bits a channel, sRGB: red, green, blue, rows from top to bottom.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgb;
+
+    Image(int w, int h) : width(w), height(h), rgb(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+    std::uint8_t* at(int x, int y) {
+        return rgb.data() + 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+    }
+    const std::uint8_t* at(int x, int y) const { return const_cast<Image*>(this)->at(x, y); }
+};
+
+/// Keywords and what they say, stored with a picture (tEXt). Latin-1.
+using ImageTexts = std::vector<std::pair<std::string, std::string>>;
+
+/// Writes a PNG; it appears whole or not at all.
+Result<void> write_png(const std::string& path, const Image& image, const ImageTexts& texts);
+
+}  // namespace exitance

@@ -1,0 +1,29 @@
+#include <gtest/gtest.h>
+
+#include "cli/small_scene.hpp"
+
+namespace exitance::test {
+
+TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", picture = folder / "room.png";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    Finished run = run_program({"render", solution, "-o", picture, "--size", "40x25", "--samples", "1", "--exposure",
+                                "-1", "--mesh"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(read_text(picture).starts_with("\x89PNG"));
+    EXPECT_NE(read_text(picture).find("-1 stops"), std::string::npos);
+    run = run_program({"render", solution, "-o", picture, "--size", "40x25", "--camera", "-1,1,1 2,2,1 60",
+                       "--false-colour", "illuminance"});
+    EXPECT_EQ(run.status, 0) << run.err;
+
+    run = run_program({"render", solution, "-o", folder / "room.exr"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find(".exr"), std::string::npos) << run.err;
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1 2,2"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--size", "0x25"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--samples", "100000"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "absent/room.png", "--size", "4x4"}).status, 5);
+}
+
+}  // namespace exitance::test
