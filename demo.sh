@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-scene=(office nx=1 ny=1 nfurn=4 books=3)  # as for `exitance generate`
+scene=(office nx=1 ny=1 nfurn=2 books=3)  # as for `exitance generate`
 out=out/demo
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 
@@ -18,6 +18,10 @@ echo "== Making the room"
 "$exitance" generate "${scene[@]}" -o "$out/room.obj"
 echo "== Solving"
 "$exitance" solve "$out/room.obj" -o "$out/solution.h5"
+echo "== Rendering"
+camera="0.2,0.2,1.7 2.3,2.3,1.05 86"
+"$exitance" render "$out/solution.h5" -o "$out/picture.png" --camera "$camera" --exposure 0.3
+"$exitance" render "$out/solution.h5" -o "$out/false_colour.png" --camera "$camera" --false-colour irradiance
 echo "== Exporting"
 "$exitance" export "$out/solution.h5" -o "$out/lit.glb"
 "$exitance" export "$out/solution.h5" -o "$out/lit.vtkhdf"
@@ -25,8 +29,10 @@ echo "== Exporting"
 cat <<EOT
 
 Done in $SECONDS s. In $out/:
-  room.obj      the scene
-  solution.h5   the light, with what it took (exitance stats $out/solution.h5); ParaView opens it as it is
-  lit.glb       the room with its light, for any glTF viewer
-  lit.vtkhdf    the elements, for ParaView
+  picture.png       the room as one would see it
+  false_colour.png  the irradiance of its surfaces, with a legend
+  lit.glb           the room with its light, for any glTF viewer
+  lit.vtkhdf        the elements, for ParaView
+  solution.h5       the light, with what it took (exitance stats $out/solution.h5); ParaView opens it as it is
+  room.obj          the scene
 EOT

@@ -117,7 +117,7 @@ Camera read_camera(const std::string& words) {
     if (n.size() == 7) camera.fov = n[6];
     if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "looks at where it stands");
     if (!(camera.fov >= 1 && camera.fov <= 170))
-        throw CLI::ValidationError("--camera", fmt::format("its angle must be from 1 to 170 degrees, not {}", camera.fov));
+        throw CLI::ValidationError("--camera", fmt::format("angle {} is not from 1 to 170 degrees", camera.fov));
     return camera;
 }
 
@@ -262,7 +262,8 @@ void declare(CLI::App& app, RenderArguments& arguments) {
         ->type_name("STOPS");
     add_choice(app, "--false-colour", quantity_names, arguments.false_colour,
                "Values as colours, with a legend; the last two where emitters are given in cd/m^2");
-    add_count(app, "--samples", arguments.samples, 1, "Rays a pixel, at most 1024; default 4")->check(CLI::Range(1, 1024));
+    add_count(app, "--samples", arguments.samples, 1, "Rays a pixel, at most 1024; default 4")
+        ->check(CLI::Range(1, 1024));
     app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges");
     declare_work(app, arguments, arguments.threads);
 }

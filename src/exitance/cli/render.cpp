@@ -28,8 +28,9 @@ Image develop(const RenderArguments& arguments, const Solution& solution, const 
     }
     ToneMap tones = make_tone_map(solution);
     tones.scale *= std::exp2(arguments.exposure);
-    texts.emplace_back("Exposure", fmt::format("{:+.4g} stops; radiosity times {:.6g}, then Reinhard's curve with white at {:.4g}",
-                                               arguments.exposure, tones.scale, tones.white));
+    texts.emplace_back("Exposure",
+                       fmt::format("{:+.4g} stops; radiosity times {:.6g}, then Reinhard's curve with white at {:.4g}",
+                                   arguments.exposure, tones.scale, tones.white));
     Image image = display_image(picture, tones);
     draw_edges(image, edges);
     return image;

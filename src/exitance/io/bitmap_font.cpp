@@ -71,7 +71,8 @@ void fill_rectangle(Image& image, int x, int y, int width, int height, Rgb colou
 
 void draw_text(Image& image, int x, int y, std::string_view text, int scale, Rgb colour) {
     lay_out(text, [&](char letter, int column) {
-        const auto* glyph = std::find_if(std::begin(glyphs), std::end(glyphs), [&](const Glyph& g) { return g.letter == letter; });
+        const auto* glyph =
+            std::find_if(std::begin(glyphs), std::end(glyphs), [&](const Glyph& g) { return g.letter == letter; });
         if (glyph == std::end(glyphs)) return;
         for (int row = 0; row < glyph_height; ++row)
             for (int bit = 0; bit < glyph_width; ++bit)

@@ -23,7 +23,7 @@ Image display_image(const Picture& picture, const ToneMap& tones) {
 void draw_edges(Image& image, const std::vector<bool>& edges) {
     for (std::size_t i = 0; i < edges.size(); ++i)
         if (edges[i])
-            for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * i + c] = static_cast<std::uint8_t>(image.rgb[3 * i + c] / 2);
+            for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) image.rgb[k] = static_cast<std::uint8_t>(image.rgb[k] / 2);
 }
 
 }  // namespace exitance

@@ -18,9 +18,10 @@ Rgb viridis(double t) {
                                           {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}}};
     const double at = std::clamp(t, 0.0, 1.0) * (anchors.size() - 1);
     const std::size_t i = std::min(static_cast<std::size_t>(at), anchors.size() - 2);
+    const double between = at - static_cast<double>(i);
     Rgb colour;
     for (std::size_t c = 0; c < 3; ++c)
-        colour[c] = static_cast<std::uint8_t>(std::lround(std::lerp(anchors[i][c], anchors[i + 1][c], at - static_cast<double>(i))));
+        colour[c] = static_cast<std::uint8_t>(std::lround(std::lerp(anchors[i][c], anchors[i + 1][c], between)));
     return colour;
 }
 
@@ -137,7 +138,8 @@ void draw_legend(Image& image, Quantity quantity, const ColourScale& scale) {
                        band_colour(static_cast<std::size_t>(i), scale.band_count()));
     const int every = band < 9 * s ? (9 * s + band - 1) / band : 1;  // names must not touch
     for (int i = 0; i <= count; i += every)
-        draw_text(image, left + margin + 16 * s, bottom - band * i - 3 * s, names[static_cast<std::size_t>(i)], s, white);
+        draw_text(image, left + margin + 16 * s, bottom - band * i - 3 * s, names[static_cast<std::size_t>(i)], s,
+                  white);
 }
 
 }  // namespace exitance

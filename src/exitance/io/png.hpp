@@ -16,7 +16,8 @@ struct Image {
 
     Image(int w, int h) : width(w), height(h), rgb(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
     std::uint8_t* at(int x, int y) {
-        return rgb.data() + 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+        const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+        return rgb.data() + 3 * (row + static_cast<std::size_t>(x));
     }
     const std::uint8_t* at(int x, int y) const { return const_cast<Image*>(this)->at(x, y); }
 };

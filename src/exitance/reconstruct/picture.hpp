@@ -22,8 +22,9 @@ struct Picture {
     std::vector<Pixel> pixels;
 };
 
-/// What a camera sees of a solution, `samples` rays a pixel at the same well-spread places of each. The same bits on any
-/// number of threads. About 5 us a sample and visible emitter.
+/// What a camera sees of a solution, `samples` rays a pixel at the same well-spread places of each. Light is evaluated
+/// for every fourth of a pixel's hits on one region: edges of things are smooth at four samples, edges of hard shadows
+/// at sixteen. The same bits on any number of threads. About 5 us an evaluation and visible emitter.
 Picture take_picture(const Scene& scene, const RadiosityFunction& light, const RayTracer& tracer, const Camera& camera,
                      PictureSize size, int samples);
 
