@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/memory_plan.hpp"
@@ -77,7 +79,11 @@ class Solver {
         statistics().surfaces = scene.surfaces().size();
         statistics().converged = true;
         solution_.indirect = dark(stage_);
-        knobs_ = knobs_for_error(options.error_target(), stage_.pieces, options);
+        // Under a deadline a coarse answer comes first, so that there is one whenever time runs out.
+        constexpr double coarse = 0.08;
+        const bool deadline = std::isfinite(stop.seconds_left());
+        knobs_ = knobs_for_error(deadline ? std::max(coarse, options.error_target()) : options.error_target(),
+                                 stage_.pieces, options);
     }
 
     Result<Solution> run() {
@@ -107,7 +113,7 @@ class Solver {
 
     /// Method, local pass, certificate, until the certificate is content.
     void solve_indirect_light() {
-        constexpr int most_attempts = 6;
+        constexpr int most_attempts = 9;
         const std::optional<double> demand = options_.error_demand();
         for (int attempt = 1;; ++attempt) {
             const Stopwatch watch;
@@ -137,14 +143,19 @@ class Solver {
     void project_direct() {
         progress_.phase("direct light");
         const Stopwatch watch;
-        direct_ = project_direct_light(
-            stage_, {.mesh = knobs_.solve_mesh, .tolerance = knobs_.direct_tolerance, .least_area = options_.min_area},
-            stop_);
+        DirectProjection fresh = project_direct_light(stage_,
+                                                      {.mesh = knobs_.solve_mesh,
+                                                       .tolerance = knobs_.direct_tolerance,
+                                                       .least_area = options_.min_area,
+                                                       .may_give_up = direct_.tree.size() > 0},
+                                                      stop_);
+        if (fresh.tree.size() > 0) direct_ = std::move(fresh);
         statistics().seconds["mesh"] += watch.seconds();
     }
 
     void solve_once() {
         project_direct();
+        if (stop_.requested() && certificate_.points > 0) return;
         Stopwatch watch;
         GlobalLight light = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
         statistics().seconds["solve"] += watch.restart();
@@ -153,17 +164,18 @@ class Solver {
         statistics().seconds["reconstruct"] += watch.restart();
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
-            if (certificate_.points == 0) {
-                solution_.indirect = constant_on_leaves(light);
-                solution_.direct_in_elements = light.holds_direct;
-                certificate_.mean_reflected = light.mean_reflected();
-            }
+            if (certificate_.points > 0) return;
+            solution_.indirect = constant_on_leaves(light);
+            solution_.direct_in_elements = light.holds_direct;
+            constexpr double roughly = 0.1;
+            certificate_ = certify_solution(light, nullptr, roughly);
+            record(light, gathered);
             return;
         }
         solution_.indirect = std::move(indirect);
         solution_.direct_in_elements = light.holds_direct;
         progress_.phase("certify");
-        certificate_ = certify_solution(light, gathered);
+        certificate_ = certify_solution(light, light.holds_direct ? nullptr : &gathered.leaves, options_.error_target());
         statistics().seconds["certify"] += watch.restart();
         record(light, gathered);
     }
@@ -185,7 +197,9 @@ class Solver {
                                      report, progress_, stop_);
     }
 
-    Certificate certify_solution(const GlobalLight& light, const LocalPassReport& gathered) {
+    /// `leaves`: what the local pass knows, or null; `error`: what is to be resolved.
+    Certificate certify_solution(const GlobalLight& light, const Field<ElementId, LocalPassReport::Leaf>* leaves,
+                                 double error) {
         const ElementLocator direct_locator(direct_.tree, stage_.scene.regions().size());
         const ElementLocator indirect(solution_.indirect.tree, stage_.scene.regions().size());
         const ElementLocator coarse(light.tree, stage_.scene.regions().size());
@@ -197,10 +211,10 @@ class Solver {
             return stage_.scene.material(region).reflectance * E;
         };
         return certify(stage_, light, solution_.indirect, delivered,
-                       {.error = options_.error_target(),
+                       {.error = error,
                         .seed = options_.seed,
                         .direct_in_elements = light.holds_direct,
-                        .leaves = light.holds_direct ? nullptr : &gathered.leaves});
+                        .leaves = leaves});
     }
 
     void record(const GlobalLight& light, const LocalPassReport& gathered) {
