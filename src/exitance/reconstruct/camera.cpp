@@ -29,23 +29,26 @@ View look(const Scene& scene, const RayTracer& tracer, const Camera& camera) {
     return {view.fronts / all, view.breadth / all};
 }
 
-/// From the four upright edges of the scene's box, a little inside and above head height, towards its middle.
+/// From near the four upright edges of the scene's box, above head height, towards its middle.
 std::optional<Camera> camera_inside(const Scene& scene, const RayTracer& tracer) {
     constexpr double closed = 0.95;  // share of fronts that makes a room: the rest may be windows and open doors
     const Box& box = scene.box();
     const Vec3 size = box.size();
     const double height = std::min(size.z, 3.0);  // metres; in a hall one looks as in a room
-    std::optional<Camera> best;
-    double best_breadth = 0;
-    for (int corner = 0; corner < 4; ++corner) {
-        const double s = corner & 1 ? 0.94 : 0.06, t = corner & 2 ? 0.94 : 0.06;
-        const Camera camera{box.lo + Vec3{s * size.x, t * size.y, 0.68 * height},
-                            {box.centre().x, box.centre().y, box.lo.z + 0.36 * height},
-                            75};
-        const View view = look(scene, tracer, camera);
-        if (view.fronts >= closed && view.breadth > best_breadth) best = camera, best_breadth = view.breadth;
+    for (const double inset : {0.06, 0.15, 0.25, 0.35}) {  // a room need not reach into the corners of its box
+        std::optional<Camera> best;
+        double best_breadth = 0;
+        for (int corner = 0; corner < 4; ++corner) {
+            const double s = corner & 1 ? 1 - inset : inset, t = corner & 2 ? 1 - inset : inset;
+            const Camera camera{box.lo + Vec3{s * size.x, t * size.y, 0.68 * height},
+                                {box.centre().x, box.centre().y, box.lo.z + 0.36 * height},
+                                75};
+            const View view = look(scene, tracer, camera);
+            if (view.fronts >= closed && view.breadth > best_breadth) best = camera, best_breadth = view.breadth;
+        }
+        if (best) return best;
     }
-    return best;
+    return std::nullopt;
 }
 
 Camera camera_outside(const Scene& scene, const RayTracer& tracer, PictureSize size) {
