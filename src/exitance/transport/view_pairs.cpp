@@ -127,8 +127,8 @@ void ViewPairs::find_blockers(std::size_t face, std::vector<std::uint32_t>& foun
 void ViewPairs::find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> before_i,
                               std::vector<std::uint32_t>& found) const {
     found.clear();
-    const std::uint32_t* sides_i = &sides_[i * blockers_.size()];
-    const std::uint32_t* sides_j = &sides_[j * blockers_.size()];
+    const std::uint32_t* sides_i = sides_.data() + i * blockers_.size();  // of nothing, where there are no blockers
+    const std::uint32_t* sides_j = sides_.data() + j * blockers_.size();
     for (std::uint32_t b : before_i)
         if ((sides_i[b] & sides_j[b]) == 0 && (standing_[j * blockers_.size() + b] & in_front)) found.push_back(b);
     if (found.empty()) return;
