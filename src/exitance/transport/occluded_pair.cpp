@@ -8,7 +8,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_lines = 24, most_cells = 96;
+constexpr std::size_t most_lines = 24, most_cells = 200;
+constexpr int most_searches = 6;     ///< Halvings of a receiver with more lines.
 constexpr int deepest = 10;            ///< Halvings of a cell: what is left is 1e-3 of its size.
 constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
 
@@ -69,13 +70,34 @@ bool OccludedExchange::cut(const Cell& cell, const CriticalLine& line, Cell& fro
     return line.first < leaves - near && line.last > enters + near && front.count >= 3 && back.count >= 3;
 }
 
-/// The receiver, cut along every critical line where its events lie, in triangles and quadrilaterals.
-void OccludedExchange::cut_into_cells() {
+/// Cuts a part of the receiver along the critical lines where their events lie, and adds triangles and quadrilaterals to
+/// cells_. A part with too many lines is halved first, as each half has fewer.
+void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
+    finder_.find(frame_, part.corners(), pair_.source, pair_.blockers, nearest_line * size_, most_lines, lines_);
     Cell front, back;
+    if (lines_.size() >= most_lines && depth < most_searches) {
+        std::size_t longest = 0;
+        Vec2 along{};
+        for (std::size_t i = 0; i < part.count; ++i) {
+            const Vec2 e = part.corner[(i + 1) % part.count] - part.corner[i];
+            if (dot(e, e) > dot(along, along)) along = e, longest = i;
+        }
+        const Vec2 n = (1 / std::sqrt(dot(along, along))) * along;
+        const double offset = dot(n, 0.5 * (part.corner[longest] + part.corner[(longest + 1) % part.count]));
+        if (cut(part, {n, offset, -HUGE_VAL, HUGE_VAL}, front, back)) {
+            const Cell other = back;
+            cut_into_cells(front, depth + 1);
+            cut_into_cells(other, depth + 1);
+            return;
+        }
+    }
+    parts_.assign(1, part);
+    bool complete = lines_.size() < most_lines;
     for (const CriticalLine& line : lines_) {
-        if (cells_.size() > most_cells) break;
+        complete &= parts_.size() <= most_cells;
+        if (!complete && parts_.size() > most_cells) break;
         next_.clear();
-        for (const Cell& cell : cells_) {
+        for (const Cell& cell : parts_) {
             if (cut(cell, line, front, back)) {
                 next_.push_back(front);
                 next_.push_back(back);
@@ -83,21 +105,20 @@ void OccludedExchange::cut_into_cells() {
                 next_.push_back(cell);
             }
         }
-        cells_.swap(next_);
+        parts_.swap(next_);
     }
-    next_.clear();
-    for (const Cell& cell : cells_) {
+    for (const Cell& cell : parts_) {
         std::size_t first = 1;
         while (cell.count - first >= 2) {  // a fan of quadrilaterals, at last perhaps a triangle
-            Cell part;
+            Cell piece;
             const std::size_t take = std::min<std::size_t>(3, cell.count - first);
-            part.add(cell.corner[0]);
-            for (std::size_t i = 0; i < take; ++i) part.add(cell.corner[first + i]);
+            piece.add(cell.corner[0]);
+            for (std::size_t i = 0; i < take; ++i) piece.add(cell.corner[first + i]);
             first += take - 1;
-            next_.push_back(part);
+            piece.complete = complete;
+            cells_.push_back(piece);
         }
     }
-    cells_.swap(next_);
 }
 
 /// Looks at a cell with two Gauss points a side.
@@ -235,7 +256,7 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
         before = sum;
         if (!fine) break;
     }
-    if (depth >= deepest + (fine ? 8 : 0)) return before;
+    if (depth >= deepest + (fine ? 8 : 0) || evaluations > enough_) return before;
     return integrate_halves(cell, allowed, depth, false);
 }
 
@@ -249,34 +270,32 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     frame_ = PlaneFrame(pair.receiver[0], pair.receiver_plane.n);
     source_box_ = {};
     for (const Point& p : pair.source) source_box_.add(p);
-    cells_.resize(1);
-    cells_[0].count = 0;
-    for (const Point& p : pair.receiver) cells_[0].add(frame_.flat(p));
-    size_ = diameter(cells_[0].corners());
-    const Cell whole = cells_[0];
-    finder_.find(frame_, whole.corners(), pair.source, pair.blockers, nearest_line * size_, most_lines, lines_);
-    cut_into_cells();
+    Cell whole;
+    for (const Point& p : pair.receiver) whole.add(frame_.flat(p));
+    size_ = diameter(whole.corners());
+    cells_.clear();
+    cut_into_cells(whole, 0);
 
-    const bool complete = lines_.size() < most_lines;
-    bool all = complete;
+    bool all = true;
     double estimate = 0;
     for (Cell& cell : cells_) {
         look(cell);
-        all &= cell.glance.lit == cell.glance.count;
+        all &= cell.complete && cell.glance.lit == cell.glance.count;
         estimate += cell.two_points;
     }
     if (all) return unoccluded = true, 0;
 
     matters_ = estimate > demand.large;
+    enough_ = evaluations + (relative_ < 1e-5 ? 1000 : 10) * (1000 + cells_.size());
     const double allowed = std::max(demand.relative * estimate, demand.absolute);
     // No part of the source looks larger than all of it; twice that from the middle bounds it over most receivers.
     const double brightest = 2 * visible_.unoccluded(frame_.at(middle_of(whole.corners())), frame_.n);
     const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
     double total = 0;
     for (const Cell& cell : cells_) {
-        if (complete && cell.glance.dark == cell.glance.count)
+        if (cell.complete && cell.glance.dark == cell.glance.count)
             continue;
-        else if (complete && cell.glance.lit == cell.glance.count)
+        else if (cell.complete && cell.glance.lit == cell.glance.count)
             total += integrate_smooth(cell, 0.3 * share, 0);
         else if (cell.area * brightest < 0.3 * share)
             total += cell.two_points;

@@ -48,6 +48,7 @@ class OccludedExchange {
         std::array<Vec2, most> corner;
         double area = 0, two_points = 0;  ///< m^2; the second is the integral by two Gauss points a side.
         Glance glance;
+        bool complete = false;  ///< No critical line that crosses it was left out.
 
         void add(Vec2 p) {
             if (count < most) corner[count++] = p;
@@ -59,7 +60,7 @@ class OccludedExchange {
         Point at;
         double weight;  ///< m^2
     };
-    void cut_into_cells();
+    void cut_into_cells(const Cell& part, int depth);
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
     void look(Cell& cell);
     double convergence(const Cell& cell) const;
@@ -77,11 +78,12 @@ class OccludedExchange {
     std::vector<Node> nodes_;
     CriticalLineFinder finder_;
     std::vector<CriticalLine> lines_;
-    std::vector<Cell> cells_, next_;
+    std::vector<Cell> cells_, parts_, next_;
     Box source_box_;
     double size_ = 0;
     double relative_ = 0;
     bool matters_ = false;
+    std::size_t enough_ = 0;  ///< Evaluations after which nothing is halved any more: a bound on the worst pairs.
 };
 
 }  // namespace exitance
