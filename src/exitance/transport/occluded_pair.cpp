@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "exitance/geometry/quadrature.hpp"
+#include "exitance/transport/pair_form_factor.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t most_lines = 24, most_cells = 200;
 constexpr int most_searches = 6;     ///< Halvings of a receiver with more lines.
-constexpr int deepest = 10;            ///< Halvings of a cell: what is left is 1e-3 of its size.
+constexpr int deepest = 20;            ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
 constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
 
 double cross_area(std::span<const Vec2> corners) {
@@ -175,7 +176,7 @@ double OccludedExchange::apply(const Cell& cell, int points, Glance& glance) {
     return sum;
 }
 
-double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int depth, bool smooth) {
+double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int depth) {
     // Across the longest edge, and for a quadrilateral across the edge opposite to it.
     std::size_t longest = 0;
     double most = 0;
@@ -194,34 +195,43 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
         one.add(p), one.add(at(1)), one.add(at(2)), one.add(q);
         two.add(p), two.add(q), two.add(at(3)), two.add(at(0));
     }
-    if (smooth)
-        return integrate_smooth(one, 0.5 * allowed, depth + 1) + integrate_smooth(two, 0.5 * allowed, depth + 1);
     look(one), look(two);
     return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
 }
 
-/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points
-/// a side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
-double OccludedExchange::convergence(const Cell& cell) const {
+double OccludedExchange::distance_to_source(const Cell& cell) const {
     Box box;
     for (Vec2 p : cell.corners()) box.add(frame_.at(p));
-    const Vec3 apart = max(max(source_box_.lo - box.hi, box.lo - source_box_.hi), Vec3{});
-    const double g = norm(apart) / diameter(cell.corners());
+    return norm(max(max(source_box_.lo - box.hi, box.lo - source_box_.hi), Vec3{}));
+}
+
+/// No point of a cell has a larger form factor than this.
+double OccludedExchange::brightest(const Cell& cell, double source_area) const {
+    const double d = distance_to_source(cell);
+    return source_area < pi * d * d ? source_area / (pi * d * d) : 1;
+}
+
+/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points a
+/// side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
+double OccludedExchange::convergence(const Cell& cell) const {
+    const double g = distance_to_source(cell) / diameter(cell.corners());
     return 1 + 2 * g + 2 * std::sqrt(g + g * g);
 }
 
 /// A cell that sees all of the source: as many Gauss points as its distance asks for.
-double OccludedExchange::integrate_smooth(const Cell& cell, double allowed, int depth) {
+double OccludedExchange::integrate_smooth(const Cell& cell, double allowed) {
     const double rho = convergence(cell);
-    const double whole =
-        std::abs(cross_area(cell.corners())) *
-        (depth == 0 ? cell.glance.highest : visible_.unoccluded(frame_.at(middle_of(cell.corners())), frame_.n));
+    const double whole = cell.area * cell.glance.highest;
     const double wanted = std::max(allowed, 1e-16 * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
-    if (depth == 0 && points == 2 && cell.count == 4) return cell.two_points;
-    if (points > 8 && depth < deepest) return integrate_halves(cell, allowed, depth, true);
-    place_nodes(cell, std::min(points, 8));
+    if (points == 2 && cell.count == 4) return cell.two_points;
+    if (points > 8) {  // too near for Gauss points: the contour integral of the cell itself
+        std::array<Point, 4> corners;
+        for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
+        return exchange_area(std::span(corners).first(cell.count), pair_.source, std::clamp(allowed / whole, 1e-12, 1e-3));
+    }
+    place_nodes(cell, points);
     double sum = 0;
     for (const Node& node : nodes_) sum += node.weight * visible_.unoccluded(node.at, frame_.n);
     return sum;
@@ -256,8 +266,8 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
         before = sum;
         if (!fine) break;
     }
-    if (depth >= deepest + (fine ? 8 : 0) || evaluations > enough_) return before;
-    return integrate_halves(cell, allowed, depth, false);
+    if (depth >= deepest || evaluations > enough_) return before;
+    return integrate_halves(cell, allowed, depth);
 }
 
 double OccludedExchange::operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded) {
@@ -288,16 +298,15 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     matters_ = estimate > demand.large;
     enough_ = evaluations + (relative_ < 1e-5 ? 1000 : 10) * (1000 + cells_.size());
     const double allowed = std::max(demand.relative * estimate, demand.absolute);
-    // No part of the source looks larger than all of it; twice that from the middle bounds it over most receivers.
-    const double brightest = 2 * visible_.unoccluded(frame_.at(middle_of(whole.corners())), frame_.n);
+    const double source_area = norm(area_vector(pair.source));
     const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
     double total = 0;
     for (const Cell& cell : cells_) {
         if (cell.complete && cell.glance.dark == cell.glance.count)
             continue;
         else if (cell.complete && cell.glance.lit == cell.glance.count)
-            total += integrate_smooth(cell, 0.3 * share, 0);
-        else if (cell.area * brightest < 0.3 * share)
+            total += integrate_smooth(cell, 0.3 * share);
+        else if (cell.area * brightest(cell, source_area) < 0.3 * share)
             total += cell.two_points;
         else
             total += integrate(cell, share, 0);

@@ -63,10 +63,12 @@ class OccludedExchange {
     void cut_into_cells(const Cell& part, int depth);
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
     void look(Cell& cell);
+    double distance_to_source(const Cell& cell) const;
+    double brightest(const Cell& cell, double source_area) const;
     double convergence(const Cell& cell) const;
     double integrate(const Cell& cell, double allowed, int depth);
-    double integrate_smooth(const Cell& cell, double allowed, int depth);
-    double integrate_halves(const Cell& cell, double allowed, int depth, bool smooth);
+    double integrate_smooth(const Cell& cell, double allowed);
+    double integrate_halves(const Cell& cell, double allowed, int depth);
     void place_nodes(const Cell& cell, int points);
     double apply(const Cell& cell, int points, Glance& glance);
     double seen_from(Vec2 p, Seen& seen);
