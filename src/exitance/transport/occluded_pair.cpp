@@ -10,7 +10,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t most_lines = 24, most_cells = 200;
-constexpr int most_searches = 6;     ///< Halvings of a receiver with more lines.
+constexpr int most_searches = 6;       ///< Halvings of a receiver with more lines.
 constexpr int deepest = 20;            ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
 constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
 
@@ -71,8 +71,8 @@ bool OccludedExchange::cut(const Cell& cell, const CriticalLine& line, Cell& fro
     return line.first < leaves - near && line.last > enters + near && front.count >= 3 && back.count >= 3;
 }
 
-/// Cuts a part of the receiver along the critical lines where their events lie, and adds triangles and quadrilaterals to
-/// cells_. A part with too many lines is halved first, as each half has fewer.
+/// Cuts a part of the receiver along the critical lines where their events lie, and adds triangles and quadrilaterals
+/// to cells_. A part with too many lines is halved first, as each half has fewer.
 void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
     finder_.find(frame_, part.corners(), pair_.source, pair_.blockers, nearest_line * size_, most_lines, lines_);
     Cell front, back;
@@ -206,13 +206,13 @@ double OccludedExchange::distance_to_source(const Cell& cell) const {
 }
 
 /// No point of a cell has a larger form factor than this.
-double OccludedExchange::brightest(const Cell& cell, double source_area) const {
+double OccludedExchange::brightest(const Cell& cell) const {
     const double d = distance_to_source(cell);
-    return source_area < pi * d * d ? source_area / (pi * d * d) : 1;
+    return source_area_ < pi * d * d ? source_area_ / (pi * d * d) : 1;
 }
 
-/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points a
-/// side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
+/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points
+/// a side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
 double OccludedExchange::convergence(const Cell& cell) const {
     const double g = distance_to_source(cell) / diameter(cell.corners());
     return 1 + 2 * g + 2 * std::sqrt(g + g * g);
@@ -221,7 +221,7 @@ double OccludedExchange::convergence(const Cell& cell) const {
 /// A cell that sees all of the source: as many Gauss points as its distance asks for.
 double OccludedExchange::integrate_smooth(const Cell& cell, double allowed) {
     const double rho = convergence(cell);
-    const double whole = cell.area * cell.glance.highest;
+    const double whole = cell.area * brightest(cell);
     const double wanted = std::max(allowed, 1e-16 * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
@@ -229,7 +229,8 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed) {
     if (points > 8) {  // too near for Gauss points: the contour integral of the cell itself
         std::array<Point, 4> corners;
         for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
-        return exchange_area(std::span(corners).first(cell.count), pair_.source, std::clamp(allowed / whole, 1e-12, 1e-3));
+        return exchange_area(std::span(corners).first(cell.count), pair_.source,
+                             std::clamp(allowed / whole, 1e-12, 1e-3));
     }
     place_nodes(cell, points);
     double sum = 0;
@@ -246,6 +247,7 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed) {
 double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
     const bool fine = relative_ < 1e-5;
     const double rho = convergence(cell), step = 1 / (rho * rho);
+    const double far = 2 * cell.area * brightest(cell);
     Glance glance = cell.glance;
     double before = cell.two_points;
     if (fine) {
@@ -254,7 +256,7 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
         Seen seen;
         const double middle = std::max(seen_from(middle_of(cell.corners()), seen), 1e-300);
         const double most = std::max(glance.highest / middle - 1, 1 - glance.lowest / middle), varies = 3 * most * most;
-        const double witness = before * (varies * varies / 270 + 10 * step * step + (matters_ ? 0.005 * most : 0));
+        const double witness = before * (varies * varies / 270 + (matters_ ? 0.005 * most : 0)) + far * step * step;
         const double part = cell.count == 3 ? 0.2 : 0.03;  // three points of a triangle are but of degree 2
         if (part * std::abs(before - cell.area * middle) + witness <= allowed) return before;
     }
@@ -262,7 +264,7 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
         const double sum = apply(cell, points, glance);
         if (glance.black == glance.count) return 0;
         const double share = fine || matters_ ? 0.1 : 0.03;
-        if (share * std::abs(sum - before) + 10 * sum * std::pow(step, points) <= allowed) return sum;
+        if (share * std::abs(sum - before) + far * std::pow(step, points) <= allowed) return sum;
         before = sum;
         if (!fine) break;
     }
@@ -296,17 +298,19 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     if (all) return unoccluded = true, 0;
 
     matters_ = estimate > demand.large;
-    enough_ = evaluations + (relative_ < 1e-5 ? 1000 : 10) * (1000 + cells_.size());
     const double allowed = std::max(demand.relative * estimate, demand.absolute);
-    const double source_area = norm(area_vector(pair.source));
+    source_area_ = norm(area_vector(pair.source));
     const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
     double total = 0;
+    enough_ = evaluations;
     for (const Cell& cell : cells_) {
+        // What a cell leaves of its ration goes to the cells after it, so that none starves another.
+        enough_ += (relative_ < 1e-5 ? 1000 : 50) * (1 + 1000 / cells_.size());
         if (cell.complete && cell.glance.dark == cell.glance.count)
             continue;
         else if (cell.complete && cell.glance.lit == cell.glance.count)
             total += integrate_smooth(cell, 0.3 * share);
-        else if (cell.area * brightest(cell, source_area) < 0.3 * share)
+        else if (cell.area * brightest(cell) < 0.3 * share)
             total += cell.two_points;
         else
             total += integrate(cell, share, 0);

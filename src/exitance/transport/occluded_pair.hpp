@@ -64,7 +64,7 @@ class OccludedExchange {
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
     void look(Cell& cell);
     double distance_to_source(const Cell& cell) const;
-    double brightest(const Cell& cell, double source_area) const;
+    double brightest(const Cell& cell) const;
     double convergence(const Cell& cell) const;
     double integrate(const Cell& cell, double allowed, int depth);
     double integrate_smooth(const Cell& cell, double allowed);
@@ -82,7 +82,7 @@ class OccludedExchange {
     std::vector<CriticalLine> lines_;
     std::vector<Cell> cells_, parts_, next_;
     Box source_box_;
-    double size_ = 0;
+    double size_ = 0, source_area_ = 0;
     double relative_ = 0;
     bool matters_ = false;
     std::size_t enough_ = 0;  ///< Evaluations after which nothing is halved any more: a bound on the worst pairs.
