@@ -22,12 +22,13 @@ std::vector<WeightedPlace> triangle_rule(RuleOrder order) {
         return {{{1.0 / 6, 1.0 / 6}, 1.0 / 3}, {{2.0 / 3, 1.0 / 6}, 1.0 / 3}, {{1.0 / 6, 2.0 / 3}, 1.0 / 3}};
     const double s = std::sqrt(15.0), a = (6 - s) / 21, b = (6 + s) / 21;
     const double wa = (155 - s) / 1200, wb = (155 + s) / 1200;
-    return {{{1.0 / 3, 1.0 / 3}, 9.0 / 40}, {{a, a}, wa}, {{1 - 2 * a, a}, wa}, {{a, 1 - 2 * a}, wa},
-            {{b, b}, wb},                   {{1 - 2 * b, b}, wb}, {{b, 1 - 2 * b}, wb}};
+    return {
+        {{1.0 / 3, 1.0 / 3}, 9.0 / 40}, {{a, a}, wa},        {{1 - 2 * a, a}, wa}, {{a, 1 - 2 * a}, wa}, {{b, b}, wb},
+        {{1 - 2 * b, b}, wb},           {{b, 1 - 2 * b}, wb}};
 }
 
-/// On the way from the centre to each corner, where Gauss's nodes of a parallelogram would stand; or the fan of triangles
-/// around the centre, each with the rule of three places.
+/// On the way from the centre to each corner, where Gauss's nodes of a parallelogram would stand; or the fan of
+/// triangles around the centre, each with the rule of three places.
 std::vector<WeightedPlace> cell_rule(const std::vector<Vec2>& domain, Vec2 centre, RuleOrder order) {
     const std::size_t n = domain.size();
     std::vector<WeightedPlace> rule;

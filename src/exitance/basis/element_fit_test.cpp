@@ -17,7 +17,9 @@ ElementTree three_kinds() {
     return tree;
 }
 
-Spectrum spectrum(double value) { return Spectrum(value); }
+Spectrum spectrum(double value) {
+    return Spectrum(value);
+}
 
 TEST(ElementFit, ReturnsThePolynomialsItIsMadeFor) {
     const ElementTree tree = three_kinds();

@@ -48,7 +48,8 @@ class ScrambledSobol {
     double operator()(std::uint32_t index, int dimension) const {
         const std::uint32_t shuffled = owen(index, static_cast<std::uint32_t>(hash(seed_)));
         const std::uint32_t raw = sobol(shuffled, dimension);
-        return owen_reversed(raw, static_cast<std::uint32_t>(hash(seed_, 1u + static_cast<unsigned>(dimension)))) * 0x1p-32;
+        return owen_reversed(raw, static_cast<std::uint32_t>(hash(seed_, 1u + static_cast<unsigned>(dimension)))) *
+               0x1p-32;
     }
 
   private:

@@ -44,12 +44,24 @@ struct Spectrum {
     }
 };
 
-constexpr Spectrum operator+(Spectrum a, const Spectrum& b) { return a += b; }
-constexpr Spectrum operator-(Spectrum a, const Spectrum& b) { return a -= b; }
-constexpr Spectrum operator*(Spectrum a, const Spectrum& b) { return a *= b; }
-constexpr Spectrum operator*(Spectrum a, double s) { return a *= s; }
-constexpr Spectrum operator*(double s, Spectrum a) { return a *= s; }
-constexpr Spectrum operator/(Spectrum a, double s) { return a *= 1 / s; }
+constexpr Spectrum operator+(Spectrum a, const Spectrum& b) {
+    return a += b;
+}
+constexpr Spectrum operator-(Spectrum a, const Spectrum& b) {
+    return a -= b;
+}
+constexpr Spectrum operator*(Spectrum a, const Spectrum& b) {
+    return a *= b;
+}
+constexpr Spectrum operator*(Spectrum a, double s) {
+    return a *= s;
+}
+constexpr Spectrum operator*(double s, Spectrum a) {
+    return a *= s;
+}
+constexpr Spectrum operator/(Spectrum a, double s) {
+    return a *= 1 / s;
+}
 
 /// Mean over the bands: the one number by which a refinement or an ordering judges a spectrum.
 constexpr double mean(const Spectrum& s) {
@@ -58,7 +70,9 @@ constexpr double mean(const Spectrum& s) {
     return sum / static_cast<double>(bands);
 }
 
-constexpr double max(const Spectrum& s) { return *std::max_element(s.value.begin(), s.value.end()); }
+constexpr double max(const Spectrum& s) {
+    return *std::max_element(s.value.begin(), s.value.end());
+}
 
 /// Sum of squares over the bands.
 constexpr double squared(const Spectrum& s) {

@@ -9,8 +9,9 @@ struct Segment {
     Point a, b;
 };
 
-/// The edges of a face that lie in a plane or hover over it by less than `gap`, the latter with a line on either side as
-/// far away as the edge is high: so wide is the strip in which light changes; and the lines in which the face crosses it.
+/// The edges of a face that lie in a plane or hover over it by less than `gap`, the latter with a line on either side
+/// as far away as the edge is high: so wide is the strip in which light changes; and the lines in which the face
+/// crosses it.
 void contacts_with_plane(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
                          std::vector<Segment>& out) {
     const std::size_t m = outline.size();
@@ -30,8 +31,10 @@ void contacts_with_plane(std::span<const Point> outline, const Plane& plane, dou
             }
         }
         if (hovers) continue;
-        if (on_p) crossings.push_back(p);
-        else if (!on_q && (hp > 0) != (hq > 0)) crossings.push_back(p + (hp / (hp - hq)) * (q - p));
+        if (on_p)
+            crossings.push_back(p);
+        else if (!on_q && (hp > 0) != (hq > 0))
+            crossings.push_back(p + (hp / (hp - hq)) * (q - p));
     }
     if (crossings.size() < 2) return;
     // In order along the line; a concave face crosses the plane in several stretches, which may run into one here.
@@ -53,8 +56,10 @@ bool clip_to_domain(const std::vector<Vec2>& domain, Vec2& a, Vec2& b) {
             continue;
         }
         const double t = -at_a / rate;
-        if (rate > 0) first = std::max(first, t);
-        else last = std::min(last, t);
+        if (rate > 0)
+            first = std::max(first, t);
+        else
+            last = std::min(last, t);
     }
     if (first >= last) return false;
     const Vec2 start = a;

@@ -78,11 +78,15 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
                 piece(p.origin + a + b, -a, -b)};
     }
     switch (way) {
-        case Cut::none: return {p};
-        case Cut::u: return {Patch{p.origin, ratio * p.a, p.b}, Patch{p.origin + ratio * p.a, (1 - ratio) * p.a, p.b}};
-        case Cut::v: return {Patch{p.origin, p.a, ratio * p.b}, Patch{p.origin + ratio * p.b, p.a, (1 - ratio) * p.b}};
+        case Cut::none:
+            return {p};
+        case Cut::u:
+            return {Patch{p.origin, ratio * p.a, p.b}, Patch{p.origin + ratio * p.a, (1 - ratio) * p.a, p.b}};
+        case Cut::v:
+            return {Patch{p.origin, p.a, ratio * p.b}, Patch{p.origin + ratio * p.b, p.a, (1 - ratio) * p.b}};
         case Cut::line:  // not a way of cutting patches: ElementTree::split_by_line
-        case Cut::both: break;
+        case Cut::both:
+            break;
     }
     const Vec3 a = 0.5 * p.a, b = 0.5 * p.b;
     return {Patch{p.origin, a, b}, Patch{p.origin + a, a, b}, Patch{p.origin + b, a, b}, Patch{p.origin + a + b, a, b}};

@@ -37,8 +37,8 @@ struct Patch {
     Vec2 coordinates(const Point& p) const;
 };
 
-/// How an element is cut: across its u direction, across v, or both; a triangle has one way, `both`: four, at its edges'
-/// midpoints. `line`: along any straight line, into cells.
+/// How an element is cut: across its u direction, across v, or both; a triangle has one way, `both`: four, at its
+/// edges' midpoints. `line`: along any straight line, into cells.
 enum class Cut : std::uint8_t { none, u, v, both, line };
 
 /// A straight line in an element's own coordinates: its first side is normal . uv <= offset.
@@ -79,14 +79,14 @@ class ElementTree {
     const std::vector<ElementId>& roots() const { return roots_; }
     IdRange<ElementId> children(ElementId e) const { return nodes_[e].children; }  ///< Empty for a leaf.
     bool is_leaf(ElementId e) const { return nodes_[e].children.empty(); }
-    Cut way(ElementId e) const { return nodes_[e].way; }       ///< How an element was cut; none for a leaf.
+    Cut way(ElementId e) const { return nodes_[e].way; }         ///< How an element was cut; none for a leaf.
     double ratio(ElementId e) const { return nodes_[e].ratio; }  ///< Where; meaningful for cuts across one direction.
-    ElementId parent(ElementId e) const { return parent_[e]; }  ///< None for a root.
+    ElementId parent(ElementId e) const { return parent_[e]; }   ///< None for a root.
     RegionId region(ElementId e) const { return region_[e]; }
     const Patch& patch(ElementId e) const { return patch_[e]; }
-    double area(ElementId e) const { return area_[e]; }  ///< Of its domain, m^2.
+    double area(ElementId e) const { return area_[e]; }                            ///< Of its domain, m^2.
     const CutLine& line(ElementId e) const { return cuts_[nodes_[e].line].line; }  ///< Of an element cut along a line.
-    bool is_cell(ElementId e) const { return cell_[e] != none; }                ///< Is its domain less than its patch?
+    bool is_cell(ElementId e) const { return cell_[e] != none; }  ///< Is its domain less than its patch?
     /// What the element covers, as a convex polygon in its own coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
     /// The same in space, metres.
@@ -95,7 +95,7 @@ class ElementTree {
     Vec2 centre(ElementId e) const;
     /// A place of the domain with uniform density, from two numbers in [0, 1).
     Vec2 uniform(ElementId e, double s, double t) const;
-    std::vector<ElementId> leaves() const;               ///< In order of their ids.
+    std::vector<ElementId> leaves() const;  ///< In order of their ids.
 
     /// The leaf below `e` that holds the point (u, v) of `e`, and the point's coordinates there, pushed into the leaf.
     /// O(depth).

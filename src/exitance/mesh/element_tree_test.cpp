@@ -7,7 +7,9 @@
 namespace exitance {
 namespace {
 
-Patch patch(Patch::Shape shape) { return {{1, 2, 3}, {2, 0.5, 0}, {-0.3, 1, 0.4}, shape}; }
+Patch patch(Patch::Shape shape) {
+    return {{1, 2, 3}, {2, 0.5, 0}, {-0.3, 1, 0.4}, shape};
+}
 
 /// A tree that has been cut in every way there is.
 ElementTree well_cut_tree(Patch::Shape shape) {
@@ -22,8 +24,7 @@ ElementTree well_cut_tree(Patch::Shape shape) {
 }
 
 class EveryShape : public testing::TestWithParam<Patch::Shape> {};
-INSTANTIATE_TEST_SUITE_P(Patches, EveryShape,
-                         testing::Values(Patch::Shape::parallelogram, Patch::Shape::triangle));
+INSTANTIATE_TEST_SUITE_P(Patches, EveryShape, testing::Values(Patch::Shape::parallelogram, Patch::Shape::triangle));
 
 TEST_P(EveryShape, LeavesTileTheRoot) {
     const ElementTree tree = well_cut_tree(GetParam());

@@ -33,8 +33,10 @@ class Cutter {
     /// `touches` tells which borders of the element lie on a concave border of its piece.
     void refine(ElementId e, std::array<bool, 4> touches) {
         if (!tree_.patch(e).is_triangle()) return refine_parallelogram(e, touches);
-        if (touches[0] || touches[1] || touches[2]) grade_triangle(e, touches);
-        else refine_triangle(e);
+        if (touches[0] || touches[1] || touches[2])
+            grade_triangle(e, touches);
+        else
+            refine_triangle(e);
     }
 
   private:
@@ -141,8 +143,8 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
                 box.add(p + Vec3{tolerance, tolerance, tolerance});
                 bvh.visit_box(box, [&](std::uint32_t i) {
                     const SurfaceId s(i);
-                    concave = concave || (scene.surfaces()[s].region != region &&
-                                          rises_at(scene, s, p, plane, inside, tolerance));
+                    concave = concave ||
+                              (scene.surfaces()[s].region != region && rises_at(scene, s, p, plane, inside, tolerance));
                 });
                 if (concave) break;
             }

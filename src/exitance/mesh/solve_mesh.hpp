@@ -23,9 +23,9 @@ using ConcaveBorders = std::vector<bool>;
 /// The concave borders of each piece. O(n log n).
 std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces);
 
-/// Cuts every piece until `size` is met. Strips along concave edges stay long: parallelograms are cut across one direction
-/// at a time, triangles along lines parallel to the edge, into cells; triangles without such an edge are cut into four.
-/// Roots stand in the order of the pieces.
+/// Cuts every piece until `size` is met. Strips along concave edges stay long: parallelograms are cut across one
+/// direction at a time, triangles along lines parallel to the edge, into cells; triangles without such an edge are cut
+/// into four. Roots stand in the order of the pieces.
 ElementTree make_mesh(const std::vector<Piece>& pieces, const std::vector<ConcaveBorders>& concave, MeshSize size);
 
 /// About how many elements make_mesh would make, without making them.

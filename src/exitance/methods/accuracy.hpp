@@ -1,20 +1,20 @@
 #pragma once
 
-#include "exitance/methods/solve_options.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/methods/solve_options.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
 namespace exitance {
 
 /// The inner knobs of a solve, derived from the error asked for; a knob that the user set stands as it is.
 struct Knobs {
-    MeshSize solve_mesh;       ///< Of the elements that the method solves on.
-    RayBudget solve_rays;      ///< Rays of a row, where rows are cast.
+    MeshSize solve_mesh;            ///< Of the elements that the method solves on.
+    RayBudget solve_rays;           ///< Rays of a row, where rows are cast.
     double direct_tolerance = 0.1;  ///< Misfit of the projected direct light, relative to its mean.
-    double residual = 1e-3;    ///< Of the discrete system.
+    double residual = 1e-3;         ///< Of the discrete system.
     std::size_t max_iterations = 1000;
-    MeshSize gather_mesh;      ///< Of the elements that indirect light is gathered on, to begin with.
-    RayBudget gather_rays;     ///< Rays of a node.
+    MeshSize gather_mesh;         ///< Of the elements that indirect light is gathered on, to begin with.
+    RayBudget gather_rays;        ///< Rays of a node.
     double gather_tolerance = 0;  ///< Error of interpolation, relative to the mean reflected radiosity.
     double gather_noise = 0;      ///< Error of the rays, likewise.
 };

@@ -12,10 +12,9 @@ constexpr unsigned default_visibility_samples = 16;
 void solve(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
            std::span<const Spectrum> first, GlobalLight& light) {
     const std::vector<double> area = leaf_areas(light.tree, light.numbering);
-    light.report = solve_radiosity({F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres),
-                                   light.reflected,
-                                   {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations,
-                                    .request = &input.stop});
+    light.report = solve_radiosity(
+        {F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres), light.reflected,
+        {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop});
 }
 
 /// All reflections of the direct light, or as many as were asked for; writes the light that
@@ -44,8 +43,7 @@ void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& li
 /// Linear elements: collocation at the nodes of every leaf, E = first + H rho E, unknowns E_ind.
 void solve_linear(const MethodInput& input, GlobalLight& light) {
     const ElementLocator locator(light.tree, input.stage.scene.regions().size());
-    const LinearRows H(input.stage, input.direct, light.numbering, locator, input.knobs.solve_rays,
-                       input.options.seed);
+    const LinearRows H(input.stage, input.direct, light.numbering, locator, input.knobs.solve_rays, input.options.seed);
     input.progress.phase("solve");
     const std::vector<Spectrum> first = H.first_reflection(input.direct), ones(H.size(), Spectrum(1.0));
     const std::vector<double> area = H.node_areas();
@@ -53,9 +51,9 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
     const Relaxation asked = input.options.relaxation.value_or(Relaxation::gmres);
     // Collocation is not symmetric: conjugate gradients do not apply to it.
     const Relaxation method = asked == Relaxation::cg ? Relaxation::gmres : asked;
-    light.report = solve_radiosity({H, ones, first, area}, method, E,
-                                   {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations,
-                                    .request = &input.stop});
+    light.report = solve_radiosity(
+        {H, ones, first, area}, method, E,
+        {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop});
     const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
     for (std::size_t i = 0; i < rho.size(); ++i) {
         light.indirect_corners.push_back(H.corners(i, E));
@@ -71,8 +69,8 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
 /// Matrix radiosity [Goral84]: b = rho (E_dir + F b) on constant elements, solved by relaxation. The direct light of
 /// emitters is exact and stands apart, so that b is reflected light alone. Rows of F are cast by rays (entries are
 /// noisy, what they gather is not: O(n) rays), or computed, from elements to patches one level above them [Cohen86]
-/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each). With `--basis linear` rows are cast from nodes, and what
-/// a ray reads is the polynomial of the element that it hits [Atkinson00].
+/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each). With `--basis linear` rows are cast from nodes, and
+/// what a ray reads is the polynomial of the element that it hits [Atkinson00].
 GlobalLight solve_matrix(const MethodInput& input) {
     const auto& [stage, options, knobs, direct, progress, stop] = input;
     GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};

@@ -28,11 +28,12 @@ Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, con
     for (double before = 0; used + predicted_bytes(knobs, pieces, options) > limit; unchanged = false) {
         const double now = predicted_bytes(knobs, pieces, options);
         if (now == before)
-            return Error{ErrorCode::limit,
-                         fmt::format("{:.0f} MiB are in use and the coarsest mesh needs about {:.0f} MiB more, over the "
-                                     "limit of {:.0f} MiB",
-                                     used / 0x1p20, now / 0x1p20, limit / 0x1p20),
-                         "--memory-limit", "raise the limit"};
+            return Error{
+                ErrorCode::limit,
+                fmt::format("{:.0f} MiB are in use and the coarsest mesh needs about {:.0f} MiB more, over the "
+                            "limit of {:.0f} MiB",
+                            used / 0x1p20, now / 0x1p20, limit / 0x1p20),
+                "--memory-limit", "raise the limit"};
         before = now;
         knobs.solve_mesh.edge *= 1.5;
         knobs.gather_mesh.edge *= 1.5;

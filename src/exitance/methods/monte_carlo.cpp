@@ -10,7 +10,11 @@ namespace {
 class Shooter {
   public:
     Shooter(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed)
-        : stage_(stage), tree_(tree), numbering_(numbering), locator_(tree, stage.scene.regions().size()), seed_(seed) {}
+        : stage_(stage),
+          tree_(tree),
+          numbering_(numbering),
+          locator_(tree, stage.scene.regions().size()),
+          seed_(seed) {}
 
     std::vector<Spectrum> shoot(std::span<const Spectrum> power, double rays) {
         const std::size_t n = power.size();
@@ -23,7 +27,8 @@ class Shooter {
         double sum = 0;
         for (std::size_t i = 0; i < n; ++i) {
             sum += mean(power[i]);
-            first[i + 1] = std::max(first[i], static_cast<std::size_t>(std::max(0.0, std::ceil(sum / total * rays - offset))));
+            first[i + 1] =
+                std::max(first[i], static_cast<std::size_t>(std::max(0.0, std::ceil(sum / total * rays - offset))));
         }
         std::vector<std::uint32_t> target(first[n], missed);
         parallel_ranges(n, 16, [&](std::size_t begin, std::size_t end) { trace(first, begin, end, target); });
@@ -66,7 +71,8 @@ class Shooter {
             for (std::size_t k = 0; k < count; ++k) {
                 if (hits[k].surface.is_none() || !hits[k].front) continue;
                 const Point y = origins[k] + hits[k].distance * directions[k];
-                target[first[i] + k] = numbering_.number[locator_.find(stage_.scene.surfaces()[hits[k].surface].region, y).element];
+                target[first[i] + k] =
+                    numbering_.number[locator_.find(stage_.scene.surfaces()[hits[k].surface].region, y).element];
             }
         }
     }
@@ -80,9 +86,9 @@ class Shooter {
 
 }  // namespace
 
-/// Stochastic Jacobi radiosity [Bekaert99], after [Neumann95]: every sweep shoots the light that the last one brought, with rays in
-/// proportion to the power that is left, and what arrives is the unbiased image of it. Independent runs are averaged;
-/// their spread is the standard error. O(rays), no form factors, memory of the elements alone.
+/// Stochastic Jacobi radiosity [Bekaert99], after [Neumann95]: every sweep shoots the light that the last one brought,
+/// with rays in proportion to the power that is left, and what arrives is the unbiased image of it. Independent runs
+/// are averaged; their spread is the standard error. O(rays), no form factors, memory of the elements alone.
 GlobalLight solve_monte_carlo(const MethodInput& input) {
     const auto& [stage, options, knobs, direct_light, progress, stop] = input;
     ElementTree tree = direct_light.tree;
@@ -102,7 +108,8 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
         for (std::size_t i = 0; i < n; ++i) power[i] = tree.area(numbering.leaves[i]) * (rho[i] * direct[i]);
         double first_power = 0, left = 0;
         for (const Spectrum& p : power) first_power += mean(p);
-        for (left = first_power; left > knobs.residual * first_power && sweeps < runs * knobs.max_iterations; ++sweeps) {
+        for (left = first_power; left > knobs.residual * first_power && sweeps < runs * knobs.max_iterations;
+             ++sweeps) {
             const double rays = std::max(64.0, knobs.solve_rays.average * static_cast<double>(n) * left / first_power);
             const std::vector<Spectrum> arrived = shooter.shoot(power, rays);
             left = 0;
@@ -124,11 +131,16 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
     for (std::size_t i = 0; i < n; ++i) {
         reflected[i] = rho[i] * (direct[i] + indirect[i]);
         for (std::size_t b = 0; b < bands; ++b)
-            standard_error[i][b] = std::sqrt(std::max(0.0, square[i][b] - indirect[i][b] * indirect[i][b]) / (runs - 1));
+            standard_error[i][b] =
+                std::sqrt(std::max(0.0, square[i][b] - indirect[i][b] * indirect[i][b]) / (runs - 1));
     }
-    return {.tree = std::move(tree), .numbering = std::move(numbering), .direct = std::move(direct),
-            .indirect = std::move(indirect), .reflected = std::move(reflected),
-            .on_projection = true, .standard_error = std::move(standard_error),
+    return {.tree = std::move(tree),
+            .numbering = std::move(numbering),
+            .direct = std::move(direct),
+            .indirect = std::move(indirect),
+            .reflected = std::move(reflected),
+            .on_projection = true,
+            .standard_error = std::move(standard_error),
             .report = {.iterations = sweeps, .residual = left_over, .converged = left_over <= knobs.residual},
             .rays = shooter.rays_shot};
 }

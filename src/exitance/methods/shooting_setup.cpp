@@ -104,8 +104,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
             patch_of[i] = patch_by_element[tree.parent(e)];
             if (!shoots_direct_light()) direct[i] = mean_direct_light(e, exact);
             for (std::size_t p = 0; p < patches.size(); ++p)
-                if (max(sent[p]) > 0)
-                    irradiance[i] += transfer_.form_factor(e, patches[p], workspace) * sent[p];
+                if (max(sent[p]) > 0) irradiance[i] += transfer_.form_factor(e, patches[p], workspace) * sent[p];
         }
         transfer_.count(workspace);
     });
@@ -135,8 +134,7 @@ void ShootingSetup::update_patches() {
 GlobalLight ShootingSetup::finish(const SolveReport& report) {
     GlobalLight out{.tree = std::move(tree), .numbering = std::move(numbering)};
     out.reflected.resize(irradiance.size());
-    for (std::size_t i = 0; i < irradiance.size(); ++i)
-        out.reflected[i] = reflectance[i] * (direct[i] + irradiance[i]);
+    for (std::size_t i = 0; i < irradiance.size(); ++i) out.reflected[i] = reflectance[i] * (direct[i] + irradiance[i]);
     out.direct = std::move(direct);
     out.indirect = std::move(irradiance);
     out.holds_direct = shoots_direct_light();

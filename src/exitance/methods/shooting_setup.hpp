@@ -22,9 +22,9 @@ class ShootingSetup {
     bool shoots_direct_light() const { return input_.options.visibility == VisibilityKind::fractional; }
 
     ElementTree tree;
-    std::vector<ElementId> patches;          ///< Leaves of the tree as it was given.
-    std::vector<double> patch_area;          ///< m^2
-    std::vector<Spectrum> unshot, sent;      ///< By patch, W/m^2: yet to be sent, and sent so far.
+    std::vector<ElementId> patches;      ///< Leaves of the tree as it was given.
+    std::vector<double> patch_area;      ///< m^2
+    std::vector<Spectrum> unshot, sent;  ///< By patch, W/m^2: yet to be sent, and sent so far.
 
     /// Of the present leaves:
     LeafNumbering numbering;

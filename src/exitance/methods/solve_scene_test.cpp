@@ -35,7 +35,8 @@ TEST_P(EveryMethod, AFurnaceGlowsEverywhereAlike) {
     const Scene scene = box_scene(3, 2, 1.5, rho, 1, 1);
     const Solution solution = solved(scene, {.method = GetParam(), .error = 0.05});
     const RadiosityFunction light(solution);
-    const std::vector<ProbePoint> points = {{{0.4, 0.3, 0}, {0, 0, 1}}, {{0.001, 0.9, 0}, {0, 0, 1}}, {{3, 1, 1.2}, {-1, 0, 0}}};
+    const std::vector<ProbePoint> points = {
+        {{0.4, 0.3, 0}, {0, 0, 1}}, {{0.001, 0.9, 0}, {0, 0, 1}}, {{3, 1, 1.2}, {-1, 0, 0}}};
     // E = M / (1 - rho), whatever the place; a random method may miss it by the error asked for, others by what the
     // iteration leaves and, where visibility is sampled, nothing.
     const double tolerance = GetParam() == Method::monte_carlo ? 0.05 : GetParam() == Method::matrix ? 3e-3 : 0.02;
@@ -89,7 +90,8 @@ TEST(SolveScene, ErrorFallsWithTheErrorAskedFor) {
     Progress progress;
     const StopRequest stop;
     std::vector<double> E;
-    for (const ReferenceLight& r : reference_light(scene, points, 16384, 5, progress, stop)) E.push_back(r.irradiance[0]);
+    for (const ReferenceLight& r : reference_light(scene, points, 16384, 5, progress, stop))
+        E.push_back(r.irradiance[0]);
     double last = 1;
     for (const double asked : {0.08, 0.02}) {
         const Solution solution = solved(scene, {.error = asked});

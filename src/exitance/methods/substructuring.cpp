@@ -11,8 +11,8 @@ double steepest_step(const ShootingSetup& setup, const ElementLocator& locator, 
     const ElementId e = setup.numbering.leaves[leaf];
     const Patch& patch = setup.tree.patch(e);
     const auto light = [&](std::size_t i) {
-        return mean(setup.reflectance[i] * (setup.shoots_direct_light() ? setup.irradiance[i]
-                                                                        : setup.direct[i] + setup.irradiance[i]));
+        return mean(setup.reflectance[i] *
+                    (setup.shoots_direct_light() ? setup.irradiance[i] : setup.direct[i] + setup.irradiance[i]));
     };
     double steepest = 0;
     const Point centre = patch.centre();
@@ -28,17 +28,17 @@ double steepest_step(const ShootingSetup& setup, const ElementLocator& locator, 
 }  // namespace
 
 /// Substructuring radiosity [Cohen86], shooting form: patches shoot, and elements, cut finer where the light is steep,
-/// receive. Refining while the first shots arrive cuts for gradients that later shots fill in; so all light is solved on
-/// the patches first, then elements are cut by the converged light, at the ends of sweeps, and gather what the patches
-/// have sent; in the end the patches take their elements' means and shoot the difference [Willmott97]. One form factor
-/// per element and patch.
+/// receive. Refining while the first shots arrive cuts for gradients that later shots fill in; so all light is solved
+/// on the patches first, then elements are cut by the converged light, at the ends of sweeps, and gather what the
+/// patches have sent; in the end the patches take their elements' means and shoot the difference [Willmott97]. One form
+/// factor per element and patch.
 GlobalLight solve_substructuring(const MethodInput& input) {
     constexpr int sweeps = 3;
     input.progress.phase("mesh");
     MeshSize coarse = input.knobs.solve_mesh;
     if (!input.options.mesh_size) coarse = {1.5 * coarse.edge, std::max(0, coarse.grading_levels - 1)};
-    const DirectProjection direct = project_direct_light(
-        input.stage, {.mesh = coarse, .tolerance = 2 * input.knobs.direct_tolerance}, input.stop);
+    const DirectProjection direct =
+        project_direct_light(input.stage, {.mesh = coarse, .tolerance = 2 * input.knobs.direct_tolerance}, input.stop);
     ShootingSetup setup(input, direct);
     input.progress.phase("shoot");
     SolveReport report = setup.run();

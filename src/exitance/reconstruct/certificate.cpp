@@ -24,8 +24,9 @@ struct Sample {
 };
 
 /// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x expected error.
-std::vector<WeightedSample> stratified_places(const ElementTree& tree, const Field<ElementId, LocalPassReport::Leaf>* known,
-                                              std::size_t count, std::uint64_t seed) {
+std::vector<WeightedSample> stratified_places(const ElementTree& tree,
+                                              const Field<ElementId, LocalPassReport::Leaf>* known, std::size_t count,
+                                              std::uint64_t seed) {
     const std::vector<ElementId> leaves = tree.leaves();
     double area = 0, error = 0;
     for (ElementId e : leaves) {
@@ -33,7 +34,9 @@ std::vector<WeightedSample> stratified_places(const ElementTree& tree, const Fie
         error += known ? tree.area(e) * (*known)[e].expected_error : 0;
     }
     const double mean_error = error / area;
-    const auto density = [&](ElementId e) { return mean_error > 0 ? 0.5 + 0.5 * (*known)[e].expected_error / mean_error : 1.0; };
+    const auto density = [&](ElementId e) {
+        return mean_error > 0 ? 0.5 + 0.5 * (*known)[e].expected_error / mean_error : 1.0;
+    };
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
     double before = 0;
@@ -43,7 +46,8 @@ std::vector<WeightedSample> stratified_places(const ElementTree& tree, const Fie
         const auto share = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
         while (leaf + 1 < leaves.size() && before + share() <= wanted) before += share(), ++leaf;
         const ElementId e = leaves[leaf];
-        out.push_back({{e, tree.uniform(e, points(k, 1), points(k, 2))}, 1 / (density(e) * static_cast<double>(count))});
+        out.push_back(
+            {{e, tree.uniform(e, points(k, 1), points(k, 2))}, 1 / (density(e) * static_cast<double>(count))});
     }
     return out;
 }
@@ -73,24 +77,21 @@ double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span
     return std::sqrt(largest(u) * largest(w));
 }
 
-}  // namespace
+constexpr std::size_t batches = 32;  ///< Of samples, for the spread of their mean.
+constexpr std::size_t sample_count = 40 * batches;
+constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
 
-Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect, const RadiosityAt& b,
-                    const CertificateOptions& options) {
-    Certificate out;
-    out.mean_reflected = light.mean_reflected();
-    if (out.mean_reflected <= 0) return out;
-
-    constexpr std::size_t batches = 32;
-    out.points = 40 * batches;
-    const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(out.points)));
+/// The residual at stratified points, twice each.
+std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& light, const ElementLocator& coarse,
+                                      const ElementFunction& indirect, const RadiosityAt& b,
+                                      const CertificateOptions& options) {
+    const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(sample_count)));
     const auto rays_at = [&](ElementId leaf) {
         const double known = options.leaves ? 0.25 * (*options.leaves)[leaf].rays : wanted;
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
     const std::vector<WeightedSample> places =
-        stratified_places(indirect.tree, options.leaves, out.points, options.seed);
-    const ElementLocator coarse(light.tree, stage.scene.regions().size());
+        stratified_places(indirect.tree, options.leaves, sample_count, options.seed);
     std::vector<Sample> samples(places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         GatherWorkspace workspace;
@@ -108,17 +109,18 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
                 const std::uint64_t key = hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
                 return rho * (gather_reflected(stage, x, n, region, rays, key, b, workspace).irradiance - delivered);
             };
-            samples[k] = {region, weight, residual(1), residual(2), light.numbering.number[coarse.find(region, x).element]};
-            samples[k].rays = 2 * rays;
+            samples[k] = {
+                region,  weight, residual(1), residual(2), light.numbering.number[coarse.find(region, x).element],
+                2 * rays};
         }
     });
-    for (const Sample& s : samples) out.rays += s.rays;
+    return samples;
+}
 
-    // The smooth part of the error: the coarse response to the mean residual of each region.
-    const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, light.tree, light.numbering);
-    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
-    const RayRows H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1);
-    out.rays += H.rays();
+/// The smooth part of the error: the coarse response to the mean residual of each region, less that residual itself. By
+/// leaf number of the coarse mesh.
+std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light, const std::vector<Sample>& samples,
+                                    const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
     Field<RegionId, Spectrum> mean_residual(stage.scene.regions().size());
     Field<RegionId, double> count(stage.scene.regions().size());
     for (const Sample& s : samples) {
@@ -134,19 +136,39 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     }
     std::vector<Spectrum> response = respond({H, rho, rhs, area}, 0.02);
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
+    return response;
+}
+
+}  // namespace
+
+Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect, const RadiosityAt& b,
+                    const CertificateOptions& options) {
+    Certificate out;
+    out.mean_reflected = light.mean_reflected();
+    if (out.mean_reflected <= 0) return out;
+
+    const ElementLocator coarse(light.tree, stage.scene.regions().size());
+    const std::vector<Sample> samples = measure_residuals(stage, light, coarse, indirect, b, options);
+    const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, light.tree, light.numbering);
+    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
+    const RayRows H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64},
+                    options.seed + 1);
+    const std::vector<Spectrum> response = late_response(stage, light, samples, H, rho, area);
 
     std::array<double, batches> residual_squared{};
     double error_squared = 0;
+    out.points = samples.size();
+    out.rays = H.rays();
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
         const Spectrum& late = response[s.leaf];
         residual_squared[k % batches] += s.weight * batches * mean(s.r1 * s.r2);
         error_squared += s.weight * mean((s.r1 + late) * (s.r2 + late));
+        out.rays += s.rays;
     }
     double mean_square = 0, spread = 0;
     for (double v : residual_squared) mean_square += v / batches;
     for (double v : residual_squared) spread += (v - mean_square) * (v - mean_square) / (batches * (batches - 1.0));
-    constexpr double student_95 = 1.696;  // one-sided, 31 degrees of freedom
     const double upper = std::max(0.0, mean_square) + student_95 * std::sqrt(spread);
     out.constant = error_constant(H, rho, area);
     out.residual = std::sqrt(std::max(0.0, mean_square)) / out.mean_reflected;

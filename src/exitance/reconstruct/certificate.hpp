@@ -17,11 +17,12 @@ struct CertificateOptions {
 
 /// How far a delivered function is from the solution of the radiosity equation.
 struct Certificate {
-    double estimate = 0;        ///< Relative RMS error of B, the defect propagated by a coarse solve.
-    double bound = 0;           ///< The same, as an upper bound at 95% confidence.
-    double residual = 0;        ///< Relative RMS of the residual r.
-    double constant = 1;        ///< The factor from ||r|| to the bound on the error.
-    double mean_reflected = 0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2: what errors are relative to.
+    double estimate = 0;  ///< Relative RMS error of B, the defect propagated by a coarse solve.
+    double bound = 0;     ///< The same, as an upper bound at 95% confidence.
+    double residual = 0;  ///< Relative RMS of the residual r.
+    double constant = 1;  ///< The factor from ||r|| to the bound on the error.
+    double mean_reflected =
+        0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2: what errors are relative to.
     std::size_t points = 0, rays = 0;
 };
 
@@ -29,12 +30,12 @@ struct Certificate {
 ///
 ///     r = M + rho H B - B = rho (E_dir + H b - E_dir - E_ind),     b = B - M,
 ///
-/// at points stratified over all surfaces, denser where the error is expected, and weighted accordingly. At each, two independent ray gathers over `b` give r1 and r2,
-/// so that E[r1 r2] = r^2 without the rays' noise. Error e = (I - rho H)^-1 r: its rough part is r itself, its smooth
-/// part is the response of a coarse solve to the regions' mean residuals. The bound takes the norm of (I - rho H)^-1,
-/// sqrt(C_1 C_inf) from two coarse solves with unit light, and Student's upper limit of ||r||.
-/// Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays).
-/// `light` gives mesh and direct light for the coarse solves; `b` must read the delivered function.
+/// at points stratified over all surfaces, denser where the error is expected, and weighted accordingly. At each, two
+/// independent ray gathers over `b` give r1 and r2, so that E[r1 r2] = r^2 without the rays' noise. Error e = (I - rho
+/// H)^-1 r: its rough part is r itself, its smooth part is the response of a coarse solve to the regions' mean
+/// residuals. The bound takes the norm of (I - rho H)^-1, sqrt(C_1 C_inf) from two coarse solves with unit light, and
+/// Student's upper limit of ||r||. Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays). `light` gives
+/// mesh and direct light for the coarse solves; `b` must read the delivered function.
 Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect, const RadiosityAt& b,
                     const CertificateOptions& options);
 

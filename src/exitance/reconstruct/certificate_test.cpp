@@ -27,8 +27,7 @@ struct PlantedError {
         delivered.first_value.resize(light.tree.size(), 0);
         for (ElementId e : light.numbering.leaves) {
             delivered.first_value[e] = static_cast<std::uint32_t>(delivered.values.size());
-            for (int i = 0; i < 4; ++i)
-                delivered.add_value(Spectrum(exact + error(light.tree.patch(e).centre())));
+            for (int i = 0; i < 4; ++i) delivered.add_value(Spectrum(exact + error(light.tree.patch(e).centre())));
         }
     }
 
@@ -49,8 +48,12 @@ struct PlantedError {
     }
 };
 
-double rough(const Point& p) { return std::sin(40 * p.x) * std::cos(37 * p.y) * std::sin(43 * p.z + 1) > 0 ? 0.1 : -0.1; }
-double smooth(const Point&) { return 0.06; }
+double rough(const Point& p) {
+    return std::sin(40 * p.x) * std::cos(37 * p.y) * std::sin(43 * p.z + 1) > 0 ? 0.1 : -0.1;
+}
+double smooth(const Point&) {
+    return 0.06;
+}
 
 TEST(Certificate, FindsNoErrorInAnExactFurnace) {
     const PlantedError furnace([](const Point&) { return 0.0; });

@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                          const RadiosityAt& b, GatherWorkspace& w) {
+Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
+                          std::uint64_t key, const RadiosityAt& b, GatherWorkspace& w) {
     const Frame frame(n);
     const ScrambledSobol points(key);
     w.origins.resize(1), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
@@ -17,7 +17,8 @@ Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, R
     w.filled.assign(columns * rows, 0);
     for (std::uint32_t k = 0; k < rays; ++k) {
         const double a = points(k, 0), b = points(k, 1);
-        const std::uint32_t cell = static_cast<std::uint32_t>(a * columns) * rows + static_cast<std::uint32_t>(b * rows);
+        const std::uint32_t cell =
+            static_cast<std::uint32_t>(a * columns) * rows + static_cast<std::uint32_t>(b * rows);
         const std::uint32_t place = cell * per_cell + w.filled[cell]++;
         EXI_ASSERT(w.filled[cell] <= per_cell);
         w.directions[place] = cosine_direction(frame, a, b);

@@ -23,15 +23,15 @@ struct GatherWorkspace {
 /// An estimate and how far it may be off.
 struct Gathered {
     Spectrum irradiance;  ///< W/m^2
-    /// Of `irradiance`, from the spread of four quarters of the rays, each stratified by itself. The whole is stratified
-    /// more finely: error ~ rays^-3/4 makes its variance half of what independent quarters would leave.
+    /// Of `irradiance`, from the spread of four quarters of the rays, each stratified by itself. The whole is
+    /// stratified more finely: error ~ rays^-3/4 makes its variance half of what independent quarters would leave.
     Spectrum variance;
 };
 
-/// Irradiance at x by what surfaces reflect, E(x) = int G V b dA, by `rays` rays (a power of two, at least 4) with density
-/// cos / pi around n: E = mean of b at their first hits. `own` is the region that x lies on, or none. The directions are scrambled Sobol points
-/// named by `key`. Unbiased; error ~ rays^-3/4.
-Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                          const RadiosityAt& b, GatherWorkspace& workspace);
+/// Irradiance at x by what surfaces reflect, E(x) = int G V b dA, by `rays` rays (a power of two, at least 4) with
+/// density cos / pi around n: E = mean of b at their first hits. `own` is the region that x lies on, or none. The
+/// directions are scrambled Sobol points named by `key`. Unbiased; error ~ rays^-3/4.
+Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
+                          std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace);
 
 }  // namespace exitance

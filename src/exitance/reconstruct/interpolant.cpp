@@ -50,8 +50,8 @@ class Interpolation {
     DirectFit fit(ElementId e, ReceiverLight& light, DirectLight::Workspace& workspace) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
-        DirectFit out = e.value < direct_.tree.size() ? direct_.fit[e]
-                                                      : fit_direct_light(stage_, out_.tree, e, light, workspace);
+        DirectFit out =
+            e.value < direct_.tree.size() ? direct_.fit[e] : fit_direct_light(stage_, out_.tree, e, light, workspace);
         const std::vector<WeightedPlace> rule = element_rule(out_.tree, e, RuleOrder::fine);
         std::vector<Spectrum> value(rule.size());
         for (std::size_t i = 0; i < rule.size(); ++i) {
@@ -77,7 +77,8 @@ class Interpolation {
     std::vector<ElementId> split_largest(double error) {
         const std::vector<ElementId> leaves = out_.tree.leaves();
         const double allowed = options_.tolerance * options_.tolerance * stage_.area;
-        const double share = allowed / static_cast<double>(leaves.size()) * std::min(1.0, 2 * options_.tolerance / error);
+        const double share =
+            allowed / static_cast<double>(leaves.size()) * std::min(1.0, 2 * options_.tolerance / error);
         std::vector<ElementId> fresh;
         for (ElementId e : leaves) {
             if (out_.tree.area(e) * fitted_[e].misfit_squared <= share) continue;

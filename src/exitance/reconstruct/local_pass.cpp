@@ -14,8 +14,8 @@ struct Sampled {
     std::array<Spectrum, 4> corners;
     double noise_squared = 0;  ///< Of rho E at a node, mean over bands, (W/m^2)^2.
     double departure = 0;      ///< |rho (E - polynomial)| at the centre, mean over bands, W/m^2.
-    unsigned rays = 0;       ///< Spent in all.
-    unsigned node_rays = 0;  ///< Of one node, in the end.
+    unsigned rays = 0;         ///< Spent in all.
+    unsigned node_rays = 0;    ///< Of one node, in the end.
 };
 
 class LocalPass {

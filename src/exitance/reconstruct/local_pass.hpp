@@ -9,11 +9,11 @@ namespace exitance {
 
 /// How finely indirect light is gathered.
 struct LocalPassOptions {
-    MeshSize mesh;               ///< Of the elements to begin with.
-    RayBudget rays;              ///< Of one node, to begin with; more where they turn out too noisy.
-    double noise = 0;            ///< RMS error of rho E_ind that the rays may leave, W/m^2.
-    double tolerance = 0;        ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
-    int max_depth = 6;           ///< Cuts below the first mesh.
+    MeshSize mesh;         ///< Of the elements to begin with.
+    RayBudget rays;        ///< Of one node, to begin with; more where they turn out too noisy.
+    double noise = 0;      ///< RMS error of rho E_ind that the rays may leave, W/m^2.
+    double tolerance = 0;  ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
+    int max_depth = 6;     ///< Cuts below the first mesh.
     std::uint64_t seed = 1;
 };
 

@@ -101,9 +101,9 @@ class PathTracer {
             if (lights_[i].region != target.region) continue;
             const Vec2 uv = lights_[i].patch.coordinates(target.x);
             constexpr double slack = 1e-6;
-            const bool inside = uv.x >= -slack && uv.y >= -slack &&
-                                (lights_[i].patch.is_triangle() ? uv.x + uv.y <= 1 + slack
-                                                                : uv.x <= 1 + slack && uv.y <= 1 + slack);
+            const bool inside =
+                uv.x >= -slack && uv.y >= -slack &&
+                (lights_[i].patch.is_triangle() ? uv.x + uv.y <= 1 + slack : uv.x <= 1 + slack && uv.y <= 1 + slack);
             if (inside) density = std::max(density, chance[i] / total * r2 / (lights_[i].area * cosine));
         }
         return density;

@@ -59,11 +59,13 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
             }
             Spectrum irradiance;
             const bool exact_direct = !solution_.direct_in_elements || free;
-            if (component != Component::indirect && exact_direct) irradiance += stage_->direct.irradiance(x, n, region, workspace);
+            if (component != Component::indirect && exact_direct)
+                irradiance += stage_->direct.irradiance(x, n, region, workspace);
             if (component != Component::direct)
                 irradiance += free ? indirect_in_free_space(points[i], i)
                                    : solution_.indirect.at(indirect_locator_.find(region, x));
-            out[i] = free ? Light{irradiance, Spectrum(), false} : light_on(solution_.scene.material(surface), irradiance);
+            out[i] =
+                free ? Light{irradiance, Spectrum(), false} : light_on(solution_.scene.material(surface), irradiance);
         }
     });
     return out;
@@ -74,7 +76,8 @@ std::vector<Light> RadiosityFunction::at(std::span<const SeenPoint> points, Comp
     parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
         DirectLight::Workspace workspace;
         for (std::size_t i = begin; i < end; ++i)
-            out[i] = light_on(solution_.scene.material(points[i].region), irradiance_on(points[i], component, workspace));
+            out[i] =
+                light_on(solution_.scene.material(points[i].region), irradiance_on(points[i], component, workspace));
     });
     return out;
 }

@@ -34,8 +34,8 @@ struct SolveStatistics {
     int threads = 1;
     std::size_t surfaces = 0, elements = 0, leaf_elements = 0, links = 0;
     std::size_t rays = 0, form_factors = 0, iterations = 0;
-    bool converged = false;       ///< The error asked for was reached, or none was asked for.
-    double residual = 0;          ///< Of the discrete system, relative to its right-hand side.
+    bool converged = false;                          ///< The error asked for was reached, or none was asked for.
+    double residual = 0;                             ///< Of the discrete system, relative to its right-hand side.
     double relative_error_estimate = 0;              ///< Of what `probe` evaluates.
     double relative_error_bound = 0;                 ///< The same, as an upper bound.
     double relative_error_estimate_interpolant = 0;  ///< Of what `export` writes.
@@ -50,8 +50,9 @@ struct SolveStatistics {
 /// E_ind is `indirect`; `interpolant` stands for both together in files that hold plain elements.
 struct Solution {
     Scene scene;
-    ElementFunction indirect = {};     ///< E_ind: what arrives after at least one reflection.
-    ElementFunction interpolant = {};  ///< E_dir + E_ind on elements split until they hold three times the error asked for.
+    ElementFunction indirect = {};  ///< E_ind: what arrives after at least one reflection.
+    ElementFunction interpolant =
+        {};  ///< E_dir + E_ind on elements split until they hold three times the error asked for.
     SolveStatistics statistics = {};
     std::string options = {};  ///< The options in force, as JSON.
     /// True when a method carried the emitters' light through its elements, as asked for: then `indirect` holds all

@@ -208,11 +208,15 @@ double surface_norm(std::span<const Spectrum> b, std::span<const double> area) {
 
 SolveReport solve_radiosity(const RadiositySystem& system, Relaxation method, std::span<Spectrum> b, StopRule stop) {
     switch (method) {
-        case Relaxation::jacobi: return jacobi(system, b, stop);
+        case Relaxation::jacobi:
+            return jacobi(system, b, stop);
         case Relaxation::southwell:
-        case Relaxation::gauss_seidel: return gauss_seidel(system, b, stop);
-        case Relaxation::cg: return conjugate_gradients(system, b, stop);
-        case Relaxation::gmres: return gmres(system, b, stop);
+        case Relaxation::gauss_seidel:
+            return gauss_seidel(system, b, stop);
+        case Relaxation::cg:
+            return conjugate_gradients(system, b, stop);
+        case Relaxation::gmres:
+            return gmres(system, b, stop);
     }
     return {};
 }

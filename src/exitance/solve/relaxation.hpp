@@ -40,7 +40,8 @@ double surface_norm(std::span<const Spectrum> b, std::span<const double> area);
 /// - jacobi: b <- rhs + rho F b. Contracts while rho < 1 and no row of F sums past 1. One gather an iteration.
 /// - gauss_seidel: the same, each element's new value used at once, in the order of elements. One gather an iteration;
 ///   sequential by nature.
-/// - cg: conjugate gradients on the symmetric form (diag(A / rho) - A F) b = A rhs / rho, Jacobi-preconditioned; elements
+/// - cg: conjugate gradients on the symmetric form (diag(A / rho) - A F) b = A rhs / rho, Jacobi-preconditioned;
+/// elements
 ///   with rho = 0 are known (b = rhs) and leave the system. Wants A_i F_ij = A_j F_ji; each band has its own process.
 /// - gmres: GMRES(20) on (I - rho F) b = rhs, any F; each band has its own process. Source: [Saad86].
 /// - southwell: shooting, see solve/shooting.hpp; asked for here it stands for gauss_seidel, which visits all in turn.

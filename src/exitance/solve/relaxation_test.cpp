@@ -71,7 +71,8 @@ TEST_P(EveryRelaxation, LeavesNoResidual) {
 TEST_P(EveryRelaxation, SaysThatItRanOutOfIterations) {
     const Problem problem;
     std::vector<Spectrum> b(problem.F.size());
-    const SolveReport report = solve_radiosity(problem.system(), GetParam(), b, {.residual = 1e-14, .max_iterations = 2});
+    const SolveReport report =
+        solve_radiosity(problem.system(), GetParam(), b, {.residual = 1e-14, .max_iterations = 2});
     EXPECT_FALSE(report.converged);
     EXPECT_GT(report.residual, 1e-14);
 }

@@ -63,9 +63,8 @@ SolveReport shoot(const ShootingProblem& problem, const ShootingOptions& options
         report.interrupted = !report.converged && options.request && options.request->requested();
         if (report.converged || report.interrupted || report.iterations >= options.max_shots) break;
 
-        const Spectrum extra = options.overshooting
-                                   ? patch_reflectance[j] * ambient(problem, unshot, mean_reflectance)
-                                   : Spectrum();
+        const Spectrum extra =
+            options.overshooting ? patch_reflectance[j] * ambient(problem, unshot, mean_reflectance) : Spectrum();
         const Spectrum sent = unshot[j] + extra;
         unshot[j] = -1.0 * extra;
         const std::span<const float> F = problem.column(j);

@@ -11,7 +11,7 @@ namespace exitance {
 /// Patches that shoot and elements that receive. Receivers are numbered as leaves; spans of receivers have one entry a
 /// leaf, spans of patches one a patch.
 struct ShootingProblem {
-    std::span<const std::uint32_t> patch_of;  ///< By receiver: the patch that it belongs to.
+    std::span<const std::uint32_t> patch_of;            ///< By receiver: the patch that it belongs to.
     std::span<const double> receiver_area, patch_area;  ///< m^2
     std::span<const Spectrum> reflectance;              ///< By receiver.
     /// Form factors F_ij from every receiver i to patch j; the span stays valid until the next call.

@@ -60,7 +60,8 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         if (depth == 0) {
             double flux = 0;
             for (ElementId e : active)
-                flux += out.tree.area(e) * mean(light_weight(stage.scene.material(out.tree.region(e))) * out.fit[e].mean);
+                flux +=
+                    out.tree.area(e) * mean(light_weight(stage.scene.material(out.tree.region(e))) * out.fit[e].mean);
             const double allowed = options.tolerance * flux / stage.area;
             share = allowed * allowed * mean_area;
         }

@@ -14,8 +14,8 @@ struct DirectProjectionOptions {
     int max_depth = 8;     ///< Cuts below the first mesh.
     /// Elements of less than this are not cut, m^2; empty: as the tolerance asks.
     std::optional<double> least_area = {};
-    /// What to do when a stop is asked for: give up at once and return an empty tree, or end the first round, so that there
-    /// is something to return.
+    /// What to do when a stop is asked for: give up at once and return an empty tree, or end the first round, so that
+    /// there is something to return.
     bool may_give_up = false;
 };
 

@@ -61,7 +61,8 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
             const Frame frame(stage.scene.regions()[region[k]].plane.n);
             const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::rows), k));
             directions.resize(count), found.resize(count);
-            for (std::uint32_t i = 0; i < count; ++i) directions[i] = cosine_direction(frame, points(i, 0), points(i, 1));
+            for (std::uint32_t i = 0; i < count; ++i)
+                directions[i] = cosine_direction(frame, points(i, 0), points(i, 1));
             stage.tracer.nearest(directions, place[k], region[k], found);
             for (std::size_t i = 0; i < count; ++i) {
                 if (found[i].surface.is_none() || !found[i].front) continue;
@@ -80,8 +81,10 @@ Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node)
         if (hit.leaf == missed) continue;
         const double u = hit.u / 65535.0, v = hit.v / 65535.0;
         const Corners& c = corners[hit.leaf];
-        if (leaves_[hit.leaf].triangle) sum += (1 - u - v) * c[0] + u * c[1] + v * c[2];
-        else sum += (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
+        if (leaves_[hit.leaf].triangle)
+            sum += (1 - u - v) * c[0] + u * c[1] + v * c[2];
+        else
+            sum += (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
     }
     return sum / static_cast<double>(node.last_ray - node.first_ray);
 }

@@ -15,9 +15,9 @@ namespace exitance {
 /// The elements that receive and the patches that send: two levels of one tree [Cohen86]. A patch is a leaf or an inner
 /// element; every leaf lies in exactly one patch.
 struct PatchLevel {
-    std::vector<ElementId> patches;         ///< In order of their ids.
-    std::vector<std::uint32_t> patch_of;    ///< By leaf number: the leaf's patch, as an index into `patches`.
-    std::vector<double> share;              ///< By leaf number: area of the leaf over area of its patch.
+    std::vector<ElementId> patches;       ///< In order of their ids.
+    std::vector<std::uint32_t> patch_of;  ///< By leaf number: the leaf's patch, as an index into `patches`.
+    std::vector<double> share;            ///< By leaf number: area of the leaf over area of its patch.
 
     /// Patches `levels` above the leaves: 0 makes every leaf a patch of its own.
     PatchLevel(const ElementTree& tree, const LeafNumbering& numbering, int levels);
@@ -29,9 +29,9 @@ struct PatchLevel {
 /// Form factors between elements, and how much of them is visible, computed when asked for.
 ///
 /// F_ij is taken at the receiver's middle, exactly, towards the whole source polygon [Baum89], and times the share of
-/// `samples` rays between the two that meet nothing. Every element has its own places, one in each cell of a 4 x 4 grid;
-/// which of them a ray joins follows an orthogonal array of strength 2, turned by the pair of elements: each pair of
-/// the four coordinates is stratified [Owen92].
+/// `samples` rays between the two that meet nothing. Every element has its own places, one in each cell of a 4 x 4
+/// grid; which of them a ray joins follows an orthogonal array of strength 2, turned by the pair of elements: each pair
+/// of the four coordinates is stratified [Owen92].
 class PatchTransfer {
   public:
     PatchTransfer(const Stage& stage, const ElementTree& tree, unsigned samples, std::uint64_t seed)
@@ -65,14 +65,15 @@ class PatchTransfer {
     std::size_t form_factors() const { return form_factors_; }
 
   private:
-    double form_factor(ElementId receiver, ElementId source, std::span<const Point> outline, Workspace& workspace) const;
+    double form_factor(ElementId receiver, ElementId source, std::span<const Point> outline,
+                       Workspace& workspace) const;
     double visible_share(ElementId receiver, ElementId source, Workspace& workspace) const;
 
     const Stage& stage_;
     const ElementTree& tree_;
     std::vector<Point> centres_;  ///< Of every element.
     std::vector<Point> places_;   ///< `samples_` of every element, sixteen cells at a time.
-    unsigned samples_;  ///< A multiple of 16.
+    unsigned samples_;            ///< A multiple of 16.
     std::uint64_t seed_;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
 };

@@ -45,7 +45,8 @@ struct Stage {
     /// Is there anything that emits, and anything that reflects? Without either no light is indirect.
     bool has_indirect_light() const {
         bool reflects = false;
-        for (const Region& region : scene.regions()) reflects |= max(scene.materials()[region.material].reflectance) > 0;
+        for (const Region& region : scene.regions())
+            reflects |= max(scene.materials()[region.material].reflectance) > 0;
         return reflects && !scene.emitters().empty();
     }
 };
