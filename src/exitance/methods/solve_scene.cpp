@@ -91,9 +91,10 @@ class Solver {
         statistics().surfaces = scene.surfaces().size();
         statistics().converged = true;
         solution_.indirect = dark(stage_);
-        // Under a deadline a coarse answer comes first, so that there is one whenever time runs out.
+        // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out.
         constexpr double coarse = 0.08;
-        const bool deadline = std::isfinite(stop.seconds_left());
+        constexpr double near = 30;  // seconds
+        const bool deadline = stop.seconds_left() < near;
         knobs_ = knobs_for_error(deadline ? std::max(coarse, options.error_target()) : options.error_target(),
                                  stage_.pieces, options);
     }
@@ -133,8 +134,8 @@ class Solver {
             const Stopwatch watch;
             solve_once();
             if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-            // The estimate is itself uncertain by a tenth: it has to be below the demand by as much.
-            constexpr double margin = 0.92;
+            // The estimate is itself uncertain by a fifth: it has to be below the demand by as much.
+            constexpr double margin = 0.82;
             if (!demand || certificate_.estimate <= margin * *demand) {
                 if (statistics().stopped_by.empty() || demand)
                     statistics().converged = true, statistics().stopped_by.clear();
