@@ -17,7 +17,7 @@ exitance=build/bin/exitance
 echo "== Making the room"
 "$exitance" generate "${scene[@]}" -o "$out/room.obj"
 echo "== Solving"
-"$exitance" solve "$out/room.obj" -o "$out/solution.h5"
+"$exitance" solve "$out/room.obj" -o "$out/solution.h5" --error 0.03
 echo "== Rendering"
 camera="0.2,0.2,1.7 2.3,2.3,1.05 86"
 "$exitance" render "$out/solution.h5" -o "$out/picture.png" --camera "$camera" --exposure 0.3
