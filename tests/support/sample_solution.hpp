@@ -9,7 +9,7 @@
 namespace exitance {
 
 /// A room of 2 m x 1 m x 1 m: its floor cut into two faces, a luminous strip in its ceiling, and a free-standing
-/// triangle seen from both sides. Eleven faces on lines 10 to 20, four materials, three groups.
+/// triangle seen from both sides; a spot, parallel light and a camera. Eleven faces on lines 10 to 20, four materials, three groups.
 inline Scene sample_scene() {
     SceneDescription d;
     d.file = "sample room.obj";
@@ -44,6 +44,9 @@ inline Scene sample_scene() {
     face({{2, 0, 0}, {2, 0, 1}, {2, 1, 1}, {2, 1, 0}}, 0, 0);
     face({{0.5, 0.3, 0.2}, {0.9, 0.3, 0.3}, {0.6, 0.5, 0.7}}, 3, 2);
     face({{0.5, 0.3, 0.2}, {0.6, 0.5, 0.7}, {0.9, 0.3, 0.3}}, 3, 2);
+    d.lights = {{"spot", PunctualLight::Kind::spot, {0.3, 0.2, 0.9}, {0, 0, -1}, grey(3, 2, 1), 0.2, 0.7},
+                {"sun", PunctualLight::Kind::directional, {}, {0.6, 0, -0.8}, grey(9, 8, 7)}};
+    d.cameras = {{"door", {0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, {0, 0, 1}, 70, 0}};
     CheckedScene made = make_scene(d);
     if (!made.scene) std::abort();  // the sample is good input
     return *made.scene;

@@ -158,7 +158,8 @@ void ObjReader::use_group(std::string_view name) {
 
 /// Vertices may stand after the faces that name them; so only now is it known which there are.
 void ObjReader::check_indices() {
-    auto& [file, points, materials, groups, faces] = out_.description;
+    const std::vector<Point>& points = out_.description.points;
+    std::vector<SceneDescription::Face>& faces = out_.description.faces;
     std::erase_if(faces, [&](const SceneDescription::Face& face) {
         const auto beyond =
             std::find_if(face.corners.begin(), face.corners.end(), [&](auto c) { return c >= points.size(); });

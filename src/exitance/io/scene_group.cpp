@@ -91,6 +91,83 @@ Spectrum spectrum(const std::vector<double>& values, std::size_t row) {
     return s;
 }
 
+/// Lights and views, which few scenes have: without them the file has no sets for them.
+void write_lights(Hdf5Writer& file, const std::string& group, const std::vector<PunctualLight>& lights) {
+    if (lights.empty()) return;
+    const auto in = [&](const char* name) { return group + "/" + name; };
+    std::vector<double> cones;
+    for (const PunctualLight& l : lights) cones.insert(cones.end(), {l.inner_cone, l.outer_cone});
+    file.write_texts(in("light_name"), column<std::string>(lights, [](const PunctualLight& l) { return l.name; }),
+                     {"1", "names of the lights without extent"});
+    file.write(in("light_kind"),
+               column<std::uint8_t>(lights, [](const PunctualLight& l) { return static_cast<std::uint8_t>(l.kind); }),
+               1, {"1", "kind of a light: 0 point, 1 spot, 2 parallel"});
+    file.write(in("light_position"), flat(column<Point>(lights, [](const PunctualLight& l) { return l.position; })), 3,
+               {"m", "place of a light"});
+    file.write(in("light_direction"), flat(column<Normal>(lights, [](const PunctualLight& l) { return l.direction; })),
+               3, {"1", "direction in which a light goes"});
+    file.write(in("light_intensity"), spectra(lights, [](const PunctualLight& l) { return l.intensity; }), bands,
+               {"W/sr", "intensity of a light; of parallel light the irradiance across it, W/m^2"});
+    file.write(in("light_cone"), cones, 2, {"rad", "half the angles of a spot's inner and outer cone"});
+}
+
+void write_cameras(Hdf5Writer& file, const std::string& group, const std::vector<SceneCamera>& cameras) {
+    if (cameras.empty()) return;
+    const auto in = [&](const char* name) { return group + "/" + name; };
+    file.write_texts(in("camera_name"), column<std::string>(cameras, [](const SceneCamera& c) { return c.name; }),
+                     {"1", "names of the views that came with the scene"});
+    file.write(in("camera_eye"), flat(column<Point>(cameras, [](const SceneCamera& c) { return c.eye; })), 3,
+               {"m", "where a camera stands"});
+    file.write(in("camera_target"), flat(column<Point>(cameras, [](const SceneCamera& c) { return c.target; })), 3,
+               {"m", "where a camera looks"});
+    file.write(in("camera_up"), flat(column<Vec3>(cameras, [](const SceneCamera& c) { return c.up; })), 3,
+               {"1", "what is upright in a camera's picture"});
+    file.write(in("camera_fov"), column<double>(cameras, [](const SceneCamera& c) { return c.fov; }), 1,
+               {"degree", "angle from the left to the right edge of a camera's picture"});
+    file.write(in("camera_width"), column<double>(cameras, [](const SceneCamera& c) { return c.width; }), 1,
+               {"m", "width of an orthographic camera's picture; 0: perspective"});
+}
+
+std::vector<PunctualLight> read_lights(Hdf5Reader& file, const std::string& group) {
+    if (!file.has(group + "/light_name")) return {};
+    Columns in(file, group);
+    const std::vector<std::string> names = file.read_texts(group + "/light_name");
+    const std::size_t count = names.size();
+    const auto kind = in.read<std::uint8_t>("light_kind", 1, count);
+    const auto position = in.points("light_position", count);
+    const auto direction = in.normals("light_direction", count);
+    const auto intensity = in.read<double>("light_intensity", bands, count);
+    const auto cone = in.read<double>("light_cone", 2, count);
+    for (std::size_t i = 0; i < count && !file.failed(); ++i) {
+        if (kind[i] > static_cast<std::uint8_t>(PunctualLight::Kind::directional))
+            file.fail(group + "/light_kind", "holds " + std::to_string(kind[i]) + ", which is no kind of light");
+        if (!(cone[2 * i] >= 0 && cone[2 * i] < cone[2 * i + 1] && cone[2 * i + 1] <= pi / 2))
+            file.fail(group + "/light_cone", "holds cones that no spot has");
+    }
+    std::vector<PunctualLight> out;
+    for (std::size_t i = 0; i < count && !file.failed(); ++i)
+        out.push_back({names[i], static_cast<PunctualLight::Kind>(kind[i]), position[i], direction[i],
+                       spectrum(intensity, i), cone[2 * i], cone[2 * i + 1]});
+    return out;
+}
+
+std::vector<SceneCamera> read_cameras(Hdf5Reader& file, const std::string& group) {
+    if (!file.has(group + "/camera_name")) return {};
+    Columns in(file, group);
+    const std::vector<std::string> names = file.read_texts(group + "/camera_name");
+    const std::size_t count = names.size();
+    const auto eye = in.points("camera_eye", count), target = in.points("camera_target", count);
+    const auto up = in.normals("camera_up", count);
+    const auto fov = in.read<double>("camera_fov", 1, count), width = in.read<double>("camera_width", 1, count);
+    for (std::size_t i = 0; i < count && !file.failed(); ++i)
+        if (!(fov[i] > 0 && fov[i] < 180 && width[i] >= 0))
+            file.fail(group + "/camera_fov", "holds an angle that no camera has");
+    std::vector<SceneCamera> out;
+    for (std::size_t i = 0; i < count && !file.failed(); ++i)
+        out.push_back({names[i], eye[i], target[i], up[i], fov[i], width[i]});
+    return out;
+}
+
 }  // namespace
 
 void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene& scene) {
@@ -156,6 +233,8 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     file.write(in("emitter"), column<std::uint32_t>(scene.emitters_, [](SurfaceId s) { return s.value; }), 1,
                {"1", "faces that emit"});
     file.write(in("box"), flat({scene.box_.lo, scene.box_.hi}), 3, {"m", "lower and upper corner of the scene's box"});
+    write_lights(file, group, scene.lights_);
+    write_cameras(file, group, scene.cameras_);
 }
 
 Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
@@ -191,6 +270,8 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     const auto loop_count = in.counts("region_loop_count", 1, loop_corners.size(), region_count);
     const auto emitters = in.indices("emitter", face_count);
     const auto box = in.points("box", 2);
+    scene.lights_ = read_lights(file, group);
+    scene.cameras_ = read_cameras(file, group);
     for (std::size_t i = 0; i < face_count && !file.failed(); ++i)
         if (corner_count[i] < 3 || corner_count[i] > scene.corners_.size() ||
             first_corner[i] > scene.corners_.size() - corner_count[i])

@@ -62,6 +62,18 @@ void expect_same(const Scene& a, const Scene& b) {
         EXPECT_TRUE(x.area == y.area && x.surfaces == y.surfaces && x.loops == y.loops);
     }
     EXPECT_EQ(a.emitters(), b.emitters());
+    ASSERT_EQ(a.lights().size(), b.lights().size());
+    for (std::size_t i = 0; i < a.lights().size(); ++i) {
+        const PunctualLight &x = a.lights()[i], &y = b.lights()[i];
+        EXPECT_TRUE(x.name == y.name && x.kind == y.kind && x.position == y.position && x.direction == y.direction);
+        EXPECT_TRUE(x.intensity == y.intensity && x.inner_cone == y.inner_cone && x.outer_cone == y.outer_cone);
+    }
+    ASSERT_EQ(a.cameras().size(), b.cameras().size());
+    for (std::size_t i = 0; i < a.cameras().size(); ++i) {
+        const SceneCamera &x = a.cameras()[i], &y = b.cameras()[i];
+        EXPECT_TRUE(x.name == y.name && x.eye == y.eye && x.target == y.target && x.up == y.up);
+        EXPECT_TRUE(x.fov == y.fov && x.width == y.width);
+    }
     EXPECT_TRUE(a.box().lo == b.box().lo && a.box().hi == b.box().hi);
 }
 

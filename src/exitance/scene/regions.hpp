@@ -13,9 +13,9 @@ struct JoinedFaces {
 };
 
 /// Joins faces of one material and one orientation that lie in one plane and share an edge or a part of one. A face
-/// that covers a part of an earlier one of its set stays by itself; so do all faces of a union that is no proper polygon
-/// for other reasons. Sets are ordered by their
-/// first face. How the faces were cut does not show in the result. Expected O(n log n) in edges.
+/// that covers a part of an earlier one of its set stays by itself; so do all faces of a union that is no proper
+/// polygon for other reasons. Sets are ordered by their first face. How the faces were cut does not show in the result.
+/// Expected O(n log n) in edges.
 std::vector<JoinedFaces> join_coplanar(const FaceMesh& mesh, const Tolerances& tolerances);
 
 }  // namespace exitance

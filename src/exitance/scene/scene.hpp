@@ -8,6 +8,8 @@
 #include "exitance/core/result.hpp"
 #include "exitance/core/spectrum.hpp"
 #include "exitance/geometry/polygon.hpp"
+#include "exitance/scene/point_light.hpp"
+#include "exitance/scene/scene_camera.hpp"
 
 namespace exitance {
 
@@ -26,9 +28,13 @@ struct Material {
 };
 
 /// Emitted radiance L_e (W/(m^2 sr)) as exitance M = pi L_e (W/m^2). The one place where radiance becomes exitance.
-inline Spectrum exitance_of_radiance(const Spectrum& radiance) { return pi * radiance; }
+inline Spectrum exitance_of_radiance(const Spectrum& radiance) {
+    return pi * radiance;
+}
 /// And back, for files that hold radiance.
-inline Spectrum radiance_of_exitance(const Spectrum& exitance) { return exitance / pi; }
+inline Spectrum radiance_of_exitance(const Spectrum& exitance) {
+    return exitance / pi;
+}
 
 /// One planar face of the input: one-sided, its corners counter-clockwise seen from the front.
 struct Surface {
@@ -76,6 +82,8 @@ struct SceneDescription {
     std::vector<Material> materials;
     std::vector<std::string> groups;
     std::vector<Face> faces;
+    std::vector<PunctualLight> lights;
+    std::vector<SceneCamera> cameras;
 };
 
 /// Polygons with materials, checked and joined to regions. Immutable once made.
@@ -99,6 +107,12 @@ class Scene {
 
     /// Faces that emit, in the order of their ids.
     const std::vector<SurfaceId>& emitters() const { return emitters_; }
+    /// Sources without extent, in the order of the file.
+    const std::vector<PunctualLight>& lights() const { return lights_; }
+    bool has_light() const { return !emitters_.empty() || !lights_.empty(); }
+
+    /// Views that came with the scene; nothing but pictures takes note of them.
+    const std::vector<SceneCamera>& cameras() const { return cameras_; }
 
   private:
     friend class SceneBuilder;
@@ -110,6 +124,8 @@ class Scene {
     Field<RegionId, Region> regions_;
     std::vector<Point> corners_;
     std::vector<SurfaceId> emitters_;
+    std::vector<PunctualLight> lights_;
+    std::vector<SceneCamera> cameras_;
     Box box_;
 };
 

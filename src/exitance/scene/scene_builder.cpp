@@ -33,6 +33,7 @@ class SceneBuilder {
 
   private:
     void check_materials();
+    void check_lights();
     void place_corners();
     void check_faces();
     bool check_face(const SceneDescription::Face& face);
@@ -78,6 +79,22 @@ void SceneBuilder::check_materials() {
                 error(0, fmt::format("material '{}' has exitance {:g} in band {}", m.name, m.exitance[b], band(b)),
                       "emission is finite and not negative");
         }
+}
+
+void SceneBuilder::check_lights() {
+    for (const PunctualLight& light : in_.lights) {
+        if (!is_finite(light.intensity) ||
+            std::any_of(light.intensity.value.begin(), light.intensity.value.end(), [](double v) { return v < 0; }))
+            error(0, fmt::format("light '{}' has an intensity that is negative or not finite", light.name));
+        if (!is_finite(light.position) || !(std::abs(norm(light.direction) - 1) < 1e-6))
+            error(0, fmt::format("light '{}' has no place or no direction", light.name));
+        if (light.kind == PunctualLight::Kind::spot &&
+            !(light.inner_cone >= 0 && light.inner_cone < light.outer_cone && light.outer_cone <= pi / 2))
+            error(0,
+                  fmt::format("spot '{}' has cones of {:g} and {:g} radians", light.name, light.inner_cone,
+                              light.outer_cone),
+                  "the inner one is at least 0 and less than the outer one, that one at most pi / 2");
+    }
 }
 
 /// Finds the scene's box and the points that stand at one place.
@@ -232,8 +249,10 @@ void SceneBuilder::drop_duplicates() {
 }
 
 void SceneBuilder::check_light() {
-    const bool lit = std::any_of(origin_.begin(), origin_.end(),
-                                 [&](std::uint32_t f) { return in_.materials[in_.faces[f].material].emits(); });
+    const bool lit =
+        std::any_of(in_.lights.begin(), in_.lights.end(), [](const auto& l) { return max(l.intensity) > 0; }) ||
+        std::any_of(origin_.begin(), origin_.end(),
+                    [&](std::uint32_t f) { return in_.materials[in_.faces[f].material].emits(); });
     if (!lit)
         find(Finding::Kind::warning, in_.faces.empty() ? 0 : in_.faces[0].line,
              "nothing emits light: all results are 0", "give a material an emission (in MTL: Ke r g b)");
@@ -342,11 +361,15 @@ Scene SceneBuilder::make() {
     add_regions(scene, join_coplanar(mesh_, tol_));
     for (Material& m : in_.materials) scene.materials_.add(std::move(m));
     for (std::string& g : in_.groups) scene.groups_.add(std::move(g));
+    for (PunctualLight& light : in_.lights)
+        if (max(light.intensity) > 0) scene.lights_.push_back(std::move(light));
+    scene.cameras_ = std::move(in_.cameras);
     return scene;
 }
 
 CheckedScene SceneBuilder::build() {
     check_materials();
+    check_lights();
     place_corners();
     check_faces();
     if (!has_errors()) {

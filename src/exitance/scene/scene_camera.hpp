@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/geometry/vec.hpp"
+
+namespace exitance {
+
+/// A view that came with a scene, for pictures.
+struct SceneCamera {
+    std::string name;
+    Point eye, target;    ///< Metres.
+    Vec3 up = {0, 0, 1};  ///< What is upright in the picture; of length 1, not along the view.
+    double fov = 60;      ///< Angle from the left to the right edge, degrees, in (0, 180).
+    double width = 0;     ///< Of an orthographic view, metres from left to right; 0 for a perspective one.
+};
+
+}  // namespace exitance
