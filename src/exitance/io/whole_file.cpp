@@ -20,6 +20,10 @@ Error cannot_read(const std::string& path, const char* what, int reason) {
 Result<std::string> read_whole_file(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) return cannot_read(path, "cannot be read", EISDIR);
+    // A device has no end: a scene that names /dev/zero as its material file is not to hang the program.
+    const auto type = std::filesystem::status(path, ignored).type();
+    if (type == std::filesystem::file_type::character || type == std::filesystem::file_type::block)
+        return cannot_read(path, "cannot be read", ENODEV);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) return cannot_read(path, "cannot be opened", errno);
     std::string content;
