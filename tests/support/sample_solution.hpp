@@ -87,6 +87,7 @@ inline Solution sample_solution(int cuts = 40) {
     Solution s;
     s.scene = sample_scene();
     s.indirect = sample_function(s.scene, 1, cuts / 2);
+    s.direct_share[0] = 0.9;
     s.interpolant = sample_function(s.scene, 2, cuts);
     s.options = R"({"method": "hierarchical", "error": 0.02})";
     s.bounces = -1;

@@ -21,6 +21,9 @@ Result<void> write_solution(const std::string& path, const Solution& solution) {
     file.write_text("exitance/options", solution.options, {"1", "options in force, as JSON"});
     StoredScene::write(file, "exitance/scene", solution.scene);
     write_function(file, "exitance/indirect", solution.indirect);
+    const Spectrum& c = solution.direct_share;
+    file.write("exitance/direct_share", std::span<const double>(c.value), 1,
+               {"1", "share of the direct light that the values of indirect hold too, a value a band"});
     write_function(file, "exitance/interpolant", solution.interpolant);
     write_statistics(file, "exitance/statistics", solution.statistics);
     return file.write_file(path);
@@ -49,6 +52,11 @@ Result<Solution> load_solution(const std::string& path) {
     solution.scene = StoredScene::read(file, "exitance/scene");
     const std::size_t regions = solution.scene.regions().size();
     solution.indirect = read_function(file, "exitance/indirect", regions);
+    if (file.has("exitance/direct_share")) {
+        const std::vector<double> c = file.read<double>("exitance/direct_share", 1, bands);
+        std::copy(c.begin(), c.end(), solution.direct_share.value.begin());
+        if (!is_finite(solution.direct_share)) file.fail("exitance/direct_share", "holds a number that is not finite");
+    }
     solution.interpolant = read_function(file, "exitance/interpolant", regions);
     solution.statistics = read_statistics(file, "exitance/statistics");
     if (file.failed()) return file.error();

@@ -111,6 +111,7 @@ TEST_F(SolutionFiles, BringASolutionBackBitForBit) {
     ASSERT_TRUE(t) << t.error().message;
     expect_same(s.scene, t->scene);
     expect_same(s.indirect, t->indirect);
+    EXPECT_EQ(s.direct_share, t->direct_share);
     expect_same(s.interpolant, t->interpolant);
     EXPECT_EQ(s.options, t->options);
     EXPECT_EQ(s.bounces, t->bounces);

@@ -1,4 +1,5 @@
 #include "exitance/methods/methods.hpp"
+#include "exitance/solve/direct_share.hpp"
 #include "exitance/transport/linear_rows.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 #include "exitance/transport/ray_rows.hpp"
@@ -15,6 +16,30 @@ void solve(const MethodInput& input, const TransportOperator& F, std::span<const
     light.report = solve_radiosity(
         {F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres), light.reflected,
         {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop});
+}
+
+/// Where surfaces glow all over, the direct light that F finds by its own rays, F M, takes the share c of the exact
+/// one's place: E_ind = F (b + c M) - c E_dir. Then the noise of F meets only what varies of b + c M.
+void agree_with_direct_share(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
+                             GlobalLight& light) {
+    const ElementLocator locator(light.tree, input.stage.scene.regions().size());
+    const Spectrum c = find_direct_share(input.stage, light, locator, input.options.seed);
+    if (squared(c) == 0 || input.stop.requested()) return;
+    const std::size_t n = rho.size();
+    std::vector<Spectrum> M(n), correction(n), first(n);
+    for (std::size_t i = 0; i < n; ++i)
+        M[i] = input.stage.scene.material(light.tree.region(light.numbering.leaves[i])).exitance;
+    F.gather(M, correction);
+    for (std::size_t i = 0; i < n; ++i) {
+        correction[i] = c * (correction[i] - light.direct[i]);
+        first[i] = rho[i] * (light.direct[i] + correction[i]);
+    }
+    const std::size_t before = light.report.iterations;
+    solve(input, F, rho, first, light);
+    light.report.iterations += before;
+    F.gather(light.reflected, light.indirect);
+    for (std::size_t i = 0; i < n; ++i) light.indirect[i] += correction[i];
+    light.direct_share = c;
 }
 
 /// All reflections of the direct light, or as many as were asked for; writes the light that
@@ -36,6 +61,7 @@ void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& li
     } else {
         solve(input, F, rho, first, light);
         F.gather(light.reflected, light.indirect);
+        agree_with_direct_share(input, F, rho, light);
     }
     light.link_memory_bytes = F.memory_bytes();
 }

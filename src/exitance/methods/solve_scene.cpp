@@ -12,6 +12,7 @@
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/interpolant.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
+#include "exitance/solve/direct_share.hpp"
 
 namespace exitance {
 namespace {
@@ -45,19 +46,25 @@ ElementFunction constant_on_leaves(const GlobalLight& light) {
     return out;
 }
 
-/// What rays read in the local pass: on every leaf the direct light that was projected there, and the indirect light
-/// that the method found, times the reflectance.
-ElementFunction reflected_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light) {
+/// What rays read in the local pass, b + c M: on every leaf the direct light that was projected there, and the indirect
+/// light that the method found, times the reflectance, and the share c of what it emits. Where the method's own
+/// elements agree with that share, E_dir + E_ind is alike all over a leaf but for (1 - c) E_dir.
+ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+                               const Spectrum& c) {
     ElementFunction out;
     out.tree = light.tree;
     out.first_value.resize(out.tree.size(), 0);
     for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
         const ElementId e = light.numbering.leaves[i];
-        const Spectrum& rho = scene.material(out.tree.region(e)).reflectance;
+        const Material& material = scene.material(out.tree.region(e));
         out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
-        for (std::size_t k = 0; k < 4; ++k)
-            out.add_value(rho * ((light.on_projection ? direct.fit[e].corners[k] : light.direct[i]) +
-                                 (light.indirect_corners.empty() ? light.indirect[i] : light.indirect_corners[i][k])));
+        const Spectrum mean = light.direct_share * light.direct[i];
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Spectrum& E_dir = light.on_projection ? direct.fit[e].corners[k] : light.direct[i];
+            const Spectrum& E_ind = light.indirect_corners.empty() ? light.indirect[i] : light.indirect_corners[i][k];
+            out.add_value(material.reflectance * (E_dir - light.direct_share * E_dir + mean + E_ind) +
+                          c * material.exitance);
+        }
     }
     return out;
 }
@@ -176,7 +183,9 @@ class Solver {
         GlobalLight light = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
         statistics().seconds["solve"] += watch.restart();
         LocalPassReport gathered;
-        ElementFunction indirect = light.holds_direct ? constant_on_leaves(light) : gather(light, gathered);
+        const bool whole = !light.holds_direct && options_.bounces < 0;
+        const Spectrum share = whole ? direct_share(light) : Spectrum();
+        ElementFunction indirect = light.holds_direct ? constant_on_leaves(light) : gather(light, share, gathered);
         statistics().seconds["reconstruct"] += watch.restart();
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
@@ -189,6 +198,7 @@ class Solver {
             return;
         }
         solution_.indirect = std::move(indirect);
+        solution_.direct_share = share;
         solution_.direct_in_elements = light.holds_direct;
         progress_.phase("certify");
         certificate_ =
@@ -197,15 +207,20 @@ class Solver {
         record(light, gathered);
     }
 
-    ElementFunction gather(const GlobalLight& light, LocalPassReport& report) {
+    Spectrum direct_share(const GlobalLight& light) const {
+        const ElementLocator locator(light.tree, stage_.scene.regions().size());
+        return find_direct_share(stage_, light, locator, options_.seed);
+    }
+
+    ElementFunction gather(const GlobalLight& light, const Spectrum& share, LocalPassReport& report) {
         progress_.phase("gather");
-        const ElementFunction source = reflected_light(stage_.scene, direct_, light);
+        const ElementFunction source = gathered_light(stage_.scene, direct_, light, share);
         const ElementLocator locator(source.tree, stage_.scene.regions().size());
-        const RadiosityAt reflected = [&](RegionId region, const Point& y) {
+        const RadiosityAt gathered = [&](RegionId region, const Point& y) {
             return source.at(locator.find(region, y));
         };
         const double scale = light.mean_reflected();
-        return gather_indirect_light(stage_, reflected,
+        return gather_indirect_light(stage_, gathered,
                                      {.mesh = knobs_.gather_mesh,
                                       .rays = knobs_.gather_rays,
                                       .noise = knobs_.gather_noise * scale,
@@ -224,8 +239,9 @@ class Solver {
             // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
             Spectrum E = options_.bounces > 0 ? light.indirect[light.numbering.number[coarse.find(region, y).element]]
                                               : solution_.indirect.at(indirect.find(region, y));
-            if (!light.holds_direct) E += direct_.at(direct_locator.find(region, y));
-            return stage_.scene.material(region).reflectance * E;
+            const Spectrum& c = solution_.direct_share;
+            if (!light.holds_direct) E += (Spectrum(1.0) - c) * direct_.at(direct_locator.find(region, y));
+            return stage_.scene.material(region).reflectance * E + c * stage_.scene.material(region).exitance;
         };
         return certify(
             stage_, light, solution_.indirect, delivered,
@@ -271,7 +287,7 @@ class Solver {
                 certificate_.mean_reflected > 0 ? certificate_.mean_reflected : mean_direct_light(stage_, direct_);
             InterpolantReport report;
             solution_.interpolant =
-                make_interpolant(stage_, direct_, solution_.indirect,
+                make_interpolant(stage_, direct_, solution_.indirect, solution_.direct_share,
                                  {.tolerance = 2.5 * options_.error_target() * scale}, report, stop_);
             const double own = scale > 0 ? report.error / scale : 0;
             statistics().relative_error_estimate_interpolant = std::hypot(own, statistics().relative_error_estimate);

@@ -20,7 +20,9 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
         out.absorbed += area * sum((Spectrum(1.0) - scene.material(region).reflectance) * E);
     };
     if (!solution.direct_in_elements)
-        for (ElementId e : direct.tree.leaves()) absorb(direct.tree.region(e), direct.tree.area(e), direct.fit[e].mean);
+        for (ElementId e : direct.tree.leaves())
+            absorb(direct.tree.region(e), direct.tree.area(e),
+                   (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean);
     // A linear or bilinear function has its mean at the centre of its element.
     const ElementTree& tree = solution.indirect.tree;
     for (ElementId e : tree.leaves()) absorb(tree.region(e), tree.area(e), solution.indirect.at({e, tree.centre(e)}));

@@ -11,10 +11,11 @@ namespace {
 class Interpolation {
   public:
     Interpolation(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
-                  const InterpolantOptions& options)
+                  const Spectrum& direct_share, const InterpolantOptions& options)
         : stage_(stage),
           direct_(direct),
           indirect_(indirect),
+          direct_weight_(Spectrum(1.0) - direct_share),
           options_(options),
           locator_(indirect.tree, stage.scene.regions().size()) {
         out_.tree = direct.tree;
@@ -52,6 +53,9 @@ class Interpolation {
         const RegionId region = out_.tree.region(e);
         DirectFit out =
             e.value < direct_.tree.size() ? direct_.fit[e] : fit_direct_light(stage_, out_.tree, e, light, workspace);
+        for (Spectrum& corner : out.corners) corner *= direct_weight_;
+        out.mean *= direct_weight_;
+        out.misfit_squared *= max(direct_weight_ * direct_weight_);
         const std::vector<WeightedPlace> rule = element_rule(out_.tree, e, RuleOrder::fine);
         std::vector<Spectrum> value(rule.size());
         for (std::size_t i = 0; i < rule.size(); ++i) {
@@ -90,6 +94,7 @@ class Interpolation {
     const Stage& stage_;
     const DirectProjection& direct_;
     const ElementFunction& indirect_;
+    const Spectrum direct_weight_;
     const InterpolantOptions& options_;
     ElementLocator locator_;
     ElementFunction out_;
@@ -99,9 +104,9 @@ class Interpolation {
 }  // namespace
 
 ElementFunction make_interpolant(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
-                                 const InterpolantOptions& options, InterpolantReport& report,
-                                 const StopRequest& stop) {
-    return Interpolation(stage, direct, indirect, options).run(report, stop);
+                                 const Spectrum& direct_share, const InterpolantOptions& options,
+                                 InterpolantReport& report, const StopRequest& stop) {
+    return Interpolation(stage, direct, indirect, direct_share, options).run(report, stop);
 }
 
 }  // namespace exitance

@@ -34,10 +34,13 @@ Spectrum RadiosityFunction::indirect_in_free_space(const ProbePoint& point, std:
 
 Spectrum RadiosityFunction::irradiance_on(const SeenPoint& point, Component component,
                                           DirectLight::Workspace& workspace) const {
+    // E = E_dir + (indirect - c E_dir): the exact part weighs 1 - c in all, 1 or -c by itself.
     Spectrum irradiance;
-    if (component != Component::indirect && !solution_.direct_in_elements) {
+    if (!solution_.direct_in_elements && (component != Component::indirect || has_direct_share())) {
+        Spectrum weight(component == Component::indirect ? 0.0 : 1.0);
+        if (component != Component::direct) weight -= solution_.direct_share;
         const Normal& n = solution_.scene.regions()[point.region].plane.n;
-        irradiance += stage_->direct.irradiance(point.x, n, point.region, workspace);
+        irradiance += weight * stage_->direct.irradiance(point.x, n, point.region, workspace);
     }
     if (component != Component::direct)
         irradiance += solution_.indirect.at(indirect_locator_.find(point.region, point.x));
@@ -57,15 +60,14 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
                 out[i] = light_on(solution_.scene.material(surface), Spectrum());
                 continue;
             }
-            Spectrum irradiance;
-            const bool exact_direct = !solution_.direct_in_elements || free;
-            if (component != Component::indirect && exact_direct)
-                irradiance += stage_->direct.irradiance(x, n, region, workspace);
-            if (component != Component::direct)
-                irradiance += free ? indirect_in_free_space(points[i], i)
-                                   : solution_.indirect.at(indirect_locator_.find(region, x));
-            out[i] =
-                free ? Light{irradiance, Spectrum(), false} : light_on(solution_.scene.material(surface), irradiance);
+            if (!free) {
+                const Spectrum irradiance = irradiance_on({x, region}, component, workspace);
+                out[i] = light_on(solution_.scene.material(surface), irradiance);
+                continue;
+            }
+            if (component != Component::indirect)
+                out[i].irradiance += stage_->direct.irradiance(x, n, region, workspace);
+            if (component != Component::direct) out[i].irradiance += indirect_in_free_space(points[i], i);
         }
     });
     return out;

@@ -35,7 +35,7 @@ struct SeenPoint {
 };
 
 /// A solution as a function of place: B(x) = M + rho (E_dir(x) + E_ind(x)), direct light evaluated exactly from the
-/// polygons, indirect light read from the solution's elements.
+/// polygons, indirect light read from the solution's elements (less the share of direct light that they hold).
 class RadiosityFunction {
   public:
     /// Keeps a reference: the solution must outlive it.
@@ -54,6 +54,7 @@ class RadiosityFunction {
 
   private:
     Spectrum irradiance_on(const SeenPoint& point, Component component, DirectLight::Workspace& workspace) const;
+    bool has_direct_share() const { return squared(solution_.direct_share) > 0; }
     Spectrum indirect_in_free_space(const ProbePoint& point, std::size_t index) const;
 
     const Solution& solution_;

@@ -47,10 +47,12 @@ struct SolveStatistics {
 };
 
 /// Light everywhere: B(x) = M + rho (E_dir(x) + E_ind(x)). E_dir is evaluated exactly from the scene when asked for,
-/// E_ind is `indirect`; `interpolant` stands for both together in files that hold plain elements.
+/// E_ind is `indirect` less `direct_share` times E_dir; `interpolant` stands for both together in files that hold plain
+/// elements.
 struct Solution {
     Scene scene;
-    ElementFunction indirect = {};  ///< E_ind: what arrives after at least one reflection.
+    ElementFunction indirect = {};  ///< E_ind + c E_dir; E_ind is what arrives after at least one reflection.
+    Spectrum direct_share = {};     ///< c, a value a band: 0 in most scenes (`find_direct_share`).
     ElementFunction interpolant =
         {};  ///< E_dir + E_ind on elements split until they hold three times the error asked for.
     SolveStatistics statistics = {};

@@ -23,6 +23,9 @@ struct GlobalLight {
     /// Of `indirect`, W/m^2, where the method is a random one; empty otherwise.
     std::vector<Spectrum> standard_error = {};
 
+    /// c of `find_direct_share` as the method used it: its elements agree with b + c M. Zero where it did not.
+    Spectrum direct_share = {};
+
     /// True when the method carried the emitters' own light through its elements: then `indirect` is all light that
     /// arrives, and `direct` is zero.
     bool holds_direct = false;
