@@ -33,6 +33,7 @@ class ElementFit {
 
     Spectrum at(Vec2 uv) const;
     Spectrum corner(int i) const { return at(corner_uv_[static_cast<std::size_t>(i)]); }
+    std::size_t freedoms() const { return freedoms_; }
 
   private:
     std::array<double, 4> basis_at(Vec2 uv) const;

@@ -1,5 +1,8 @@
 #include "exitance/methods/accuracy.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace exitance {
 namespace {
 
@@ -22,7 +25,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     knobs.residual = 0.05 * error;
     // Two strips more where the light is delivered than its mean square needs: at an edge, too, it is to be right.
     knobs.gather_mesh = {edge_for_elements(pieces, count(5)), strips + (error < 0.01 ? 2 : 0)};
-    const double rays = std::pow(0.5 / error, 4.0 / 3);
+    const double rays = 0.55 * std::pow(0.5 / error, 4.0 / 3);
     knobs.gather_rays = {
         .average = rays, .least = static_cast<unsigned>(std::max(16.0, rays / (error < 0.01 ? 1 : 4))), .most = 16384};
     knobs.gather_noise = 0.5 * error;
@@ -31,17 +34,37 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     return knobs;
 }
 
-Knobs tightened(const Knobs& knobs, double factor, const SolveOptions& options) {
-    Knobs out = knobs;
-    out.solve_mesh.edge *= std::sqrt(factor);
-    out.solve_mesh.grading_levels += 1;
-    out.solve_rays.average = std::min(out.solve_rays.average / factor, 1024.0);
-    out.direct_tolerance *= factor;
-    out.residual *= factor;
-    out.gather_rays.average *= std::pow(factor, -4.0 / 3);
-    out.gather_noise *= factor;
-    out.gather_tolerance *= factor;
-    apply_user_knobs(out, options);
+Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options) {
+    // The method may have half of the target. Its light is smoothed by the gather, and much finer is soon much dearer.
+    constexpr double methods_share = 0.5;
+    constexpr double least = 0.2, most = 0.9;  // of a factor: no step too large to be foreseen or too small to help
+    Tightened out{knobs};
+    double method = parts.method;
+    const double local = std::hypot(parts.noise, parts.interpolation);
+    // Where all parts are small, their sum is not: the error is one that reflects to and fro, which is the method's.
+    out.method = method > methods_share * target || std::hypot(method, local) <= target;
+    if (out.method) {
+        const double factor = std::clamp(0.8 * methods_share * target / method, least, 0.7);
+        out.knobs.solve_mesh.edge *= std::sqrt(factor);
+        out.knobs.solve_mesh.grading_levels += 1;
+        out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, 1024.0);
+        out.knobs.direct_tolerance *= factor;
+        out.knobs.residual *= factor;
+        method *= factor;
+        out.work = 1 / factor;
+    }
+    const double allowed = std::sqrt(std::max(0.25 * target * target, target * target - method * method));
+    if (local > allowed) {
+        const double factor = std::clamp(allowed / local, least, most);
+        constexpr double small = 0.5;
+        if (parts.noise > small * allowed) {
+            out.knobs.gather_noise = factor * std::min(knobs.gather_noise, parts.noise);
+            out.knobs.gather_rays.average *= std::pow(factor, -4.0 / 3);
+        }
+        if (parts.interpolation > small * allowed) out.knobs.gather_tolerance *= factor;
+        out.work = std::max(out.work, std::pow(factor, -4.0 / 3));
+    }
+    apply_user_knobs(out.knobs, options);
     return out;
 }
 

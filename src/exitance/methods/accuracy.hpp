@@ -23,7 +23,20 @@ struct Knobs {
 /// elements ~ 1/R, rays a node ~ R^(-4/3) (scrambled Sobol points), strips at concave edges until their share is R.
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options);
 
-/// Knobs that aim `factor` (below 1) times lower than these.
-Knobs tightened(const Knobs& knobs, double factor, const SolveOptions& options);
+/// What an error is made of, RMS relative to the mean reflected light: the method's elements, and of the local pass the
+/// noise of its rays and its interpolation.
+struct ErrorParts {
+    double method = 0, noise = 0, interpolation = 0;
+};
+
+/// Knobs for another attempt.
+struct Tightened {
+    Knobs knobs;
+    bool method = false;  ///< The method has to solve again; otherwise the light that it found is good enough.
+    double work = 1;      ///< About how many times the last attempt's time the next one takes.
+};
+
+/// Knobs that bring the parts together below `target`: only those parts are tightened that are too large.
+Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options);
 
 }  // namespace exitance

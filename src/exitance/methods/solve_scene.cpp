@@ -6,6 +6,7 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/methods/light_functions.hpp"
 #include "exitance/methods/memory_plan.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/reconstruct/certificate.hpp"
@@ -23,62 +24,6 @@ const MethodEntry& find_method(const SolveOptions& options) {
     const Method id = options.method == Method::automatic || counts_bounces ? Method::matrix : options.method;
     const auto table = method_table();
     return *std::find_if(table.begin(), table.end(), [&](const MethodEntry& m) { return m.id == id; });
-}
-
-/// An indirect light of nothing: every piece one element, dark.
-ElementFunction dark(const Stage& stage) {
-    ElementFunction out;
-    for (const auto& [region, patch] : stage.pieces) out.tree.add_root(region, patch);
-    out.first_value.resize(out.tree.size(), 0);
-    out.values.assign(4, {});
-    return out;
-}
-
-/// Light as a method left it on its elements: constant on every leaf.
-ElementFunction constant_on_leaves(const GlobalLight& light) {
-    ElementFunction out;
-    out.tree = light.tree;
-    out.first_value.resize(out.tree.size(), 0);
-    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
-        out.first_value[light.numbering.leaves[i]] = static_cast<std::uint32_t>(out.values.size());
-        for (int corner = 0; corner < 4; ++corner) out.add_value(light.indirect[i]);
-    }
-    return out;
-}
-
-/// What rays read in the local pass, b + c M: on every leaf the direct light that was projected there, and the indirect
-/// light that the method found, times the reflectance, and the share c of what it emits. Where the method's own
-/// elements agree with that share, E_dir + E_ind is alike all over a leaf but for (1 - c) E_dir.
-ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
-                               const Spectrum& c) {
-    ElementFunction out;
-    out.tree = light.tree;
-    out.first_value.resize(out.tree.size(), 0);
-    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
-        const ElementId e = light.numbering.leaves[i];
-        const Material& material = scene.material(out.tree.region(e));
-        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
-        const Spectrum mean = light.direct_share * light.direct[i];
-        for (std::size_t k = 0; k < 4; ++k) {
-            const Spectrum& E_dir = light.on_projection ? direct.fit[e].corners[k] : light.direct[i];
-            const Spectrum& E_ind = light.indirect_corners.empty() ? light.indirect[i] : light.indirect_corners[i][k];
-            out.add_value(material.reflectance * (E_dir - light.direct_share * E_dir + mean + E_ind) +
-                          c * material.exitance);
-        }
-    }
-    return out;
-}
-
-/// RMS over the surfaces of the standard error of rho E_ind, where a method is a random one, W/m^2.
-double rms_standard_error(const Scene& scene, const GlobalLight& light) {
-    double sum = 0, area = 0;
-    for (std::size_t i = 0; i < light.standard_error.size(); ++i) {
-        const ElementId e = light.numbering.leaves[i];
-        const Spectrum& rho = scene.material(light.tree.region(e)).reflectance;
-        sum += light.tree.area(e) * squared(rho * light.standard_error[i]) / static_cast<double>(bands);
-        area += light.tree.area(e);
-    }
-    return area > 0 ? std::sqrt(sum / area) : 0;
 }
 
 class Solver {
@@ -137,9 +82,9 @@ class Solver {
     void solve_indirect_light() {
         constexpr int most_attempts = 9;
         const std::optional<double> demand = options_.error_demand();
-        for (int attempt = 1;; ++attempt) {
+        for (int count = 1;; ++count) {
             const Stopwatch watch;
-            solve_once();
+            attempt();
             if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
             // The estimate is itself uncertain by a fifth: it has to be below the demand by as much.
             constexpr double margin = 0.82;
@@ -149,13 +94,16 @@ class Solver {
                 return;
             }
             if (statistics().stopped_by == "memory limit") return;
-            if (attempt == most_attempts) return stop_early("iterations");
-            const double factor = std::clamp(0.7 * *demand / certificate_.estimate, 0.2, 0.6);
-            // A finer attempt takes about factor^-2 as long; one that cannot end in time would only be thrown away.
-            if (stop_.seconds_left() < watch.seconds() / (factor * factor)) return stop_early("time limit");
-            progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer",
-                                       100 * certificate_.estimate, 100 * *demand));
-            knobs_ = tightened(knobs_, factor, options_);
+            if (count == most_attempts) return stop_early("iterations");
+            constexpr double aim = 0.7;
+            const Tightened finer = tightened(knobs_, error_parts(), aim * *demand, options_);
+            // One that cannot end in time would only be thrown away.
+            if (stop_.seconds_left() < watch.seconds() * finer.work) return stop_early("time limit");
+            progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}",
+                                       100 * certificate_.estimate, 100 * *demand,
+                                       finer.method ? "" : ", on the light that the method found"));
+            knobs_ = finer.knobs;
+            if (finer.method) light_.reset();
             if (options_.memory_limit_bytes) {
                 const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
                 if (!fits || !*fits) return stop_early("memory limit");
@@ -176,103 +124,121 @@ class Solver {
         statistics().seconds["mesh"] += watch.seconds();
     }
 
-    void solve_once() {
-        project_direct();
+    /// One attempt: what the last one found is kept as far as it is good enough.
+    void attempt() {
+        const bool fresh = !light_;
+        if (fresh) project_direct();
         if (stop_.requested() && certificate_.points > 0) return;
         Stopwatch watch;
-        GlobalLight light = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
+        if (fresh) {
+            light_ = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
+            record_method();
+        }
         statistics().seconds["solve"] += watch.restart();
-        LocalPassReport gathered;
-        const bool whole = !light.holds_direct && options_.bounces < 0;
-        const Spectrum share = whole ? direct_share(light) : Spectrum();
-        ElementFunction indirect = light.holds_direct ? constant_on_leaves(light) : gather(light, share, gathered);
+        const Spectrum share = fresh ? direct_share() : solution_.direct_share;
+        const ElementFunction source = gathered_light(stage_.scene, direct_, *light_, share);
+        const ElementLocator locator(source.tree, stage_.scene.regions().size());
+        const RadiosityAt b = [&](RegionId region, const Point& y) { return source.at(locator.find(region, y)); };
+        gathered_ = {};
+        ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_) : gather(b, fresh);
         statistics().seconds["reconstruct"] += watch.restart();
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
             if (certificate_.points > 0) return;
-            solution_.indirect = constant_on_leaves(light);
-            solution_.direct_in_elements = light.holds_direct;
+            solution_.indirect = constant_on_leaves(*light_);
+            solution_.direct_in_elements = light_->holds_direct;
             constexpr double roughly = 0.1;
-            certificate_ = certify_solution(light, nullptr, roughly);
-            record(light, gathered);
+            certify_solution({.error = roughly});
             return;
         }
         solution_.indirect = std::move(indirect);
         solution_.direct_share = share;
-        solution_.direct_in_elements = light.holds_direct;
+        solution_.direct_in_elements = light_->holds_direct;
         progress_.phase("certify");
-        certificate_ =
-            certify_solution(light, light.holds_direct ? nullptr : &gathered.leaves, options_.error_target());
+        if (light_->holds_direct)
+            certify_solution({.error = options_.error_target()});
+        else
+            certify_solution({.error = options_.error_target(), .leaves = &gathered_.leaves, .gathered = &b});
         statistics().seconds["certify"] += watch.restart();
-        record(light, gathered);
     }
 
-    Spectrum direct_share(const GlobalLight& light) const {
-        const ElementLocator locator(light.tree, stage_.scene.regions().size());
-        return find_direct_share(stage_, light, locator, options_.seed);
+    Spectrum direct_share() const {
+        if (light_->holds_direct || options_.bounces >= 0) return {};
+        const ElementLocator locator(light_->tree, stage_.scene.regions().size());
+        return find_direct_share(stage_, *light_, locator, options_.seed);
     }
 
-    ElementFunction gather(const GlobalLight& light, const Spectrum& share, LocalPassReport& report) {
+    ElementFunction gather(const RadiosityAt& b, bool fresh) {
         progress_.phase("gather");
-        const ElementFunction source = gathered_light(stage_.scene, direct_, light, share);
-        const ElementLocator locator(source.tree, stage_.scene.regions().size());
-        const RadiosityAt gathered = [&](RegionId region, const Point& y) {
-            return source.at(locator.find(region, y));
-        };
-        const double scale = light.mean_reflected();
-        return gather_indirect_light(stage_, gathered,
-                                     {.mesh = knobs_.gather_mesh,
-                                      .rays = knobs_.gather_rays,
-                                      .noise = knobs_.gather_noise * scale,
-                                      .tolerance = knobs_.gather_tolerance * scale,
-                                      .seed = options_.seed},
-                                     report, progress_, stop_);
+        const double scale = light_->mean_reflected();
+        if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
+        return local_pass_->gather(b, fresh,
+                                   {.rays = knobs_.gather_rays,
+                                    .noise = knobs_.gather_noise * scale,
+                                    .tolerance = knobs_.gather_tolerance * scale},
+                                   gathered_, progress_, stop_);
     }
 
-    /// `leaves`: what the local pass knows, or null; `error`: what is to be resolved.
-    Certificate certify_solution(const GlobalLight& light, const Field<ElementId, LocalPassReport::Leaf>* leaves,
-                                 double error) {
+    void certify_solution(CertificateOptions options) {
+        options.seed = options_.seed;
+        options.direct_in_elements = light_->holds_direct;
         const ElementLocator direct_locator(direct_.tree, stage_.scene.regions().size());
         const ElementLocator indirect(solution_.indirect.tree, stage_.scene.regions().size());
-        const ElementLocator coarse(light.tree, stage_.scene.regions().size());
+        const ElementLocator coarse(light_->tree, stage_.scene.regions().size());
+        const Spectrum c = solution_.direct_share, direct_weight = Spectrum(1.0) - c;
         const RadiosityAt delivered = [&](RegionId region, const Point& y) {
             // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
-            Spectrum E = options_.bounces > 0 ? light.indirect[light.numbering.number[coarse.find(region, y).element]]
-                                              : solution_.indirect.at(indirect.find(region, y));
-            const Spectrum& c = solution_.direct_share;
-            if (!light.holds_direct) E += (Spectrum(1.0) - c) * direct_.at(direct_locator.find(region, y));
+            Spectrum E = options_.bounces > 0
+                             ? light_->indirect[light_->numbering.number[coarse.find(region, y).element]]
+                             : solution_.indirect.at(indirect.find(region, y));
+            if (!light_->holds_direct) E += direct_weight * direct_.at(direct_locator.find(region, y));
             return stage_.scene.material(region).reflectance * E + c * stage_.scene.material(region).exitance;
         };
-        return certify(
-            stage_, light, solution_.indirect, delivered,
-            {.error = error, .seed = options_.seed, .direct_in_elements = light.holds_direct, .leaves = leaves});
+        certificate_ = certify(stage_, *light_, solution_.indirect, delivered, options);
+        record_certificate();
     }
 
-    void record(const GlobalLight& light, const LocalPassReport& gathered) {
+    /// What the estimate is made of, relative to the mean reflected light.
+    ErrorParts error_parts() const {
+        if (light_->holds_direct) return {.method = certificate_.estimate};
+        const double noise = gathered_.noise / certificate_.mean_reflected;
+        const double misfit = std::sqrt(std::max(0.0, certificate_.local * certificate_.local - noise * noise));
+        return {.method = certificate_.method,
+                .noise = noise,
+                .interpolation = std::max(misfit, gathered_.interpolation / certificate_.mean_reflected)};
+    }
+
+    void record_method() {
         SolveStatistics& s = statistics();
-        s.iterations += light.report.iterations;
-        s.residual = light.report.residual;
-        s.rays += light.rays + gathered.rays + certificate_.rays;
-        s.form_factors += light.form_factors;
-        s.links = light.links;
-        s.link_memory_bytes = light.link_memory_bytes;
-        s.elements = light.tree.size() + solution_.indirect.tree.size();
-        s.leaf_elements = light.numbering.leaves.size() + solution_.indirect.tree.leaves().size();
+        s.iterations += light_->report.iterations;
+        s.residual = light_->report.residual;
+        s.rays += light_->rays;
+        s.form_factors += light_->form_factors;
+        s.links = light_->links;
+        s.link_memory_bytes = light_->link_memory_bytes;
+        const double scale = light_->mean_reflected();
+        if (!light_->standard_error.empty() && scale > 0)
+            progress_.note(
+                fmt::format("standard error of the elements' indirect light {:.2f}% of the mean reflected light",
+                            100 / scale * rms_standard_error(stage_.scene, *light_)));
+    }
+
+    void record_certificate() {
+        SolveStatistics& s = statistics();
+        s.rays += gathered_.rays + certificate_.rays;
+        s.elements = light_->tree.size() + solution_.indirect.tree.size();
+        s.leaf_elements = light_->numbering.leaves.size() + solution_.indirect.tree.leaves().size();
         s.relative_error_estimate = certificate_.estimate;
         s.relative_error_bound = certificate_.bound;
         const double scale = certificate_.mean_reflected > 0 ? 100 / certificate_.mean_reflected : 0;
-        if (!light.standard_error.empty())
-            progress_.note(
-                fmt::format("standard error of the elements' indirect light {:.2f}% of the mean reflected light",
-                            scale * rms_standard_error(stage_.scene, light)));
         progress_.note(fmt::format(
             "{} elements solved on, {} gathered on; mean reflected radiosity {:.4g} W/m^2; error estimate {:.3f}%, "
-            "bound "
-            "{:.3f}%, residual {:.3f}%, error constant {:.2f}; rays' noise {:.3f}%, interpolation {:.3f}%; rays {} + "
-            "{} + {}",
-            light.numbering.leaves.size(), solution_.indirect.tree.leaves().size(), certificate_.mean_reflected,
+            "bound {:.3f}%, residual {:.3f}%, error constant {:.2f}; method {:.3f}%, rays' noise {:.3f}%, "
+            "interpolation {:.3f}%, both as measured {:.3f}%; rays {} + {} + {}",
+            light_->numbering.leaves.size(), solution_.indirect.tree.leaves().size(), certificate_.mean_reflected,
             100 * certificate_.estimate, 100 * certificate_.bound, 100 * certificate_.residual, certificate_.constant,
-            scale * gathered.noise, scale * gathered.interpolation, light.rays, gathered.rays, certificate_.rays));
+            100 * certificate_.method, scale * gathered_.noise, scale * gathered_.interpolation,
+            100 * certificate_.local, light_->rays, gathered_.rays, certificate_.rays));
     }
 
     void make_output_mesh() {
@@ -305,6 +271,9 @@ class Solver {
     Stage stage_;
     Knobs knobs_;
     DirectProjection direct_;
+    std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
+    std::optional<LocalPass> local_pass_;
+    LocalPassReport gathered_;
     Certificate certificate_;
 };
 

@@ -18,8 +18,9 @@ struct WeightedSample {
 struct Sample {
     RegionId region;
     double weight = 0;
-    Spectrum r1, r2;
-    std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
+    Spectrum r1, r2;          ///< The residual.
+    Spectrum local1, local2;  ///< Its part by the local pass, where known.
+    std::uint32_t leaf = 0;   ///< Leaf number in the coarse mesh.
     std::uint32_t rays = 0;
 };
 
@@ -87,7 +88,7 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
                                       const CertificateOptions& options) {
     const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(sample_count)));
     const auto rays_at = [&](ElementId leaf) {
-        const double known = options.leaves ? 0.25 * (*options.leaves)[leaf].rays : wanted;
+        const double known = options.leaves ? 0.05 * (*options.leaves)[leaf].rays : wanted;
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
     const std::vector<WeightedSample> places =
@@ -105,13 +106,18 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
             Spectrum delivered = indirect.at(place);
             if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
             const unsigned rays = rays_at(place.element);
-            const auto residual = [&](std::uint64_t which) {
+            Sample& sample = samples[k];
+            const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
                 const std::uint64_t key = hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
-                return rho * (gather_reflected(stage, x, n, region, rays, key, b, workspace).irradiance - delivered);
+                cast_gather(stage, x, n, region, rays, key, workspace);
+                r = rho * (read_gather(stage, b, workspace).irradiance - delivered);
+                if (options.gathered)
+                    local = rho * (read_gather(stage, *options.gathered, workspace).irradiance - delivered);
             };
-            samples[k] = {
-                region,  weight, residual(1), residual(2), light.numbering.number[coarse.find(region, x).element],
-                2 * rays};
+            measure(1, sample.r1, sample.local1);
+            measure(2, sample.r2, sample.local2);
+            sample.region = region, sample.weight = weight, sample.rays = 2 * rays;
+            sample.leaf = light.numbering.number[coarse.find(region, x).element];
         }
     });
     return samples;
@@ -156,7 +162,7 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     const std::vector<Spectrum> response = late_response(stage, light, samples, H, rho, area);
 
     std::array<double, batches> residual_squared{};
-    double error_squared = 0;
+    double error_squared = 0, local_squared = 0, method_squared = 0;
     out.points = samples.size();
     out.rays = H.rays();
     for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -164,6 +170,8 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
         const Spectrum& late = response[s.leaf];
         residual_squared[k % batches] += s.weight * batches * mean(s.r1 * s.r2);
         error_squared += s.weight * mean((s.r1 + late) * (s.r2 + late));
+        local_squared += s.weight * mean(s.local1 * s.local2);
+        method_squared += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
         out.rays += s.rays;
     }
     double mean_square = 0, spread = 0;
@@ -172,6 +180,10 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     const double upper = std::max(0.0, mean_square) + student_95 * std::sqrt(spread);
     out.constant = error_constant(H, rho, area);
     out.residual = std::sqrt(std::max(0.0, mean_square)) / out.mean_reflected;
+    if (options.gathered) {
+        out.local = std::sqrt(std::max(0.0, local_squared)) / out.mean_reflected;
+        out.method = std::sqrt(std::max(0.0, method_squared)) / out.mean_reflected;
+    }
     out.estimate = std::sqrt(std::max(0.0, error_squared)) / out.mean_reflected;
     out.bound = std::max(out.estimate, out.constant * std::sqrt(upper) / out.mean_reflected);
     return out;

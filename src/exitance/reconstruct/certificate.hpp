@@ -13,6 +13,8 @@ struct CertificateOptions {
     /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
     /// rays in proportion to those that it took. Null when there was none.
     const Field<ElementId, LocalPassReport::Leaf>* leaves = nullptr;
+    /// What the local pass gathered, where there was one: tells its error from the method's.
+    const RadiosityAt* gathered = nullptr;
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -20,6 +22,10 @@ struct Certificate {
     double estimate = 0;  ///< Relative RMS error of B, the defect propagated by a coarse solve.
     double bound = 0;     ///< The same, as an upper bound at 95% confidence.
     double residual = 0;  ///< Relative RMS of the residual r.
+    /// Parts of the residual, relative RMS, when it is known what was gathered: how far the delivered light is from the
+    /// gather of that (rays' noise and interpolation), and how far what was gathered is from what should have been (the
+    /// method's elements). r = local + method.
+    double local = 0, method = 0;
     double constant = 1;  ///< The factor from ||r|| to the bound on the error.
     double mean_reflected =
         0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2: what errors are relative to.

@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
-                          std::uint64_t key, const RadiosityAt& b, GatherWorkspace& w) {
+void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
+                 GatherWorkspace& w) {
     const Frame frame(n);
     const ScrambledSobol points(key);
     w.origins.resize(1), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
@@ -25,20 +25,30 @@ Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, R
         w.quarter[place] = static_cast<std::uint8_t>(4 * k / rays);
     }
     stage.tracer.nearest(w.origins, w.directions, own, w.hits);
+}
 
+Gathered read_gather(const Stage& stage, const RadiosityAt& b, const GatherWorkspace& w) {
+    const Point& x = w.origins[0];
+    const std::size_t rays = w.hits.size();
     std::array<Spectrum, 4> quarter{};
-    for (std::uint32_t k = 0; k < rays; ++k) {
+    for (std::size_t k = 0; k < rays; ++k) {
         const RayHit& hit = w.hits[k];
         if (hit.surface.is_none() || !hit.front) continue;
         quarter[w.quarter[k]] += b(stage.scene.surfaces()[hit.surface].region, x + hit.distance * w.directions[k]);
     }
     Gathered out;
     for (Spectrum& q : quarter) {
-        q *= 4.0 / rays;
+        q *= 4.0 / static_cast<double>(rays);
         out.irradiance += 0.25 * q;
     }
     for (const Spectrum& q : quarter) out.variance += 0.5 / 12 * ((q - out.irradiance) * (q - out.irradiance));
     return out;
+}
+
+Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
+                          std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace) {
+    cast_gather(stage, x, n, own, rays, key, workspace);
+    return read_gather(stage, b, workspace);
 }
 
 }  // namespace exitance

@@ -13,7 +13,7 @@ using RadiosityAt = std::function<Spectrum(RegionId, const Point&)>;
 
 /// Room for the rays of one gather; one a thread.
 struct GatherWorkspace {
-    std::vector<Point> origins;
+    std::vector<Point> origins;  ///< One: where all rays begin.
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
     std::vector<std::uint8_t> quarter;  ///< Of the points' order that a ray comes from.
@@ -33,5 +33,10 @@ struct Gathered {
 /// directions are scrambled Sobol points named by `key`. Unbiased; error ~ rays^-3/4.
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
                           std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace);
+
+/// Its two steps, for those who read several functions with the same rays: cast them, then read b where they hit.
+void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
+                 GatherWorkspace& workspace);
+Gathered read_gather(const Stage& stage, const RadiosityAt& b, const GatherWorkspace& workspace);
 
 }  // namespace exitance

@@ -7,137 +7,144 @@
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
-namespace {
 
-/// What one element's gathers say.
-struct Sampled {
-    std::array<Spectrum, 4> corners;
-    double noise_squared = 0;  ///< Of rho E at a node, mean over bands, (W/m^2)^2.
-    double departure = 0;      ///< |rho (E - polynomial)| at the centre, mean over bands, W/m^2.
-    unsigned rays = 0;         ///< Spent in all.
-    unsigned node_rays = 0;    ///< Of one node, in the end.
-};
+LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
+    : stage_(stage), seed_(seed), tree_(stage.make_elements(mesh)) {
+    mean_area_ = stage.area / static_cast<double>(tree_.leaves().size());
+}
 
-class LocalPass {
-  public:
-    LocalPass(const Stage& stage, const RadiosityAt& b, const LocalPassOptions& options)
-        : stage_(stage), b_(b), options_(options) {
-        out_.tree = stage.make_elements(options.mesh);
-        mean_area_ = stage.area / static_cast<double>(out_.tree.leaves().size());
+/// An even share for every element of the first mesh if the error falls with the root of the rays.
+double LocalPass::allowed_noise(ElementId e, const LocalPassDemand& demand) const {
+    return demand.noise * std::pow(mean_area_ / tree_.area(e), 0.25);
+}
+
+bool LocalPass::is_too_noisy(ElementId e, const LocalPassDemand& demand) const {
+    constexpr double tolerated = 1.5;  // the noise is itself an estimate
+    return std::sqrt(sampled_[e].noise_squared) > tolerated * allowed_noise(e, demand);
+}
+
+/// Gathers with the rays that the element's area suggests, or that it or its parent took before, and once more with as
+/// many as the noise then asks for.
+LocalPass::Sampled LocalPass::sample(ElementId e, const RadiosityAt& b, const LocalPassDemand& demand,
+                                     GatherWorkspace& workspace) const {
+    const ElementId parent = tree_.parent(e);
+    const unsigned inherited = parent.is_none() ? 0 : sampled_[parent].place_rays / 2;
+    const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays : inherited;
+    unsigned rays = std::max({4u, demand.rays.rays(tree_.area(e), mean_area_), before});
+    const double allowed = allowed_noise(e, demand);
+    const auto more = [&](const Sampled& s) {
+        const double excess = std::sqrt(s.noise_squared) / allowed;
+        const double factor = std::clamp(std::pow(excess, 4.0 / 3), 1.0, 64.0);
+        return std::min(demand.rays.most, std::bit_ceil(static_cast<unsigned>(rays * factor)));
+    };
+    unsigned spent = 0;
+    if (sampled_[e].place_rays > 0) rays = more(sampled_[e]);
+    Sampled out = sample(e, b, rays, workspace);
+    constexpr double tolerated = 1.5;
+    if (std::sqrt(out.noise_squared) > tolerated * allowed && more(out) > rays) {
+        spent = out.rays;
+        out = sample(e, b, more(out), workspace);
     }
+    out.rays += spent;
+    return out;
+}
 
-    ElementFunction run(LocalPassReport& report, Progress& progress, const StopRequest& stop) {
-        std::vector<ElementId> active = out_.tree.leaves();
-        for (int depth = 0; !active.empty(); ++depth) {
-            sampled_.resize(out_.tree.size());
-            // In slices, so that progress can be told and a request to stop is heard.
-            const std::size_t slice = std::max<std::size_t>(64, active.size() / 32 + 1);
-            for (std::size_t first = 0; first < active.size() && !stop.requested(); first += slice) {
-                parallel_ranges(std::min(slice, active.size() - first), 4, [&](std::size_t begin, std::size_t end) {
-                    GatherWorkspace workspace;
-                    for (std::size_t i = first + begin; i < first + end; ++i)
-                        sampled_[active[i]] = sample(active[i], workspace);
-                });
-                // The first round is about half of the work, every further one half of what is left.
-                const double done = static_cast<double>(first) / static_cast<double>(active.size());
-                progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
-            }
-            for (ElementId e : active) report.rays += sampled_[e].rays;
-            report.interrupted = stop.requested();
-            if (depth == options_.max_depth || report.interrupted) break;
-            active = split_where_needed(active);
+LocalPass::Sampled LocalPass::sample(ElementId e, const RadiosityAt& b, unsigned rays,
+                                     GatherWorkspace& workspace) const {
+    const Patch& patch = tree_.patch(e);
+    const RegionId region = tree_.region(e);
+    const Normal& n = stage_.scene.regions()[region].plane.n;
+    const Spectrum& rho = stage_.scene.material(region).reflectance;
+    const std::vector<WeightedPlace> places = element_rule(tree_, e, RuleOrder::fine);
+    std::vector<Spectrum> value(places.size());
+    Sampled out;
+    double noise = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, i);
+        const Gathered g = gather_reflected(stage_, patch.at(places[i].uv), n, region, rays, key, b, workspace);
+        value[i] = g.irradiance;
+        noise += places[i].weight * mean(rho * rho * g.variance);
+    }
+    const ElementFit fit(tree_, e, places, value);
+    for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = fit.corner(i);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        out.misfit_squared +=
+            places[i].weight * squared(rho * (value[i] - fit.at(places[i].uv))) / static_cast<double>(bands);
+    // Of the noise of n places, p freedoms take p / n up into the polynomial; the rest is left over.
+    const double taken = std::min(1.0, fit.freedoms() / static_cast<double>(places.size()));
+    out.noise_squared = taken * noise;
+    out.noise_in_misfit = (1 - taken) * noise;
+    out.place_rays = rays;
+    out.rays = rays * static_cast<unsigned>(places.size());
+    return out;
+}
+
+/// Cuts the elements whose error has too large a share in the whole; returns the new leaves.
+std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId>& candidates,
+                                                     const LocalPassDemand& demand) {
+    std::vector<ElementId> fresh;
+    for (ElementId e : candidates) {
+        const Sampled& s = sampled_[e];
+        // An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Five freedoms
+        // of noise alone leave over 2.3 times what they do on average once in twenty times.
+        const double share = demand.tolerance * demand.tolerance * mean_area_ / tree_.area(e);
+        if (s.misfit_squared <= share + 2.3 * s.noise_in_misfit) continue;
+        for (ElementId child : refine_element(tree_, e)) fresh.push_back(child);
+    }
+    return fresh;
+}
+
+ElementFunction LocalPass::finished(LocalPassReport& report) const {
+    ElementFunction out;
+    out.tree = tree_;
+    out.first_value.resize(tree_.size());
+    double noise = 0, interpolation = 0;
+    report.leaves = Field<ElementId, LocalPassReport::Leaf>(tree_.size());
+    for (ElementId e : tree_.leaves()) {
+        const Sampled& s = sampled_[e];
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        for (int i = 0; i < tree_.patch(e).corner_count(); ++i) out.add_value(s.corners[static_cast<std::size_t>(i)]);
+        report.leaves[e] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
+        noise += tree_.area(e) * s.noise_squared;
+        interpolation += tree_.area(e) * (s.misfit_squared - s.noise_in_misfit);
+    }
+    report.noise = std::sqrt(noise / stage_.area);
+    report.interpolation = std::sqrt(std::max(0.0, interpolation) / stage_.area);
+    return out;
+}
+
+ElementFunction LocalPass::gather(const RadiosityAt& b, bool fresh, const LocalPassDemand& demand,
+                                  LocalPassReport& report, Progress& progress, const StopRequest& stop) {
+    std::vector<ElementId> active = tree_.leaves();
+    const bool known = !fresh && sampled_.size() == tree_.size();
+    std::vector<ElementId> kept;
+    if (known) {
+        const auto good = [&](ElementId e) { return sampled_[e].place_rays > 0 && !is_too_noisy(e, demand); };
+        std::copy_if(active.begin(), active.end(), std::back_inserter(kept), good);
+        std::erase_if(active, good);
+        // Of what is quiet enough and to be cut, the pieces are all that has to be gathered.
+        for (ElementId child : split_where_needed(kept, demand)) active.push_back(child);
+    }
+    for (int depth = 0; !active.empty(); ++depth) {
+        sampled_.resize(tree_.size());
+        // In slices, so that progress can be told and a request to stop is heard.
+        const std::size_t slice = std::max<std::size_t>(64, active.size() / 32 + 1);
+        for (std::size_t first = 0; first < active.size() && !stop.requested(); first += slice) {
+            parallel_ranges(std::min(slice, active.size() - first), 1, [&](std::size_t begin, std::size_t end) {
+                GatherWorkspace workspace;
+                for (std::size_t i = first + begin; i < first + end; ++i)
+                    sampled_[active[i]] = sample(active[i], b, demand, workspace);
+            });
+            // The first round is about half of the work, every further one half of what is left.
+            const double done = static_cast<double>(first) / static_cast<double>(active.size());
+            progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
         }
-        finish(report);
-        return std::move(out_);
+        for (ElementId e : active) report.rays += sampled_[e].rays;
+        report.interrupted = stop.requested();
+        if (depth == demand.max_depth || report.interrupted) break;
+        active = split_where_needed(active, demand);
     }
-
-  private:
-    /// Gathers with the rays that the element's area suggests, and once more with as many as the noise then asks for.
-    Sampled sample(ElementId e, GatherWorkspace& workspace) const {
-        const unsigned rays = std::max(4u, options_.rays.rays(out_.tree.area(e), mean_area_));
-        Sampled out = sample(e, rays, workspace);
-        const double allowed = options_.noise * std::pow(mean_area_ / out_.tree.area(e), 0.25);
-        const double excess = std::sqrt(out.noise_squared) / allowed;
-        if (!(excess > 1.5)) return out;
-        const double factor = std::min(64.0, std::pow(excess, 4.0 / 3));
-        const unsigned spent = out.rays;
-        out = sample(e, std::min(options_.rays.most, std::bit_ceil(static_cast<unsigned>(rays * factor))), workspace);
-        out.rays += spent;
-        return out;
-    }
-
-    Sampled sample(ElementId e, unsigned rays, GatherWorkspace& workspace) const {
-        const Patch& patch = out_.tree.patch(e);
-        const RegionId region = out_.tree.region(e);
-        const Normal& n = stage_.scene.regions()[region].plane.n;
-        const Spectrum& rho = stage_.scene.material(region).reflectance;
-        const auto gather = [&](Vec2 uv, std::uint64_t node) {
-            const std::uint64_t key = hash(options_.seed, static_cast<std::uint64_t>(Stream::gather), e.value, node);
-            return gather_reflected(stage_, patch.at(uv), n, region, rays, key, b_, workspace);
-        };
-        const std::vector<WeightedPlace> nodes = element_rule(out_.tree, e, RuleOrder::nodes);
-        std::vector<Spectrum> value(nodes.size());
-        Sampled out;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            const Gathered g = gather(nodes[i].uv, i);
-            value[i] = g.irradiance;
-            out.noise_squared += nodes[i].weight * mean(rho * rho * g.variance);
-        }
-        const ElementFit fit(out_.tree, e, nodes, value);
-        for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = fit.corner(i);
-        const Vec2 centre = out_.tree.centre(e);
-        const Spectrum departure = rho * (gather(centre, nodes.size()).irradiance - fit.at(centre));
-        out.departure = std::sqrt(squared(departure) / static_cast<double>(bands));
-        out.node_rays = rays;
-        out.rays = rays * static_cast<unsigned>(nodes.size() + 1);
-        return out;
-    }
-
-    /// Cuts the elements whose error has too large a share in the whole; returns the new leaves.
-    std::vector<ElementId> split_where_needed(const std::vector<ElementId>& active) {
-        std::vector<ElementId> fresh;
-        for (ElementId e : active) {
-            const Sampled& s = sampled_[e];
-            // An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2.
-            const double share = options_.tolerance * std::sqrt(mean_area_ / out_.tree.area(e));
-            const double doubt = 2 * std::sqrt(1.25 * s.noise_squared);
-            if (s.departure <= share + doubt) continue;
-            for (ElementId child : refine_element(out_.tree, e)) fresh.push_back(child);
-        }
-        return fresh;
-    }
-
-    void finish(LocalPassReport& report) {
-        out_.first_value.resize(out_.tree.size());
-        double noise = 0, interpolation = 0;
-        report.leaves.resize(out_.tree.size());
-        for (ElementId e : out_.tree.leaves()) {
-            const Sampled& s = sampled_[e];
-            out_.first_value[e] = static_cast<std::uint32_t>(out_.values.size());
-            for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i) {
-                out_.add_value(s.corners[static_cast<std::size_t>(i)]);
-            }
-            report.leaves[e] = {std::sqrt(s.departure * s.departure + s.noise_squared), s.node_rays};
-            noise += out_.tree.area(e) * s.noise_squared;
-            interpolation += out_.tree.area(e) * std::max(0.0, s.departure * s.departure - 1.25 * s.noise_squared);
-        }
-        report.noise = std::sqrt(noise / stage_.area);
-        report.interpolation = std::sqrt(interpolation / stage_.area);
-    }
-
-    const Stage& stage_;
-    const RadiosityAt& b_;
-    const LocalPassOptions& options_;
-    ElementFunction out_;
-    Field<ElementId, Sampled> sampled_;
-    double mean_area_ = 0;
-};
-
-}  // namespace
-
-ElementFunction gather_indirect_light(const Stage& stage, const RadiosityAt& b, const LocalPassOptions& options,
-                                      LocalPassReport& report, Progress& progress, const StopRequest& stop) {
-    return LocalPass(stage, b, options).run(report, progress, stop);
+    return finished(report);
 }
 
 }  // namespace exitance

@@ -8,13 +8,11 @@
 namespace exitance {
 
 /// How finely indirect light is gathered.
-struct LocalPassOptions {
-    MeshSize mesh;         ///< Of the elements to begin with.
+struct LocalPassDemand {
     RayBudget rays;        ///< Of one node, to begin with; more where they turn out too noisy.
     double noise = 0;      ///< RMS error of rho E_ind that the rays may leave, W/m^2.
     double tolerance = 0;  ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
-    int max_depth = 6;     ///< Cuts below the first mesh.
-    std::uint64_t seed = 1;
+    int max_depth = 8;     ///< Rounds of cutting.
 };
 
 struct LocalPassReport {
@@ -24,18 +22,53 @@ struct LocalPassReport {
     /// What is known of every leaf; of inner elements: unused.
     struct Leaf {
         double expected_error = 0;  ///< Of rho E_ind, W/m^2.
-        unsigned rays = 0;          ///< That a node took to bring its noise down to what is allowed.
+        unsigned rays = 0;          ///< That the element took to bring its noise down to what is allowed.
     };
     Field<ElementId, Leaf> leaves;
     bool interrupted = false;
 };
 
-/// Indirect irradiance everywhere, by one gather over the light that a method found: E_ind = H b at the Gauss nodes of
-/// an adaptive mesh (2 x 2 on parallelograms, 3 on triangles), a polynomial through them on each element. The gather
-/// smooths what is rough in b and doubles its order (the iterated or Sloan solution) [Lischinski93], [Atkinson97].
-/// An element is cut where the gather at its centre departs from its polynomial by more than its share of the
-/// tolerance and than the rays' own noise. O(elements x rays).
-ElementFunction gather_indirect_light(const Stage& stage, const RadiosityAt& b, const LocalPassOptions& options,
-                                      LocalPassReport& report, Progress& progress, const StopRequest& stop);
+/// Indirect irradiance everywhere, by one gather over the light that a method found: E_ind = H b at the places of a
+/// quadrature rule on the elements of an adaptive mesh (3 x 3 on parallelograms, 7 on triangles), and the polynomial
+/// nearest to them in the mean square. The gather smooths what is rough in b and doubles its order (the iterated or
+/// Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber the polynomial's freedoms: what they leave over,
+/// less the rays' noise, is the error of interpolation, and elements are cut where that has more than its share of the
+/// tolerance. O(elements x rays).
+///
+/// Mesh and gathers stay: called again with a stricter demand, only what falls short of it is done again; with other
+/// light, everything is gathered anew, on the mesh found so far.
+class LocalPass {
+  public:
+    /// `mesh`: of the elements to begin with. The stage must outlive it.
+    LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed);
+
+    /// Gathers b. `fresh`: b is not what was gathered last. `report.rays` counts those of this call.
+    ElementFunction gather(const RadiosityAt& b, bool fresh, const LocalPassDemand& demand, LocalPassReport& report,
+                           Progress& progress, const StopRequest& stop);
+
+  private:
+    /// What one element's gathers say.
+    struct Sampled {
+        std::array<Spectrum, 4> corners;
+        double noise_squared = 0;    ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
+        double misfit_squared = 0;   ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
+        double noise_in_misfit = 0;  ///< How much of that the rays' noise makes, on average.
+        unsigned rays = 0;           ///< Spent in all.
+        unsigned place_rays = 0;     ///< Of one place, in the end; 0: not gathered yet.
+    };
+
+    Sampled sample(ElementId e, const RadiosityAt& b, const LocalPassDemand& demand, GatherWorkspace& workspace) const;
+    Sampled sample(ElementId e, const RadiosityAt& b, unsigned rays, GatherWorkspace& workspace) const;
+    double allowed_noise(ElementId e, const LocalPassDemand& demand) const;
+    bool is_too_noisy(ElementId e, const LocalPassDemand& demand) const;
+    std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);
+    ElementFunction finished(LocalPassReport& report) const;
+
+    const Stage& stage_;
+    std::uint64_t seed_;
+    ElementTree tree_;
+    Field<ElementId, Sampled> sampled_;
+    double mean_area_ = 0;
+};
 
 }  // namespace exitance

@@ -1,0 +1,55 @@
+#include "exitance/methods/light_functions.hpp"
+
+namespace exitance {
+
+ElementFunction dark(const Stage& stage) {
+    ElementFunction out;
+    for (const auto& [region, patch] : stage.pieces) out.tree.add_root(region, patch);
+    out.first_value.resize(out.tree.size(), 0);
+    out.values.assign(4, {});
+    return out;
+}
+
+ElementFunction constant_on_leaves(const GlobalLight& light) {
+    ElementFunction out;
+    out.tree = light.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
+        out.first_value[light.numbering.leaves[i]] = static_cast<std::uint32_t>(out.values.size());
+        for (int corner = 0; corner < 4; ++corner) out.add_value(light.indirect[i]);
+    }
+    return out;
+}
+
+ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+                               const Spectrum& c) {
+    ElementFunction out;
+    out.tree = light.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const Material& material = scene.material(out.tree.region(e));
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        const Spectrum mean = light.direct_share * light.direct[i];
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Spectrum& E_dir = light.on_projection ? direct.fit[e].corners[k] : light.direct[i];
+            const Spectrum& E_ind = light.indirect_corners.empty() ? light.indirect[i] : light.indirect_corners[i][k];
+            out.add_value(material.reflectance * (E_dir - light.direct_share * E_dir + mean + E_ind) +
+                          c * material.exitance);
+        }
+    }
+    return out;
+}
+
+double rms_standard_error(const Scene& scene, const GlobalLight& light) {
+    double sum = 0, area = 0;
+    for (std::size_t i = 0; i < light.standard_error.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const Spectrum& rho = scene.material(light.tree.region(e)).reflectance;
+        sum += light.tree.area(e) * squared(rho * light.standard_error[i]) / static_cast<double>(bands);
+        area += light.tree.area(e);
+    }
+    return area > 0 ? std::sqrt(sum / area) : 0;
+}
+
+}  // namespace exitance

@@ -1,0 +1,93 @@
+#include "exitance/reconstruct/local_pass.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/core/random.hpp"
+#include "exitance/transport/form_factor.hpp"
+#include "support/built_scene.hpp"
+#include "support/test_scenes.hpp"
+
+namespace exitance {
+namespace {
+
+/// A box of which one face reflects light, 1 W/m^2, and nothing else does: what arrives is a form factor.
+class OneBrightFace : public testing::Test {
+  protected:
+    Scene scene = test::make(test::closed_box({}, {2, 1.5, 1}));
+    Stage stage{scene};
+    RegionId bright = scene.surfaces()[SurfaceId(5)].region;
+    RadiosityAt b = [this](RegionId region, const Point&) { return Spectrum(region == bright ? 1.0 : 0.0); };
+    LocalPass pass{stage, {.edge = 0.8, .grading_levels = 0}, 1};
+    static constexpr LocalPassDemand coarse = {.rays = {.average = 32}, .noise = 0.002, .tolerance = 0.002},
+                                     fine = {.rays = {.average = 64}, .noise = 0.0007, .tolerance = 0.0007};
+
+    ElementFunction gather(const LocalPassDemand& demand, LocalPassReport& report, bool fresh = false) {
+        Progress progress;
+        const StopRequest stop;
+        report = {};
+        return pass.gather(b, fresh, demand, report, progress, stop);
+    }
+
+    /// RMS over all surfaces of rho (E - exact), rho = 0.5.
+    double error(const ElementFunction& E) const {
+        double sum = 0;
+        for (ElementId e : E.tree.leaves()) {
+            RandomStream random(1, Stream::mesh, e.value);
+            const RegionId region = E.tree.region(e);
+            for (int k = 0; k < 16; ++k) {
+                const double s = random.uniform(), t = random.uniform();
+                const Vec2 uv = E.tree.uniform(e, s, t);
+                const double exact = region == bright
+                                         ? 0
+                                         : point_to_polygon(E.tree.patch(e).at(uv), scene.regions()[region].plane.n,
+                                                            scene.outline(SurfaceId(5)));
+                sum += E.tree.area(e) / 16 * std::pow(0.5 * (E.at({e, uv})[0] - exact), 2);
+            }
+        }
+        return std::sqrt(sum / stage.area);
+    }
+};
+
+TEST_F(OneBrightFace, IsGatheredWithTheErrorThatTheReportTells) {
+    for (const LocalPassDemand& demand : {coarse, fine}) {
+        LocalPassReport report;
+        const double truth = error(gather(demand, report));
+        const double told = std::hypot(report.noise, report.interpolation);
+        // Noise is known from four quarters of the rays, interpolation from nine places: both to a third or so.
+        EXPECT_LT(truth, 1.5 * told);
+        EXPECT_GT(truth, 0.6 * told);
+        EXPECT_LT(truth, 1.5 * std::hypot(demand.noise, demand.tolerance));
+    }
+}
+
+TEST_F(OneBrightFace, IsNotGatheredAgainWhereItIsGoodEnough) {
+    LocalPassReport first, same, finer, anew;
+    const ElementFunction once = gather(coarse, first);
+    const ElementFunction twice = gather(coarse, same);
+    EXPECT_EQ(same.rays, 0u);
+    EXPECT_EQ(once.values, twice.values);
+    const ElementFunction better = gather(fine, finer);
+    EXPECT_LT(error(better), 0.7 * error(once));
+    // Other light: everything is gathered, on the mesh found so far, with the rays that it took.
+    gather(fine, anew, true);
+    EXPECT_GT(anew.rays, finer.rays / 2);
+    EXPECT_LT(anew.rays, 2 * (first.rays + finer.rays));
+}
+
+TEST(LocalPass, GathersConstantLightExactly) {
+    const Scene scene = box_scene(2, 1, 1.5, 0.5, 0);
+    const Stage stage(scene);
+    LocalPass pass(stage, {.edge = 0.7, .grading_levels = 1}, 1);
+    Progress progress;
+    const StopRequest stop;
+    LocalPassReport report;
+    const ElementFunction E =
+        pass.gather([](RegionId, const Point&) { return Spectrum(2.0); }, true,
+                    {.rays = {.average = 16}, .noise = 1e-3, .tolerance = 1e-3}, report, progress, stop);
+    for (const auto& value : E.values) EXPECT_NEAR(value[0], 2, 1e-6);  // single precision
+    EXPECT_EQ(report.noise, 0);
+    EXPECT_NEAR(report.interpolation, 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace exitance
