@@ -30,6 +30,8 @@ const std::vector<Door> doors{
     {"oneTBB", std::regex("(tbb|oneapi)/.*"), {"core/parallel.cpp"}},
     {"HDF5", std::regex("hdf5.*|H5.*"), {"io/hdf5_file.cpp"}},
     {"libpng", std::regex("png\\.h"), {"io/png.cpp"}},
+    {"libjpeg", std::regex("jpeglib\\.h"), {"io/jpeg_mean.cpp"}},
+    {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/gltf.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/arguments.cpp"}},
     {"nlohmann-json", std::regex("nlohmann/.*"), {"cli/json_output.cpp", "io/json.cpp"}},
 };

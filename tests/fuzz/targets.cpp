@@ -1,4 +1,5 @@
 #include <array>
+#include <cstring>
 
 #include "exitance/io/mtl.hpp"
 #include "exitance/io/scene_file.hpp"
@@ -25,12 +26,43 @@ void read_mtl_bytes(const std::string& bytes) {
     parse_mtl(bytes, "m.mtl", materials, findings);
 }
 
+std::vector<std::string> glb_corpus() {
+    return corpus_folder("glb");
+}
+void read_glb_bytes(const std::string& bytes) {
+    (void)load_scene(file_with(bytes, "s.glb"));
+}
+/// The lengths of the container and of its two chunks.
+void mend_glb(std::string& bytes) {
+    constexpr std::size_t header = 20;
+    if (bytes.size() < header + 8) return;
+    const auto put = [&](std::size_t at, std::size_t value) {
+        const auto number = static_cast<std::uint32_t>(value);
+        std::memcpy(bytes.data() + at, &number, 4);
+    };
+    std::size_t binary = bytes.find(std::string("BIN\0", 4), header);
+    if (binary == bytes.npos || binary < header + 4) return;
+    binary -= 4;
+    bytes.insert(binary, (4 - (binary - header) % 4) % 4, ' ');
+    binary += (4 - (binary - header) % 4) % 4;
+    put(8, bytes.size()), put(12, binary - header), put(binary, bytes.size() - binary - 8);
+}
+
+std::vector<std::string> gltf_corpus() {
+    return corpus_folder("gltf");
+}
+void read_gltf_bytes(const std::string& bytes) {
+    (void)load_scene(file_with(bytes, "s.gltf"));
+}
+
 }  // namespace
 
 std::span<const Target> targets() {
     static constexpr std::array all = {
         Target{"obj", obj_corpus, read_obj_bytes},
         Target{"mtl", mtl_corpus, read_mtl_bytes},
+        Target{"glb", glb_corpus, read_glb_bytes, mend_glb},
+        Target{"gltf", gltf_corpus, read_gltf_bytes},
     };
     return all;
 }

@@ -172,7 +172,7 @@ void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
 
 void declare(CLI::App& app, SolveArguments& arguments) {
     SolveOptions& o = arguments.options;
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb)")->required();
     app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
     add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
     add_choice(app, "--basis", basis_names, o.basis, "Of method matrix");
@@ -269,7 +269,7 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 }
 
 void declare(CLI::App& app, CheckArguments& arguments) {
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb)")->required();
     declare_json(app, arguments);
 }
 
@@ -280,7 +280,7 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
 }
 
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl)")->required();
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb)")->required();
     app.add_option("-o,--output", arguments.output, "Matrix to write: .csv, or .vf as View3D does")
         ->type_name("FILE")
         ->required();

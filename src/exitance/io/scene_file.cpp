@@ -1,7 +1,9 @@
 #include "exitance/io/scene_file.hpp"
 
 #include <filesystem>
+#include <fstream>
 
+#include "exitance/io/gltf.hpp"
 #include "exitance/io/obj.hpp"
 #include "exitance/io/whole_file.hpp"
 #include "exitance/scene/findings.hpp"
@@ -30,14 +32,24 @@ CheckedScene checked(ReadScene read) {
     return out;
 }
 
+/// For files under other names: the container's first bytes.
+bool looks_like_gltf(const std::string& path) {
+    char magic[4] = {};
+    std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
+    return std::string_view(magic, sizeof magic) == "glTF";
+}
+
 }  // namespace
 
 CheckedScene load_scene(const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
         return refused(ErrorCode::cannot_read, path, "there is no such file", "");
-    if (ending(path) == ".obj") return checked(read_obj(path));
-    return refused(ErrorCode::bad_input, path, "this kind of scene file is not known", "known endings: .obj");
+    const std::string end = ending(path);
+    if (end == ".obj") return checked(read_obj(path));
+    if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return checked(read_gltf(path));
+    return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
+                   "known endings: .obj, .gltf, .glb");
 }
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/geometry/bvh.hpp"
 #include "exitance/geometry/polygon.hpp"
 
 namespace exitance {
@@ -27,21 +28,18 @@ struct FlatBox {
     }
 };
 
-/// Calls meet(i, j), i < j, for every two boxes that overlap by more than `tolerance` both ways. A sweep along x:
-/// O(n log n) and what is side by side.
+/// Calls meet(i, j), i < j, for every two boxes that overlap by more than `tolerance` both ways, in a fixed order.
+/// O(n log n) and the pairs that touch.
 template <class Meet>
 void each_overlap(std::span<const FlatBox> boxes, double tolerance, const Meet& meet) {
-    std::vector<std::uint32_t> order(boxes.size()), open;
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return boxes[a].lo.x != boxes[b].lo.x ? boxes[a].lo.x < boxes[b].lo.x : a < b;
-    });
-    for (std::uint32_t i : order) {
-        std::erase_if(open, [&](std::uint32_t o) { return boxes[o].hi.x <= boxes[i].lo.x; });
-        for (std::uint32_t o : open)
-            if (boxes[o].overlaps(boxes[i], tolerance)) meet(std::min(o, i), std::max(o, i));
-        open.push_back(i);
-    }
+    std::vector<Box> solid(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        solid[i].add(Point{boxes[i].lo.x, boxes[i].lo.y, 0}), solid[i].add(Point{boxes[i].hi.x, boxes[i].hi.y, 0});
+    const Bvh tree(solid);
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        tree.visit_box(solid[i], [&](std::uint32_t j) {
+            if (i < j && boxes[i].overlaps(boxes[j], tolerance)) meet(i, j);
+        });
 }
 
 }  // namespace exitance

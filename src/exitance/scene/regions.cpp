@@ -78,6 +78,7 @@ class Joiner {
     void split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length);
     std::vector<BorderEdge> border(std::span<const std::uint32_t> set) const;
     bool is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector) const;
+    bool is_one_convex_loop(const std::vector<std::vector<std::uint32_t>>& loops, const Vec3& area_vector) const;
     std::vector<std::uint32_t> covering_faces(std::span<const std::uint32_t> set, const Normal& n) const;
 
     const FaceMesh& mesh_;
@@ -266,6 +267,15 @@ std::vector<std::uint32_t> Joiner::covering_faces(std::span<const std::uint32_t>
     return out;
 }
 
+/// How often a union of faces covers a point is how often its border winds around it. Hence faces whose border is one
+/// convex loop cover nothing twice, and need not be compared with each other.
+bool Joiner::is_one_convex_loop(const std::vector<std::vector<std::uint32_t>>& loops, const Vec3& area_vector) const {
+    if (loops.size() != 1) return false;
+    std::vector<Point> corners;
+    for (std::uint32_t c : loops[0]) corners.push_back(point(c));
+    return is_convex(corners, normalized(area_vector));
+}
+
 void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& covering,
                      std::vector<std::uint32_t>& failed) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // set, face
@@ -279,10 +289,14 @@ void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& 
             area_vector += mesh_.area_vector[faces_[order[j].second]];
         }
         std::vector<std::uint32_t> above;
-        bool proper = is_flat(set, area_vector);
-        if (proper && set.size() > 1) above = covering_faces(set, normalized(area_vector)), proper = above.empty();
         JoinedFaces joined;
-        if (proper) joined.loops = border_loops(mesh_.points, border(set), area_vector, tol_.place);
+        if (is_flat(set, area_vector)) {
+            joined.loops = border_loops(mesh_.points, border(set), area_vector, tol_.place);
+            if (set.size() > 1 && !is_one_convex_loop(joined.loops, area_vector)) {
+                above = covering_faces(set, normalized(area_vector));
+                if (!above.empty()) joined.loops.clear();
+            }
+        }
         const bool done = !joined.loops.empty();
         for (std::uint32_t f : set) {
             const bool covers = std::binary_search(above.begin(), above.end(), f);

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "exitance/core/result.hpp"
+
+namespace exitance {
+
+/// Mean red, green and blue of a picture in a file's bytes (PNG or JPEG; grey counts as three equal channels, opacity
+/// does not count), each in [0, 1] after `decode` has been applied to its 256 values. Row by row, so that a picture of
+/// any size needs little memory; pictures of more than 2^26 pixels (8192 x 8192) are refused, as are JPEGs in several
+/// passes of more than ten times the file's size and 64 MiB.
+struct ByteCurve {
+    std::array<double, 256> value;
+};
+Result<std::array<double, 3>> mean_colour(std::span<const std::uint8_t> file, const ByteCurve& decode);
+
+/// The same for either format by itself.
+Result<std::array<double, 3>> mean_of_png(std::span<const std::uint8_t> file, const ByteCurve& decode);
+Result<std::array<double, 3>> mean_of_jpeg(std::span<const std::uint8_t> file, const ByteCurve& decode);
+
+/// sRGB's curve, and the straight one.
+const ByteCurve& srgb_curve();
+const ByteCurve& linear_curve();
+
+/// The mean of rows of pixels, three bytes each.
+class MeanOfRows {
+  public:
+    explicit MeanOfRows(const ByteCurve& decode) : decode_(&decode) {}
+    void add(const std::uint8_t* rgb, std::size_t pixels) {
+        std::array<double, 3> sum{};
+        for (std::size_t i = 0; i < pixels; ++i)
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += decode_->value[rgb[3 * i + c]];
+        for (std::size_t c = 0; c < 3; ++c) sum_[c] += sum[c];
+        count_ += pixels;
+    }
+    std::array<double, 3> mean() const {
+        const double n = count_ > 0 ? static_cast<double>(count_) : 1;
+        return {sum_[0] / n, sum_[1] / n, sum_[2] / n};
+    }
+
+  private:
+    const ByteCurve* decode_;
+    std::array<double, 3> sum_{};
+    std::size_t count_ = 0;
+};
+
+/// More pixels than this are not read: a small file can claim any number.
+inline constexpr std::uint64_t most_texture_pixels = std::uint64_t(1) << 26;
+
+}  // namespace exitance
