@@ -10,5 +10,5 @@ endfunction()
 read_version(cgal_version CGAL/version.h "#define CGAL_VERSION ([0-9.]+)")
 
 set(EXITANCE_LIBRARIES "Embree ${embree_VERSION}, oneTBB ${TBB_VERSION}, CGAL ${cgal_version}, Eigen ${Eigen3_VERSION}")
-string(APPEND EXITANCE_LIBRARIES ", HDF5 ${HDF5_VERSION}, libpng ${PNG_VERSION_STRING}, fmt ${fmt_VERSION}")
+string(APPEND EXITANCE_LIBRARIES ", HDF5 ${HDF5_VERSION}, libpng ${PNG_VERSION_STRING}, OpenEXR ${OpenEXR_VERSION}, fmt ${fmt_VERSION}")
 string(APPEND EXITANCE_LIBRARIES ", CLI11 ${CLI11_VERSION}, nlohmann-json ${nlohmann_json_VERSION}")

@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
     g++ cmake ninja-build ccache                                             # to build
-    libembree-dev libtbb-dev libcgal-dev libeigen3-dev libhdf5-dev libpng-dev  # the library
+    libembree-dev libtbb-dev libcgal-dev libeigen3-dev libhdf5-dev libpng-dev libopenexr-dev  # the library
     libtinygltf-dev libjpeg-dev                                              # scenes as glTF, and their textures
     libfmt-dev libcli11-dev nlohmann-json3-dev                               # the program
     libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers

@@ -8,8 +8,8 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5", picture = folder / "room.png";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
-    Finished run = run_program({"render", solution, "-o", picture, "--size", "40x25", "--samples", "1", "--exposure",
-                                "-1", "--mesh"});
+    Finished run = run_program(
+        {"render", solution, "-o", picture, "--size", "40x25", "--samples", "1", "--exposure", "-1", "--mesh"});
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(read_text(picture).starts_with("\x89PNG"));
     EXPECT_NE(read_text(picture).find("-1 stops"), std::string::npos);
@@ -17,13 +17,35 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
                        "--false-colour", "illuminance"});
     EXPECT_EQ(run.status, 0) << run.err;
 
-    run = run_program({"render", solution, "-o", folder / "room.exr"});
+    run = run_program({"render", solution, "-o", folder / "room.jpg"});
     EXPECT_EQ(run.status, 2);
-    EXPECT_NE(run.err.find(".exr"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(".jpg"), std::string::npos) << run.err;
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "room.exr", "--isolux"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--gather", "5"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1,1 2,2,2 175"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1 2,2"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--size", "0x25"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--samples", "100000"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", folder / "absent/room.png", "--size", "4x4"}).status, 5);
+}
+
+TEST(ProgramRender, KnowsProjectionsAndWritesLinearPictures) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    for (const char* projection : {"orthographic", "fisheye", "panorama"}) {
+        const std::string picture = folder / std::string(projection) + ".png";
+        const Finished run = run_program({"render", solution, "-o", picture, "--size", "32x16", "--projection",
+                                          projection, "--tone-map", "linear", "--exposure", "auto", "--isolux"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_TRUE(read_text(picture).starts_with("\x89PNG"));
+    }
+    const std::string exr = folder / "room.exr", hdr = folder / "room.hdr";
+    EXPECT_EQ(run_program({"render", solution, "-o", exr, "--size", "32x16", "--gather", "4"}).status, 0);
+    EXPECT_NE(read_text(exr).find("W/(m^2 sr)"), std::string::npos);
+    EXPECT_EQ(run_program({"render", solution, "-o", hdr, "--size", "32x16"}).status, 0);
+    EXPECT_TRUE(read_text(hdr).starts_with("#?RADIANCE\n"));
+    EXPECT_NE(read_text(hdr).find("-Y 16 +X 32\n"), std::string::npos);
 }
 
 }  // namespace exitance::test

@@ -108,17 +108,19 @@ std::vector<double> read_numbers(const std::string& option, std::string words) {
     return numbers;
 }
 
-/// "ex,ey,ez tx,ty,tz fov": metres and degrees; the last may be left out.
-Camera read_camera(const std::string& words) {
+/// "auto", or "ex,ey,ez tx,ty,tz fov": metres and degrees; the last may be left out.
+void read_camera(const std::string& words, RenderArguments& arguments) {
+    if (words == "auto") {
+        arguments.camera.reset(), arguments.fov.reset();
+        return;
+    }
     const std::vector<double> n = read_numbers("--camera", words);
     if (n.size() != 6 && n.size() != 7)
         throw CLI::ValidationError("--camera", fmt::format("'{}' is not 'ex,ey,ez tx,ty,tz fov'", words));
-    Camera camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-    if (n.size() == 7) camera.fov = n[6];
+    const Camera camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (n.size() == 7) arguments.fov = n[6];
     if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "looks at where it stands");
-    if (!(camera.fov >= 1 && camera.fov <= 170))
-        throw CLI::ValidationError("--camera", fmt::format("angle {} is not from 1 to 170 degrees", camera.fov));
-    return camera;
+    arguments.camera = camera;
 }
 
 /// "640x400"
@@ -139,6 +141,18 @@ constexpr std::array<std::pair<Quantity, std::string_view>, 4> quantity_names{{
     {Quantity::irradiance, "irradiance"},
     {Quantity::luminance, "luminance"},
     {Quantity::illuminance, "illuminance"},
+}};
+
+constexpr std::array<std::pair<Projection, std::string_view>, 4> projection_names{{
+    {Projection::perspective, "perspective"},
+    {Projection::orthographic, "orthographic"},
+    {Projection::fisheye, "fisheye"},
+    {Projection::panorama, "panorama"},
+}};
+
+constexpr std::array<std::pair<ToneCurve, std::string_view>, 2> tone_names{{
+    {ToneCurve::filmic, "filmic"},
+    {ToneCurve::linear, "linear"},
 }};
 
 constexpr std::array<std::pair<ProgressStyle, std::string_view>, 5> progress_names{{
@@ -244,27 +258,38 @@ void declare(CLI::App& app, ExportArguments& arguments) {
 
 void declare(CLI::App& app, RenderArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output, "Picture to write (.png)")->type_name("FILE")->required();
+    app.add_option("-o,--output", arguments.output, "Picture to write: .png, or linear radiance as .exr or .hdr")
+        ->type_name("FILE")
+        ->required();
     app.add_option_function<std::string>(
-           "--camera", [&arguments](const std::string& w) { arguments.camera = read_camera(w); },
-           "'ex,ey,ez tx,ty,tz fov': eye, target in metres, horizontal angle in degrees; default: one that shows much")
+           "--camera", [&arguments](const std::string& w) { read_camera(w, arguments); },
+           "auto (default): one that shows much; or 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal "
+           "angle in degrees (orthographic: width in metres)")
         ->type_name("CAMERA");
+    add_choice(app, "--projection", projection_names, arguments.projection,
+               "Default perspective; fisheye: equidistant; panorama: 360 x 180 degrees");
     app.add_option_function<std::string>(
            "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 640x400")
         ->type_name("WxH");
+    add_count(app, "--samples", arguments.samples, 1, "Rays a pixel, at most 1024; default 16")
+        ->check(CLI::Range(1, 1024));
+    add_count(app, "--gather", arguments.gather, 4,
+              "Final gather by so many rays at every sample, in place of the elements' indirect light; a power of two");
     const auto read_stops = [&arguments](const std::string& word) {
-        arguments.exposure = read_number("--exposure", word);
+        arguments.exposure = word == "auto" ? 0 : read_number("--exposure", word);
         if (std::abs(arguments.exposure) > 60)
             throw CLI::ValidationError("--exposure", fmt::format("must be between -60 and 60 stops, not {}", word));
     };
     app.add_option_function<std::string>("--exposure", read_stops,
-                                         "Stops above the automatic exposure: 1 is twice as bright; default 0")
-        ->type_name("STOPS");
+                                         "Stops above the automatic exposure: 1 is twice as bright; default auto")
+        ->type_name("STOPS|auto")
+        ->group("PNG");
+    add_choice(app, "--tone-map", tone_names, arguments.tone_map, "Default filmic")->group("PNG");
     add_choice(app, "--false-colour", quantity_names, arguments.false_colour,
-               "Values as colours, with a legend; the last two where emitters are given in cd/m^2");
-    add_count(app, "--samples", arguments.samples, 1, "Rays a pixel, at most 1024; default 4")
-        ->check(CLI::Range(1, 1024));
-    app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges");
+               "Values as colours, with a legend; the last two where emitters are given in cd/m^2")
+        ->group("PNG");
+    app.add_flag("--isolux", arguments.isolux, "Draw lines of equal illuminance, with their values")->group("PNG");
+    app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges")->group("PNG");
     declare_work(app, arguments, arguments.threads);
 }
 

@@ -9,6 +9,7 @@
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/core/result.hpp"
 #include "exitance/io/false_colour.hpp"
+#include "exitance/io/tone_map.hpp"
 #include "exitance/methods/solve_options.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 
@@ -57,11 +58,16 @@ struct ExportArguments : CommonArguments {
 struct RenderArguments : CommonArguments {
     std::string solution, output;
     std::optional<Camera> camera;  ///< None: one that shows the scene well.
+    std::optional<double> fov;     ///< Where a camera was given with one.
+    Projection projection = Projection::perspective;
     PictureSize size;
     double exposure = 0;  ///< Stops above what is chosen automatically.
+    ToneCurve tone_map = ToneCurve::filmic;
     std::optional<Quantity> false_colour;
-    std::size_t samples = 4;  ///< Rays a pixel.
-    bool mesh = false;        ///< With the elements' edges.
+    bool isolux = false;
+    std::size_t samples = 16;  ///< Rays a pixel.
+    std::size_t gather = 0;    ///< Rays of a final gather at each of them.
+    bool mesh = false;         ///< With the elements' edges.
     int threads = 0;
 };
 

@@ -1,64 +1,119 @@
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
 
+#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/display.hpp"
+#include "exitance/io/isolux.hpp"
+#include "exitance/io/linear_image.hpp"
 #include "exitance/io/solution_file.hpp"
 #include "exitance/io/whole_file.hpp"
+#include "exitance/reconstruct/automatic_camera.hpp"
+#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
 
 std::string describe(const Camera& c) {
-    return fmt::format("{:.4g},{:.4g},{:.4g} {:.4g},{:.4g},{:.4g} {:.4g}", c.eye.x, c.eye.y, c.eye.z, c.target.x,
+    return fmt::format("{:.7g},{:.7g},{:.7g} {:.7g},{:.7g},{:.7g} {:.7g}", c.eye.x, c.eye.y, c.eye.z, c.target.x,
                        c.target.y, c.target.z, c.fov);
 }
 
+/// What cannot be done, before the work begins.
+std::optional<Error> find_misuse(const RenderArguments& a) {
+    const std::string end = ending(a.output);
+    const auto usage = [](const std::string& message, const std::string& where, const std::string& hint) {
+        return Error{ErrorCode::usage, message, where, hint};
+    };
+    if (end != ".png" && end != ".exr" && end != ".hdr")
+        return usage(fmt::format("pictures are written as .png, .exr or .hdr, not '{}'", end), a.output,
+                     "name the output something.png");
+    if (end != ".png" && (a.false_colour || a.isolux || a.mesh))
+        return usage(fmt::format("{} holds radiance, and nothing is drawn into it", end), a.output,
+                     "--false-colour, --isolux and --mesh go with .png");
+    if (a.gather > 0 && (!std::has_single_bit(a.gather) || a.gather > 1 << 20))
+        return usage(fmt::format("{} is not a power of two from 4 to 1048576", a.gather), "--gather", "");
+    const double most = a.projection == Projection::fisheye ? 360 : 170;
+    if (a.fov && a.projection == Projection::orthographic && !(*a.fov > 0))
+        return usage(fmt::format("width {} is not above 0 m", *a.fov), "--camera", "");
+    if (a.fov && a.projection != Projection::orthographic && !(*a.fov >= 1 && *a.fov <= most))
+        return usage(fmt::format("angle {} is not from 1 to {} degrees", *a.fov, most), "--camera", "");
+    return std::nullopt;
+}
+
+/// The camera asked for, with what was left open.
+Camera choose_camera(const RenderArguments& arguments, const RadiosityFunction& light) {
+    const Solution& solution = light.solution();
+    if (!arguments.camera)
+        return automatic_camera(solution, light.stage().tracer, arguments.projection, arguments.size);
+    Camera camera = *arguments.camera;
+    camera.projection = arguments.projection;
+    if (camera.projection == Projection::fisheye) camera.fov = 180;
+    if (camera.projection == Projection::orthographic) camera.fov = solution.scene.size();
+    if (arguments.fov) camera.fov = *arguments.fov;
+    return camera;
+}
+
 /// The picture for people, and the words that go with it.
-Image develop(const RenderArguments& arguments, const Solution& solution, const Picture& picture,
-              const std::vector<bool>& edges, ImageTexts& texts) {
+Image develop(const RenderArguments& arguments, const Picture& picture, ImageTexts& texts) {
     if (arguments.false_colour) {
         const ColourScale scale = make_colour_scale(picture, *arguments.false_colour);
-        Image image = false_colour_image(picture, *arguments.false_colour, scale);
-        draw_edges(image, edges);
-        draw_legend(image, *arguments.false_colour, scale);
-        return image;
+        return false_colour_image(picture, *arguments.false_colour, scale);
     }
-    ToneMap tones = make_tone_map(solution);
-    tones.scale *= std::exp2(arguments.exposure);
-    texts.emplace_back("Exposure",
-                       fmt::format("{:+.4g} stops; radiosity times {:.6g}, then Reinhard's curve with white at {:.4g}",
-                                   arguments.exposure, tones.scale, tones.white));
-    Image image = display_image(picture, tones);
-    draw_edges(image, edges);
-    return image;
+    ToneMap tones;
+    tones.curve = arguments.tone_map;
+    tones.scale = automatic_exposure(picture) * std::exp2(arguments.exposure);
+    texts.emplace_back(
+        "Exposure", fmt::format("{:+.4g} stops; radiosity in W/m^2 times {:.6g}, then a {} curve", arguments.exposure,
+                                tones.scale, tones.curve == ToneCurve::filmic ? "filmic" : "linear"));
+    return display_image(picture, tones);
+}
+
+Result<void> write_display(const RenderArguments& arguments, const RadiosityFunction& light, const Camera& camera,
+                           const Picture& picture) {
+    ImageTexts texts{{"Software", "exitance"}, {"Camera", describe(camera)}};
+    Image image = develop(arguments, picture, texts);
+    if (arguments.mesh)
+        draw_edges(image, element_edges(light.solution(), light.stage().tracer, camera, arguments.size));
+    if (arguments.isolux) draw_isolux(image, picture, make_colour_scale(picture, Quantity::illuminance));
+    if (arguments.false_colour)
+        draw_legend(image, *arguments.false_colour, make_colour_scale(picture, *arguments.false_colour));
+    return write_png(arguments.output, image, texts);
+}
+
+Result<void> write_linear(const RenderArguments& arguments, const Camera& camera, const Picture& picture) {
+    const ImageFacts facts{{"software", "exitance"},
+                           {"camera", describe(camera)},
+                           {"units", "R, G, B: radiance in W/(m^2 sr); irradiance: W/m^2"}};
+    const LinearImage image = linear_image(picture);
+    return ending(arguments.output) == ".exr" ? write_exr(arguments.output, image, facts)
+                                              : write_hdr(arguments.output, image, facts);
 }
 
 }  // namespace
 
 /// exitance render SOLUTION -o PICTURE
 ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
-    if (const std::string end = ending(arguments.output); end != ".png")
-        return terminal.fail({ErrorCode::usage, fmt::format("pictures are written as .png, not '{}'", end),
-                              arguments.output, "name the output something.png"});
+    if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
+    StopRequest stop;
+    const SignalGuard signals(stop);
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
 
     const RadiosityFunction light(*solution);
-    const RayTracer tracer(solution->scene);
-    const Camera camera =
-        arguments.camera ? *arguments.camera : automatic_camera(solution->scene, tracer, arguments.size);
+    const Camera camera = choose_camera(arguments, light);
     if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(camera)));
-    const Picture picture = take_picture(solution->scene, light, tracer, camera, arguments.size,
-                                         static_cast<int>(arguments.samples));
-    ImageTexts texts{{"Software", "exitance"}, {"Camera", describe(camera)}};
-    std::vector<bool> edges;
-    if (arguments.mesh) edges = element_edges(*solution, tracer, camera, arguments.size);
-    const Image image = develop(arguments, *solution, picture, edges, texts);
-    const Result<void> written = write_png(arguments.output, image, texts);
+    PictureOptions options{camera, arguments.size, static_cast<int>(arguments.samples)};
+    options.gather = static_cast<unsigned>(arguments.gather);
+    const Picture picture = take_picture(light, options, terminal.progress(), stop);
+    if (signals.received()) return *signals.received();
+    terminal.progress().finish();
+    const Result<void> written = ending(arguments.output) == ".png" ? write_display(arguments, light, camera, picture)
+                                                                    : write_linear(arguments, camera, picture);
     return written ? ExitCode::done : terminal.fail(written.error());
 }
 

@@ -97,14 +97,9 @@ std::string json_triple(const auto& v) {
     return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }
 
-/// The bands that stand for red, green and blue.
-std::array<double, 3> triple(const Spectrum& s) {
-    return {s[0], s[bands == 3 ? 1 : (bands - 1) / 2], s[bands == 3 ? 2 : bands - 1]};
-}
-
 std::string material_json(const Material& material) {
-    std::array<double, 3> rho = triple(material.reflectance),
-                          radiance = triple(radiance_of_exitance(material.exitance));
+    std::array<double, 3> rho = red_green_blue(material.reflectance),
+                          radiance = red_green_blue(radiance_of_exitance(material.exitance));
     const std::string out = fmt::format(
         "{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{},{},{},1],"
         "\"metallicFactor\":0,\"roughnessFactor\":1}}",

@@ -91,7 +91,7 @@ std::size_t ColourScale::band(double value) const {
 ColourScale make_colour_scale(const Picture& picture, Quantity quantity) {
     std::vector<double> values;
     for (const Pixel& pixel : picture.pixels)
-        if (pixel.front > 0 && !pixel.emits) values.push_back(value_of(pixel, quantity));
+        if (pixel.front > 0 && !pixel.emits()) values.push_back(value_of(pixel, quantity));
     if (values.empty())
         for (const Pixel& pixel : picture.pixels)
             if (pixel.front > 0) values.push_back(value_of(pixel, quantity));

@@ -4,14 +4,24 @@
 
 namespace exitance {
 
+namespace {
+
+/// [Narkowicz15], its argument scaled so that 0.18 becomes 0.18.
+double filmic(double light) {
+    const double x = 0.7232 * light;
+    return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+}
+
+}  // namespace
+
 DisplayColour ToneMap::operator()(const Spectrum& light) const {
+    DisplayColour colour = red_green_blue(light);
     const double level = scale * mean(light);
-    if (!(level > 0)) return {0, 0, 0};
-    const double shown = scale * (1 + level / (white * white)) / (1 + level);  // per unit of light
-    DisplayColour colour;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t band = bands == 3 ? i : i * (bands - 1) / 2;  // other counts: the ends and the middle
-        colour[i] = std::clamp(shown * light[band], 0.0, 1.0);
+    for (double& c : colour) {
+        c = std::max(0.0, scale * c);
+        if (curve == ToneCurve::photographic && level > 0) c *= (1 + level / (white * white)) / (1 + level);
+        if (curve == ToneCurve::filmic) c = c < 1e6 ? filmic(c) : 1;
+        c = std::min(c, 1.0);
     }
     return colour;
 }

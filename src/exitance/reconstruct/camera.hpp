@@ -1,7 +1,6 @@
 #pragma once
 
 #include "exitance/scene/scene.hpp"
-#include "exitance/transport/visibility.hpp"
 
 namespace exitance {
 
@@ -12,26 +11,39 @@ struct PictureSize {
     std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-/// A pinhole: what stands upright in space (along Z) stands upright in the picture.
-struct Camera {
-    Point eye, target;
-    double fov = 60;  ///< Angle from the left to the right edge, degrees, in (0, 180).
+/// How directions become places in a picture.
+enum class Projection : std::uint8_t {
+    perspective,   ///< A pinhole: straight lines stay straight.
+    orthographic,  ///< Rays are parallel: lengths across the view keep their scale.
+    fisheye,       ///< A disc in which the distance from the middle is the angle from the axis (equidistant).
+    panorama,      ///< All around: longitude to the right, the zenith on top (equirectangular, 360 x 180 degrees).
 };
 
-/// The directions in which a camera looks.
+/// What stands upright in space (along `up`) stands upright in the picture.
+struct Camera {
+    Point eye, target;
+    /// From the left to the right edge: degrees in (0, 180); fisheye: across the disc, degrees in (0, 360];
+    /// orthographic: metres; panorama: unused.
+    double fov = 60;
+    Vec3 up = {0, 0, 1};  ///< Along the line of sight it means nothing: then Y is up.
+    Projection projection = Projection::perspective;
+};
+
+/// The rays that a camera sees along.
 class CameraRays {
   public:
     CameraRays(const Camera& camera, PictureSize size);
 
-    /// Through (x, y) in pixels from the upper left corner; not of length 1.
-    Vec3 direction(double x, double y) const { return corner_ + x * right_ + y * down_; }
+    /// The ray through (x, y), in pixels from the upper left corner; its direction has any length. False where the
+    /// picture shows nothing: outside the disc of a fisheye, and beyond a panorama's poles.
+    bool ray(double x, double y, Point& origin, Vec3& direction) const;
 
   private:
-    Vec3 corner_, right_, down_;
+    Projection projection_;
+    PictureSize size_;
+    Point eye_;
+    Vec3 ahead_, right_, down_;  ///< Of length 1.
+    double pixel_ = 0;           ///< At distance 1 from the eye, or metres; of a fisheye radians.
 };
-
-/// A camera that shows a scene well: in a closed room near the corner from which most of it is in view; else outside,
-/// on the side that shows most fronts, with the whole scene in the picture. Traces some thousand rays.
-Camera automatic_camera(const Scene& scene, const RayTracer& tracer, PictureSize size);
 
 }  // namespace exitance

@@ -1,107 +1,179 @@
 #include "exitance/reconstruct/picture.hpp"
 
+#include <cmath>
+
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/reconstruct/tile_light.hpp"
+#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
 
-/// Point i of n in the unit square, (i + 1/2) / n against the bits of i reversed: no two of n = 2^k share a row or a
-/// column of n (Hammersley's points).
-Vec2 place_in_pixel(int i, int n) {
-    double bits = 0, digit = 0.5;
-    for (int k = i; k > 0; k /= 2, digit /= 2) bits += digit * (k % 2);
-    return {(i + 0.5) / n, bits + 0.5 / n};
+constexpr int tile_side = 32, block_side = 8;  // pixels
+
+/// A number in [-1, 1] with the density of a tent, from one that is uniform in [0, 1).
+double tent(double u) {
+    return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
 }
 
-/// The first surfaces along the rays of rows [first, last), pixel by pixel, sample by sample.
-std::vector<RayHit> trace_rows(const RayTracer& tracer, const Camera& camera, PictureSize size, int first, int last,
-                               int samples, std::vector<Vec3>& directions) {
-    const CameraRays rays(camera, size);
-    const std::size_t per_row = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(samples);
-    directions.resize(per_row * static_cast<std::size_t>(last - first));
-    std::vector<RayHit> hits(directions.size());
-    parallel_for(static_cast<std::size_t>(last - first), 1, [&](std::size_t row) {
-        Vec3* direction = directions.data() + row * per_row;
-        for (int x = 0; x < size.width; ++x)
-            for (int s = 0; s < samples; ++s) {
-                const Vec2 p = place_in_pixel(s, samples);
-                *direction++ = rays.direction(x + p.x, first + static_cast<int>(row) + p.y);
+/// Where a pixel's rays go, relative to its middle, in pixels; any power of two of them, from the first on, is
+/// stratified.
+std::vector<Vec2> places_about_pixel(int samples, std::uint64_t seed) {
+    if (samples == 1) return {{0, 0}};
+    const ScrambledSobol sobol(hash(seed, static_cast<std::uint64_t>(Stream::mesh)));
+    std::vector<Vec2> places;
+    for (int i = 0; i < samples; ++i) {
+        const auto index = static_cast<std::uint32_t>(i);
+        places.push_back({tent(sobol(index, 0)), tent(sobol(index, 1))});
+    }
+    return places;
+}
+
+std::size_t middle_of(std::span<const Vec2> places) {
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (dot(places[i], places[i]) < dot(places[best], places[best])) best = i;
+    return best;
+}
+
+/// Makes one tile of a picture after the other. One a thread.
+class TilePainter {
+  public:
+    TilePainter(const RadiosityFunction& light, const PictureOptions& options, std::span<const Vec2> places)
+        : scene_(light.solution().scene),
+          tracer_(light.stage().tracer),
+          options_(options),
+          rays_(options.camera, options.size),
+          places_(places),
+          middle_(middle_of(places)),
+          light_(light, options.gather, options.seed) {}
+
+    /// The tile whose upper left pixel is (x0, y0).
+    void paint(int x0, int y0, Picture& picture) {
+        const int x1 = std::min(x0 + tile_side, options_.size.width);
+        const int y1 = std::min(y0 + tile_side, options_.size.height);
+        trace(x0, x1, y0, y1);
+        spots_.clear(), points_.clear();
+        std::size_t pixel_in_tile = 0;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) {
+                const int block = (y - y0) / block_side * tile_side + (x - x0) / block_side;
+                sort_by_region(pixel_in_tile++, static_cast<std::uint32_t>(block), at(x, y), picture);
             }
-        tracer.nearest(std::span(directions).subspan(row * per_row, per_row), camera.eye, RegionId(),
-                       std::span(hits).subspan(row * per_row, per_row));
-    });
-    return hits;
-}
+        light_.evaluate(points_, spots_);
+        for (const Spot& spot : spots_) add(spot, picture.pixels[spot.pixel]);
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) finish(picture.pixels[at(x, y)]);
+    }
 
-bool is_front(const RayHit& hit) { return !hit.surface.is_none() && hit.front; }
+  private:
+    std::uint32_t at(int x, int y) const {
+        return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options_.size.width) +
+               static_cast<std::uint32_t>(x);
+    }
 
-/// For each hit the point whose light it shows. Of a pixel's hits on one region every fourth is such a point: within a
-/// pixel light varies less than what is seen.
-std::vector<std::uint32_t> choose_points(const Scene& scene, const Point& eye, std::span<const Vec3> directions,
-                                         std::span<const RayHit> hits, std::size_t samples,
-                                         std::vector<SeenPoint>& points) {
-    constexpr std::uint32_t shared_by = 4;
-    std::vector<std::uint32_t> point_of(hits.size()), rank(hits.size());
-    points.clear();
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (!is_front(hits[i])) continue;
-        const RegionId region = scene.surfaces()[hits[i].surface].region;
-        const std::size_t first = i - i % samples;
-        std::size_t before = i;  // the hit before this one on the same region of the same pixel, or `i`
-        for (std::size_t k = i; k-- > first && before == i;)
-            if (is_front(hits[k]) && scene.surfaces()[hits[k].surface].region == region) before = k;
-        rank[i] = before == i ? 0 : (rank[before] + 1) % shared_by;
-        if (rank[i] != 0) {
-            point_of[i] = point_of[before];
-            continue;
+    /// Traces the rays of all pixels, one pixel after the other.
+    void trace(int x0, int x1, int y0, int y1) {
+        origins_.clear(), directions_.clear(), ends_.clear();
+        middle_ray_.clear();
+        Point origin;
+        Vec3 direction;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) {
+                middle_ray_.push_back(none);
+                for (std::size_t i = 0; i < places_.size(); ++i) {
+                    if (!rays_.ray(x + 0.5 + places_[i].x, y + 0.5 + places_[i].y, origin, direction)) continue;
+                    if (i == middle_) middle_ray_.back() = directions_.size();
+                    origins_.push_back(origin), directions_.push_back(direction);
+                }
+                ends_.push_back(directions_.size());
+            }
+        hits_.resize(directions_.size());
+        if (options_.camera.projection == Projection::orthographic)
+            tracer_.nearest(origins_, directions_, RegionId(), hits_);
+        else
+            tracer_.nearest(directions_, options_.camera.eye, RegionId(), hits_);
+    }
+
+    /// What one pixel's rays have met: a spot for every region.
+    void sort_by_region(std::size_t pixel_in_tile, std::uint32_t block, std::uint32_t pixel, Picture& picture) {
+        const std::size_t first = pixel_in_tile == 0 ? 0 : ends_[pixel_in_tile - 1], last = ends_[pixel_in_tile];
+        Pixel& out = picture.pixels[pixel];
+        met_.clear();
+        for (std::size_t i = first; i < last; ++i) {
+            const RayHit& hit = hits_[i];
+            const bool front = !hit.surface.is_none() && hit.front;
+            met_.push_back(front ? scene_.surfaces()[hit.surface].region : RegionId());
+            if (!hit.surface.is_none()) (hit.front ? out.front : out.back) += 1;
+            if (i == middle_ray_[pixel_in_tile]) out.region = met_.back();
         }
-        point_of[i] = static_cast<std::uint32_t>(points.size());
-        points.push_back({eye + hits[i].distance * directions[i], region});
+        for (std::size_t i = 0; i < met_.size(); ++i) {
+            if (met_[i].is_none()) continue;
+            const RegionId region = met_[i];
+            Spot spot{region, block, pixel, static_cast<std::uint32_t>(points_.size()), 0};
+            for (std::size_t k = i; k < met_.size(); ++k) {
+                if (met_[k] != region) continue;
+                points_.push_back(origins_[first + k] + hits_[first + k].distance * directions_[first + k]);
+                met_[k] = RegionId(), ++spot.count;
+            }
+            spots_.push_back(spot);
+        }
     }
-    return point_of;
-}
 
-Pixel develop(const Scene& scene, std::span<const RayHit> hits, std::span<const std::uint32_t> point_of,
-              std::span<const Light> light) {
-    Pixel pixel;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (hits[i].surface.is_none()) continue;
-        (hits[i].front ? pixel.front : pixel.back) += 1;
-        if (!hits[i].front) continue;
-        pixel.emits |= scene.material(hits[i].surface).emits();
-        pixel.radiosity += light[point_of[i]].radiosity;
-        pixel.irradiance += light[point_of[i]].irradiance;
+    void add(const Spot& spot, Pixel& pixel) const {
+        const Material& material = scene_.material(spot.region);
+        const Spectrum radiosity = material.exitance + material.reflectance * spot.irradiance;
+        pixel.irradiance += spot.count * spot.irradiance;
+        pixel.radiosity += spot.count * radiosity;
+        if (!material.emits()) return;
+        pixel.from_lamps += spot.count * radiosity;
+        pixel.emitting += static_cast<float>(spot.count);
     }
-    if (pixel.front > 0) pixel.radiosity *= 1 / pixel.front, pixel.irradiance *= 1 / pixel.front;
-    const auto all = static_cast<float>(hits.size());
-    pixel.front /= all, pixel.back /= all;
-    return pixel;
-}
 
-/// How many rows are traced before their light is asked for: enough work for all threads, in 100 MB or so.
-int rows_at_once(PictureSize size, int samples) {
-    return std::max(1, static_cast<int>(500000 / (static_cast<double>(size.width) * samples)));
-}
+    void finish(Pixel& pixel) const {
+        const auto all = static_cast<float>(places_.size());
+        if (pixel.front > 0) pixel.radiosity *= 1 / pixel.front, pixel.irradiance *= 1 / pixel.front;
+        if (pixel.emitting > 0) pixel.from_lamps *= 1 / pixel.emitting;
+        pixel.front /= all, pixel.back /= all, pixel.emitting /= all;
+    }
+
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+    const Scene& scene_;
+    const RayTracer& tracer_;
+    const PictureOptions& options_;
+    CameraRays rays_;
+    std::span<const Vec2> places_;
+    std::size_t middle_;
+    TileLight light_;
+    std::vector<Point> origins_, points_;
+    std::vector<Vec3> directions_;
+    std::vector<RayHit> hits_;
+    std::vector<std::size_t> ends_, middle_ray_;  ///< Of every pixel.
+    std::vector<RegionId> met_;
+    std::vector<Spot> spots_;
+};
 
 }  // namespace
 
-Picture take_picture(const Scene& scene, const RadiosityFunction& light, const RayTracer& tracer, const Camera& camera,
-                     PictureSize size, int samples) {
-    Picture picture{size, {}};
-    picture.pixels.reserve(size.pixels());
-    const int rows = rows_at_once(size, samples);
-    std::vector<Vec3> directions;
-    std::vector<SeenPoint> points;
-    for (int first = 0; first < size.height; first += rows) {
-        const int last = std::min(first + rows, size.height);
-        const std::vector<RayHit> hits = trace_rows(tracer, camera, size, first, last, samples, directions);
-        const auto n = static_cast<std::size_t>(samples);
-        const std::vector<std::uint32_t> point_of = choose_points(scene, camera.eye, directions, hits, n, points);
-        const std::vector<Light> values = light.at(std::span<const SeenPoint>(points));
-        for (std::size_t i = 0; i < hits.size(); i += n)
-            picture.pixels.push_back(
-                develop(scene, std::span(hits).subspan(i, n), std::span(point_of).subspan(i, n), values));
+Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
+                     const StopRequest& stop) {
+    progress.phase("render");
+    Picture picture{options.size, std::vector<Pixel>(options.size.pixels())};
+    const std::vector<Vec2> places = places_about_pixel(options.samples, options.seed);
+    const auto columns = static_cast<std::size_t>((options.size.width + tile_side - 1) / tile_side);
+    const std::size_t tiles = columns * static_cast<std::size_t>((options.size.height + tile_side - 1) / tile_side);
+    // A painter's memory serves several tiles; where a tile is long work, the threads are better off with one each.
+    const std::size_t at_once = options.gather > 0 ? 16 : 256, grain = options.gather > 0 ? 1 : 8;
+    for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
+        progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
+        parallel_ranges(std::min(at_once, tiles - first), grain, [&](std::size_t begin, std::size_t end) {
+            TilePainter painter(light, options, places);
+            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
+                painter.paint(static_cast<int>(i % columns) * tile_side, static_cast<int>(i / columns) * tile_side,
+                              picture);
+        });
     }
     return picture;
 }
@@ -109,16 +181,22 @@ Picture take_picture(const Scene& scene, const RadiosityFunction& light, const R
 std::vector<bool> element_edges(const Solution& solution, const RayTracer& tracer, const Camera& camera,
                                 PictureSize size) {
     const ElementLocator locator(solution.interpolant.tree, solution.scene.regions().size());
-    std::vector<Vec3> directions;
-    const std::vector<RayHit> hits = trace_rows(tracer, camera, size, 0, size.height, 1, directions);
-    std::vector<ElementId> seen(hits.size());
-    parallel_for(hits.size(), 256, [&](std::size_t i) {
-        if (!is_front(hits[i])) return;
-        const RegionId region = solution.scene.surfaces()[hits[i].surface].region;
-        seen[i] = locator.find(region, camera.eye + hits[i].distance * directions[i]).element;
-    });
-    std::vector<bool> edges(hits.size());
+    const CameraRays rays(camera, size);
+    std::vector<ElementId> seen(size.pixels());
     const auto width = static_cast<std::size_t>(size.width);
+    parallel_for(static_cast<std::size_t>(size.height), 4, [&](std::size_t y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            Point origin;
+            Vec3 direction;
+            RayHit hit;
+            if (!rays.ray(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, origin, direction)) continue;
+            tracer.nearest(std::span(&direction, 1), origin, RegionId(), std::span(&hit, 1));
+            if (hit.surface.is_none() || !hit.front) continue;
+            const RegionId region = solution.scene.surfaces()[hit.surface].region;
+            seen[y * width + x] = locator.find(region, origin + hit.distance * direction).element;
+        }
+    });
+    std::vector<bool> edges(seen.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const bool right = (i + 1) % width != 0 && seen[i] != seen[i + 1];
         const bool below = i + width < seen.size() && seen[i] != seen[i + width];

@@ -6,6 +6,8 @@
 namespace exitance {
 namespace {
 
+constexpr unsigned free_space_rays = 4096;
+
 Light light_on(const Material& material, const Spectrum& irradiance) {
     return {irradiance, material.exitance + material.reflectance * irradiance, true};
 }
@@ -21,29 +23,27 @@ RadiosityFunction::RadiosityFunction(const Solution& solution)
 
 RadiosityFunction::~RadiosityFunction() = default;
 
-Spectrum RadiosityFunction::indirect_in_free_space(const ProbePoint& point, std::size_t index) const {
-    constexpr unsigned rays = 4096;
+Spectrum RadiosityFunction::gathered(const ProbePoint& point, RegionId own, unsigned rays, std::uint64_t key,
+                                     GatherWorkspace& workspace) const {
+    if (solution_.bounces == 0) return Spectrum();
     const RadiosityAt reflected = [&](RegionId region, const Point& y) {
         return solution_.scene.material(region).reflectance *
                solution_.interpolant.at(interpolant_locator_.find(region, y));
     };
-    GatherWorkspace workspace;
-    const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), index);
-    return gather_reflected(*stage_, point.x, point.n, RegionId(), rays, key, reflected, workspace).irradiance;
+    return gather_reflected(*stage_, point.x, point.n, own, rays, key, reflected, workspace).irradiance;
 }
 
-Spectrum RadiosityFunction::irradiance_on(const SeenPoint& point, Component component,
+Spectrum RadiosityFunction::irradiance_on(RegionId region, const Point& x, Component component,
                                           DirectLight::Workspace& workspace) const {
-    // E = E_dir + (indirect - c E_dir): the exact part weighs 1 - c in all, 1 or -c by itself.
+    // The elements hold E_ind + c E_dir: the exact part weighs 1 - c in all, 1 or -c by itself.
+    Spectrum weight = exact_share();
+    if (!solution_.direct_in_elements && component == Component::direct) weight = Spectrum(1);
+    if (!solution_.direct_in_elements && component == Component::indirect) weight -= Spectrum(1);
     Spectrum irradiance;
-    if (!solution_.direct_in_elements && (component != Component::indirect || has_direct_share())) {
-        Spectrum weight(component == Component::indirect ? 0.0 : 1.0);
-        if (component != Component::direct) weight -= solution_.direct_share;
-        const Normal& n = solution_.scene.regions()[point.region].plane.n;
-        irradiance += weight * stage_->direct.irradiance(point.x, n, point.region, workspace);
-    }
-    if (component != Component::direct)
-        irradiance += solution_.indirect.at(indirect_locator_.find(point.region, point.x));
+    if (squared(weight) > 0)
+        irradiance +=
+            weight * stage_->direct.irradiance(x, solution_.scene.regions()[region].plane.n, region, workspace);
+    if (component != Component::direct) irradiance += elements(region, x);
     return irradiance;
 }
 
@@ -51,6 +51,7 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
     std::vector<Light> out(points.size());
     parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
         DirectLight::Workspace workspace;
+        GatherWorkspace gathering;
         for (std::size_t i = begin; i < end; ++i) {
             const auto& [x, n] = points[i];
             const SurfaceId surface = locator_.find(x, n);
@@ -61,25 +62,16 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
                 continue;
             }
             if (!free) {
-                const Spectrum irradiance = irradiance_on({x, region}, component, workspace);
+                const Spectrum irradiance = irradiance_on(region, x, component, workspace);
                 out[i] = light_on(solution_.scene.material(surface), irradiance);
                 continue;
             }
             if (component != Component::indirect)
                 out[i].irradiance += stage_->direct.irradiance(x, n, region, workspace);
-            if (component != Component::direct) out[i].irradiance += indirect_in_free_space(points[i], i);
+            const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), i);
+            if (component != Component::direct)
+                out[i].irradiance += gathered(points[i], RegionId(), free_space_rays, key, gathering);
         }
-    });
-    return out;
-}
-
-std::vector<Light> RadiosityFunction::at(std::span<const SeenPoint> points, Component component) const {
-    std::vector<Light> out(points.size());
-    parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
-        DirectLight::Workspace workspace;
-        for (std::size_t i = begin; i < end; ++i)
-            out[i] =
-                light_on(solution_.scene.material(points[i].region), irradiance_on(points[i], component, workspace));
     });
     return out;
 }

@@ -11,6 +11,7 @@
 namespace exitance {
 
 struct Stage;
+struct GatherWorkspace;
 
 /// Which light is asked for.
 enum class Component { total, direct, indirect };
@@ -28,12 +29,6 @@ struct ProbePoint {
     Normal n;
 };
 
-/// A place that is known to lie on a region and to be in the open: what a ray of free space met.
-struct SeenPoint {
-    Point x;
-    RegionId region;
-};
-
 /// A solution as a function of place: B(x) = M + rho (E_dir(x) + E_ind(x)), direct light evaluated exactly from the
 /// polygons, indirect light read from the solution's elements (less the share of direct light that they hold).
 class RadiosityFunction {
@@ -46,16 +41,29 @@ class RadiosityFunction {
     /// solution where they hit. About 5 us a point and visible emitter.
     std::vector<Light> at(std::span<const ProbePoint> points, Component component = Component::total) const;
 
-    /// The same where it is known what the points lie on: neither surfaces nor what covers them are searched.
-    std::vector<Light> at(std::span<const SeenPoint> points, Component component = Component::total) const;
-
     /// The same from the elements that `export` writes, without exact direct light; zero off the surfaces.
     std::vector<Light> interpolant_at(std::span<const ProbePoint> points) const;
 
+    /// E(x) = elements(x) + exact_share() E_dir(x) on a region: what the elements hold there,
+    Spectrum elements(RegionId region, const Point& x) const {
+        return solution_.indirect.at(indirect_locator_.find(region, x));
+    }
+    /// and how much of exact direct light comes on top of it.
+    Spectrum exact_share() const {
+        return solution_.direct_in_elements ? Spectrum() : Spectrum(1) - solution_.direct_share;
+    }
+
+    /// E_ind by a gather of its own in place of the elements: rays that read what surfaces reflect, by the solution's
+    /// interpolant. See gather_reflected. Zero where the solution has no bounces.
+    Spectrum gathered(const ProbePoint& point, RegionId own, unsigned rays, std::uint64_t key,
+                      GatherWorkspace& workspace) const;
+
+    const Solution& solution() const { return solution_; }
+    const Stage& stage() const { return *stage_; }
+
   private:
-    Spectrum irradiance_on(const SeenPoint& point, Component component, DirectLight::Workspace& workspace) const;
-    bool has_direct_share() const { return squared(solution_.direct_share) > 0; }
-    Spectrum indirect_in_free_space(const ProbePoint& point, std::size_t index) const;
+    Spectrum irradiance_on(RegionId region, const Point& x, Component component,
+                           DirectLight::Workspace& workspace) const;
 
     const Solution& solution_;
     Locator locator_;
