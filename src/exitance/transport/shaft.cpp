@@ -69,6 +69,10 @@ void Shaft::add_supporting_planes(std::span<const Point> edges, std::span<const 
                 }
             if (low < -slack && high > slack) continue;
             if (low >= -slack && high <= slack) continue;  // both in one plane
+            // A corner in the plane of the edge's polygon, as where the two meet at an edge, gives that plane again.
+            if (std::all_of(edges.begin(), edges.end(),
+                            [&](const Point& p) { return std::abs(dot(normal, p - a)) <= slack; }))
+                continue;
             const double sign = low < -slack ? -1 : 1;
             planes_.push_back({sign * normal, sign * dot(normal, a)});
             break;

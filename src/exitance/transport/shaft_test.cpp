@@ -20,6 +20,22 @@ Point inside(RandomStream& random, const std::vector<Point>& t) {
     return t[0] + u * (1 - v) * (t[1] - t[0]) + u * v * (t[2] - t[0]);
 }
 
+/// Two walls that meet at an edge: the shaft between them is bounded by their neighbours, too, which only touch it.
+TEST(Shaft, NothingStandsBetweenTheFacesOfAClosedBox) {
+    const Scene scene = test::make(test::closed_box({}, {1, 2, 3}));
+    const Occluders occluders(scene);
+    Shaft shaft;
+    std::vector<PieceId> candidates;
+    for (PieceId r : occluders.pieces().ids())
+        for (PieceId s : occluders.pieces().ids()) {
+            if (r == s) continue;
+            const ConvexPiece &receiver = occluders.pieces()[r], &source = occluders.pieces()[s];
+            shaft.set(occluders, {occluders.corners(r), receiver.plane.n, receiver.region},
+                      {occluders.corners(s), source.plane.n, source.region});
+            EXPECT_EQ(shaft.classify(candidates), View::open) << r.value << " " << s.value;
+        }
+}
+
 TEST(Shaft, CertainClassesAreNeverContradictedByRays) {
     RandomStream random(21, Stream::visibility);
     int open = 0, blocked = 0, mixed = 0;
