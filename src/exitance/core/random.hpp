@@ -42,14 +42,14 @@ class RandomStream {
 /// Source: [Burley20], [JoeKuo08]. O(1) a coordinate.
 class ScrambledSobol {
   public:
-    explicit ScrambledSobol(std::uint64_t seed) : seed_(seed) {}
+    explicit ScrambledSobol(std::uint64_t seed) : shuffle_(static_cast<std::uint32_t>(hash(seed))) {
+        for (unsigned d = 0; d < 4; ++d) scramble_[d] = static_cast<std::uint32_t>(hash(seed, 1u + d));
+    }
 
     /// Coordinate `dimension` (0 to 3) of point `index`, in [0, 1).
     double operator()(std::uint32_t index, int dimension) const {
-        const std::uint32_t shuffled = owen(index, static_cast<std::uint32_t>(hash(seed_)));
-        const std::uint32_t raw = sobol(shuffled, dimension);
-        return owen_reversed(raw, static_cast<std::uint32_t>(hash(seed_, 1u + static_cast<unsigned>(dimension)))) *
-               0x1p-32;
+        const std::uint32_t raw = sobol(owen(index, shuffle_), dimension);
+        return owen_reversed(raw, scramble_[static_cast<std::size_t>(dimension)]) * 0x1p-32;
     }
 
   private:
@@ -77,7 +77,8 @@ class ScrambledSobol {
     }
     static std::uint32_t sobol(std::uint32_t index, int dimension);
 
-    std::uint64_t seed_;
+    std::uint32_t shuffle_;
+    std::array<std::uint32_t, 4> scramble_;
 };
 
 }  // namespace exitance

@@ -7,24 +7,6 @@ namespace {
 
 constexpr std::size_t few_roots = 8;
 
-/// The root among some that holds a point, or else the one nearest by.
-struct Nearest {
-    ElementId root;
-    Vec2 uv;
-    double distance = HUGE_VAL;  ///< Squared, m^2.
-
-    void look_at(const ElementTree& tree, std::span<const ElementId> roots, const Point& p) {
-        for (ElementId e : roots) {
-            const Patch& patch = tree.patch(e);
-            const Vec2 at = patch.coordinates(p), held = into_shape(at, patch.shape);
-            const Vec2 out = at - held;
-            const double d = squared_norm(out.x * patch.a + out.y * patch.b);
-            if (d < distance) *this = {e, held, d};
-            if (distance == 0) return;
-        }
-    }
-};
-
 /// Cell of a coordinate along an axis of `count` cells; what lies outside goes to the cell at the end.
 std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count) {
     const double i = (x - origin) * scale;
@@ -32,6 +14,32 @@ std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count
 }
 
 }  // namespace
+
+/// The root among some that holds a point, or else the one nearest by.
+struct ElementLocator::Nearest {
+    const Root* root = nullptr;
+    Vec2 uv;
+    double distance = HUGE_VAL;  ///< Squared, m^2.
+
+    void look_at(std::span<const Root> roots, const Point& p) {
+        for (const Root& r : roots) {
+            const Vec3 w = p - r.origin;
+            const Vec2 at = {dot(r.du, w), dot(r.dv, w)}, held = into_shape(at, r.shape);
+            if (at == held) {
+                *this = {&r, held, 0};
+                return;
+            }
+            const double d = squared_length(r, at - held);
+            if (d < distance) *this = {&r, held, d};
+        }
+    }
+
+    /// Of a vector given in a root's coordinates: its sides are those that du and dv are the duals of.
+    static double squared_length(const Root& r, Vec2 v) {
+        const double uu = dot(r.du, r.du), vv = dot(r.dv, r.dv), uv = dot(r.du, r.dv), det = uu * vv - uv * uv;
+        return (vv * v.x * v.x - 2 * uv * v.x * v.y + uu * v.y * v.y) / det;
+    }
+};
 
 std::uint32_t ElementLocator::Grid::column(double x) const {
     return cell_of(x, s0, s_scale, columns);
@@ -41,36 +49,46 @@ std::uint32_t ElementLocator::Grid::row(double y) const {
 }
 
 ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count)
-    : tree_(&tree), first_root_(region_count + 1, 0), roots_(tree.roots().size()), grid_of_(region_count, -1) {
+    : leaves_(tree), first_root_(region_count + 1, 0), roots_(tree.roots().size()), grid_of_(region_count, -1) {
     for (ElementId e : tree.roots()) {
         EXI_CHECK(tree.region(e).value < region_count);
         ++first_root_[tree.region(e).value + 1];
     }
     for (std::size_t r = 0; r < region_count; ++r) first_root_[r + 1] += first_root_[r];
     std::vector<std::uint32_t> next(first_root_.begin(), first_root_.end() - 1);
-    for (ElementId e : tree.roots()) roots_[next[tree.region(e).value]++] = e;
+    for (std::uint32_t i = 0; i < tree.roots().size(); ++i) {
+        const ElementId e = tree.roots()[i];
+        const auto& [origin, a, b, shape] = tree.patch(e);
+        const Vec3 n = cross(a, b);
+        const double scale = 1 / squared_norm(n);
+        roots_[next[tree.region(e).value]++] = {origin, scale * cross(b, n), scale * cross(n, a), i, shape};
+    }
     for (std::size_t r = 0; r < region_count; ++r) {
-        const std::span<const ElementId> mine = roots(RegionId(r));
+        const std::span<const Root> mine = roots(RegionId(r));
         if (mine.size() <= few_roots) continue;
         grid_of_[r] = static_cast<std::int32_t>(grids_.size());
         grids_.push_back(make_grid(mine));
     }
 }
 
-ElementLocator::Grid ElementLocator::make_grid(std::span<const ElementId> roots) const {
+ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     Grid grid;
-    const Vec3 n = cross(tree_->patch(roots[0]).a, tree_->patch(roots[0]).b);
+    const Vec3 n = cross(roots[0].du, roots[0].dv);
     const Vec3 size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     const std::uint8_t drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     grid.s = (drop + 1) % 3, grid.t = (drop + 2) % 3;
 
-    const auto box_of = [&](ElementId e) {
+    const auto box_of = [](const Root& r) {
+        // The sides are the duals of the coordinates' gradients.
+        const double uu = dot(r.du, r.du), vv = dot(r.dv, r.dv), uv = dot(r.du, r.dv), det = uu * vv - uv * uv;
+        const Vec3 a = (vv * r.du - uv * r.dv) / det, b = (uu * r.dv - uv * r.du) / det;
         Box box;
-        for (int i = 0; i < tree_->patch(e).corner_count(); ++i) box.add(tree_->patch(e).corner(i));
+        for (const Point& p : {r.origin, r.origin + a, r.origin + b}) box.add(p);
+        if (r.shape == Patch::Shape::parallelogram) box.add(r.origin + a + b);
         return box;
     };
     Box all;
-    for (ElementId e : roots) all.add(box_of(e));
+    for (const Root& r : roots) all.add(box_of(r));
     // About one cell a root, as square as the region allows.
     const double width = all.size()[grid.s], height = all.size()[grid.t], count = static_cast<double>(roots.size());
     const double side = std::sqrt(width * height / count);
@@ -84,36 +102,53 @@ ElementLocator::Grid ElementLocator::make_grid(std::span<const ElementId> roots)
 
     // Counted, then filled. Boxes grow a little, so that points on borders find the roots of both sides.
     const double margin = 1e-9 * all.diagonal();
-    const auto for_cells = [&](ElementId e, const auto& body) {
-        const Box box = box_of(e);
+    const auto for_cells = [&](const Root& root, const auto& body) {
+        const Box box = box_of(root);
         const std::uint32_t c0 = grid.column(box.lo[grid.s] - margin), c1 = grid.column(box.hi[grid.s] + margin);
         const std::uint32_t r0 = grid.row(box.lo[grid.t] - margin), r1 = grid.row(box.hi[grid.t] + margin);
         for (std::uint32_t r = r0; r <= r1; ++r)
             for (std::uint32_t c = c0; c <= c1; ++c) body(r * grid.columns + c);
     };
     grid.first.assign(static_cast<std::size_t>(grid.columns) * grid.rows + 1, 0);
-    for (ElementId e : roots) for_cells(e, [&](std::uint32_t i) { ++grid.first[i + 1]; });
+    for (const Root& r : roots) for_cells(r, [&](std::uint32_t i) { ++grid.first[i + 1]; });
     for (std::size_t i = 1; i < grid.first.size(); ++i) grid.first[i] += grid.first[i - 1];
     grid.roots.resize(grid.first.back());
     std::vector<std::uint32_t> next(grid.first.begin(), grid.first.end() - 1);
-    for (ElementId e : roots) for_cells(e, [&](std::uint32_t i) { grid.roots[next[i]++] = e; });
+    for (const Root& r : roots) for_cells(r, [&](std::uint32_t i) { grid.roots[next[i]++] = r; });
     return grid;
 }
 
-ElementTree::Place ElementLocator::find(RegionId region, const Point& p) const {
+ElementLocator::Nearest ElementLocator::nearest_root(RegionId region, const Point& p) const {
     Nearest nearest;
     const std::int32_t g = grid_of_[region.value];
     if (g >= 0) {
         const Grid& grid = grids_[static_cast<std::size_t>(g)];
-        nearest.look_at(*tree_, grid.cell(grid.row(p[grid.t]) * grid.columns + grid.column(p[grid.s])), p);
+        nearest.look_at(grid.cell(grid.row(p[grid.t]) * grid.columns + grid.column(p[grid.s])), p);
         const double margin = 1e-9 * (1 / std::max(grid.s_scale, 1e-300) + 1 / std::max(grid.t_scale, 1e-300));
         // Outside the roots of its cell by more than rounding: rare, and then every root may be the nearest.
-        if (!(nearest.distance <= margin * margin)) nearest.look_at(*tree_, roots(region), p);
+        if (!(nearest.distance <= margin * margin)) nearest.look_at(roots(region), p);
     } else {
-        nearest.look_at(*tree_, roots(region), p);
+        nearest.look_at(roots(region), p);
     }
-    if (nearest.root.is_none()) return {ElementId(), {}};
-    return tree_->leaf_at(nearest.root, nearest.uv);
+    return nearest;
+}
+
+LeafFinder::Query ElementLocator::root_of(RegionId region, const Point& p) const {
+    const Nearest nearest = nearest_root(region, p);
+    EXI_ASSERT(nearest.root != nullptr);
+    return {nearest.root->number, nearest.uv, 0};
+}
+
+LeafFinder::Found ElementLocator::find_leaf(RegionId region, const Point& p) const {
+    const Nearest nearest = nearest_root(region, p);
+    if (!nearest.root) return {no_leaf, {}};
+    return leaves_.find(nearest.root->number, nearest.uv);
+}
+
+ElementTree::Place ElementLocator::find(RegionId region, const Point& p) const {
+    const auto [leaf, uv] = find_leaf(region, p);
+    if (leaf == no_leaf) return {ElementId(), {}};
+    return {leaves_.id(leaf), uv};
 }
 
 }  // namespace exitance

@@ -86,6 +86,10 @@ class ElementTree {
     const Patch& patch(ElementId e) const { return patch_[e]; }
     double area(ElementId e) const { return area_[e]; }                            ///< Of its domain, m^2.
     const CutLine& line(ElementId e) const { return cuts_[nodes_[e].line].line; }  ///< Of an element cut along a line.
+    /// Of an element cut along a line: the frame of its cell on a side, origin and size in the element's coordinates.
+    std::array<Vec2, 2> cell_frame(ElementId e, std::size_t side) const {
+        return {cuts_[nodes_[e].line].origin[side], cuts_[nodes_[e].line].size[side]};
+    }
     bool is_cell(ElementId e) const { return cell_[e] != none; }  ///< Is its domain less than its patch?
     /// What the element covers, as a convex polygon in its own coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;

@@ -10,6 +10,22 @@ ElementFunction dark(const Stage& stage) {
     return out;
 }
 
+namespace {
+
+/// Direct light as projected, on every leaf.
+ElementFunction as_function(const DirectProjection& direct) {
+    ElementFunction out;
+    out.tree = direct.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (ElementId e : out.tree.leaves()) {
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        for (const Spectrum& corner : direct.fit[e].corners) out.add_value(corner);
+    }
+    return out;
+}
+
+}  // namespace
+
 ElementFunction constant_on_leaves(const GlobalLight& light) {
     ElementFunction out;
     out.tree = light.tree;
@@ -39,6 +55,29 @@ ElementFunction gathered_light(const Scene& scene, const DirectProjection& direc
         }
     }
     return out;
+}
+
+DeliveredLight::DeliveredLight(const Scene& scene, const ElementFunction& indirect, const DirectProjection& direct,
+                               const Spectrum& direct_weight, const Spectrum& c)
+    : scene_(scene),
+      indirect_(indirect, scene.regions().size()),
+      direct_(as_function(direct), scene.regions().size()),
+      direct_weight_(direct_weight),
+      c_(c) {}
+
+void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
+    constexpr std::size_t together = 64;
+    std::array<Spectrum, together> direct;
+    indirect_.read(hits, values);
+    for (std::size_t first = 0; first < hits.size(); first += together) {
+        const std::size_t count = std::min(together, hits.size() - first);
+        direct_.read(hits.subspan(first, count), std::span(direct).first(count));
+        for (std::size_t i = 0; i < count; ++i) {
+            const Material& material = scene_.material(hits[first + i].region);
+            Spectrum& b = values[first + i];
+            b = material.reflectance * (b + direct_weight_ * direct[i]) + c_ * material.exitance;
+        }
+    }
 }
 
 double rms_standard_error(const Scene& scene, const GlobalLight& light) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/reconstruct/quick_function.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -19,6 +19,22 @@ ElementFunction constant_on_leaves(const GlobalLight& light);
 /// the method's own elements agree with that share, E_dir + E_ind is alike all over a leaf but for (1 - c) E_dir.
 ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                                const Spectrum& c);
+
+/// Reflected light of what a solution delivers, plus the share c of what is emitted: rho (E_ind + (1 - c) E_dir) + c M,
+/// where `indirect` holds E_ind + c E_dir and direct light is read as projected.
+class DeliveredLight final : public ReflectedLight {
+  public:
+    /// `direct_weight` of the projection: 1 - c, or 0 where `indirect` holds all light. The scene must outlive it.
+    DeliveredLight(const Scene& scene, const ElementFunction& indirect, const DirectProjection& direct,
+                   const Spectrum& direct_weight, const Spectrum& c);
+
+    void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
+
+  private:
+    const Scene& scene_;
+    QuickFunction indirect_, direct_;
+    Spectrum direct_weight_, c_;
+};
 
 /// RMS over the surfaces of the standard error of rho E_ind, where a method is a random one, W/m^2.
 double rms_standard_error(const Scene& scene, const GlobalLight& light);

@@ -13,6 +13,7 @@
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/interpolant.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
+#include "exitance/reconstruct/quick_function.hpp"
 #include "exitance/solve/direct_share.hpp"
 
 namespace exitance {
@@ -136,9 +137,7 @@ class Solver {
         }
         statistics().seconds["solve"] += watch.restart();
         const Spectrum share = fresh ? direct_share() : solution_.direct_share;
-        const ElementFunction source = gathered_light(stage_.scene, direct_, *light_, share);
-        const ElementLocator locator(source.tree, stage_.scene.regions().size());
-        const RadiosityAt b = [&](RegionId region, const Point& y) { return source.at(locator.find(region, y)); };
+        const QuickFunction b(gathered_light(stage_.scene, direct_, *light_, share), stage_.scene.regions().size());
         gathered_ = {};
         ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_) : gather(b, fresh);
         statistics().seconds["reconstruct"] += watch.restart();
@@ -168,7 +167,7 @@ class Solver {
         return find_direct_share(stage_, *light_, locator, options_.seed);
     }
 
-    ElementFunction gather(const RadiosityAt& b, bool fresh) {
+    ElementFunction gather(const ReflectedLight& b, bool fresh) {
         progress_.phase("gather");
         const double scale = light_->mean_reflected();
         if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
@@ -182,18 +181,11 @@ class Solver {
     void certify_solution(CertificateOptions options) {
         options.seed = options_.seed;
         options.direct_in_elements = light_->holds_direct;
-        const ElementLocator direct_locator(direct_.tree, stage_.scene.regions().size());
-        const ElementLocator indirect(solution_.indirect.tree, stage_.scene.regions().size());
-        const ElementLocator coarse(light_->tree, stage_.scene.regions().size());
-        const Spectrum c = solution_.direct_share, direct_weight = Spectrum(1.0) - c;
-        const RadiosityAt delivered = [&](RegionId region, const Point& y) {
-            // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
-            Spectrum E = options_.bounces > 0
-                             ? light_->indirect[light_->numbering.number[coarse.find(region, y).element]]
-                             : solution_.indirect.at(indirect.find(region, y));
-            if (!light_->holds_direct) E += direct_weight * direct_.at(direct_locator.find(region, y));
-            return stage_.scene.material(region).reflectance * E + c * stage_.scene.material(region).exitance;
-        };
+        // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
+        const bool older = options_.bounces > 0;
+        const Spectrum c = solution_.direct_share;
+        const DeliveredLight delivered(stage_.scene, older ? constant_on_leaves(*light_) : solution_.indirect, direct_,
+                                       light_->holds_direct ? Spectrum() : Spectrum(1.0) - c, c);
         certificate_ = certify(stage_, *light_, solution_.indirect, delivered, options);
         record_certificate();
     }

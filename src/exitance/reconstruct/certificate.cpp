@@ -84,7 +84,7 @@ constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
 
 /// The residual at stratified points, twice each.
 std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& light, const ElementLocator& coarse,
-                                      const ElementFunction& indirect, const RadiosityAt& b,
+                                      const ElementFunction& indirect, const ReflectedLight& b,
                                       const CertificateOptions& options) {
     const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(sample_count)));
     const auto rays_at = [&](ElementId leaf) {
@@ -110,9 +110,8 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
             const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
                 const std::uint64_t key = hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
                 cast_gather(stage, x, n, region, rays, key, workspace);
-                r = rho * (read_gather(stage, b, workspace).irradiance - delivered);
-                if (options.gathered)
-                    local = rho * (read_gather(stage, *options.gathered, workspace).irradiance - delivered);
+                r = rho * (read_gather(b, workspace).irradiance - delivered);
+                if (options.gathered) local = rho * (read_gather(*options.gathered, workspace).irradiance - delivered);
             };
             measure(1, sample.r1, sample.local1);
             measure(2, sample.r2, sample.local2);
@@ -147,8 +146,8 @@ std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light
 
 }  // namespace
 
-Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect, const RadiosityAt& b,
-                    const CertificateOptions& options) {
+Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
+                    const ReflectedLight& b, const CertificateOptions& options) {
     Certificate out;
     out.mean_reflected = light.mean_reflected();
     if (out.mean_reflected <= 0) return out;

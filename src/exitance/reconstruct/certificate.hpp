@@ -14,7 +14,7 @@ struct CertificateOptions {
     /// rays in proportion to those that it took. Null when there was none.
     const Field<ElementId, LocalPassReport::Leaf>* leaves = nullptr;
     /// What the local pass gathered, where there was one: tells its error from the method's.
-    const RadiosityAt* gathered = nullptr;
+    const ReflectedLight* gathered = nullptr;
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -42,7 +42,7 @@ struct Certificate {
 /// residuals. The bound takes the norm of (I - rho H)^-1, sqrt(C_1 C_inf) from two coarse solves with unit light, and
 /// Student's upper limit of ||r||. Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays). `light` gives
 /// mesh and direct light for the coarse solves; `b` must read the delivered function.
-Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect, const RadiosityAt& b,
-                    const CertificateOptions& options);
+Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
+                    const ReflectedLight& b, const CertificateOptions& options);
 
 }  // namespace exitance

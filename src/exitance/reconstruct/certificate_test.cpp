@@ -33,9 +33,9 @@ struct PlantedError {
 
     Certificate certificate(std::uint64_t seed) const {
         const ElementLocator locator(delivered.tree, scene.regions().size());
-        const RadiosityAt b = [&](RegionId region, const Point& y) {
+        const PointwiseLight b([&](RegionId region, const Point& y) {
             return rho * (Spectrum(1.0) + delivered.at(locator.find(region, y)));
-        };
+        });
         return certify(stage, light, delivered, b, {.error = 0.02, .seed = seed});
     }
 

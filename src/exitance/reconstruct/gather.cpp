@@ -25,20 +25,23 @@ void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId o
         w.quarter[place] = static_cast<std::uint8_t>(4 * k / rays);
     }
     stage.tracer.nearest(w.origins, w.directions, own, w.hits);
-}
-
-Gathered read_gather(const Stage& stage, const RadiosityAt& b, const GatherWorkspace& w) {
-    const Point& x = w.origins[0];
-    const std::size_t rays = w.hits.size();
-    std::array<Spectrum, 4> quarter{};
-    for (std::size_t k = 0; k < rays; ++k) {
+    w.fronts.clear(), w.share.clear();
+    for (std::uint32_t k = 0; k < rays; ++k) {
         const RayHit& hit = w.hits[k];
         if (hit.surface.is_none() || !hit.front) continue;
-        quarter[w.quarter[k]] += b(stage.scene.surfaces()[hit.surface].region, x + hit.distance * w.directions[k]);
+        w.fronts.push_back({stage.scene.surfaces()[hit.surface].region, x + hit.distance * w.directions[k]});
+        w.share.push_back(w.quarter[k]);
     }
+}
+
+Gathered read_gather(const ReflectedLight& b, GatherWorkspace& w) {
+    w.values.resize(w.fronts.size());
+    b.read(w.fronts, w.values);
+    std::array<Spectrum, 4> quarter{};
+    for (std::size_t k = 0; k < w.fronts.size(); ++k) quarter[w.share[k]] += w.values[k];
     Gathered out;
     for (Spectrum& q : quarter) {
-        q *= 4.0 / static_cast<double>(rays);
+        q *= 4.0 / static_cast<double>(w.hits.size());
         out.irradiance += 0.25 * q;
     }
     for (const Spectrum& q : quarter) out.variance += 0.5 / 12 * ((q - out.irradiance) * (q - out.irradiance));
@@ -46,9 +49,14 @@ Gathered read_gather(const Stage& stage, const RadiosityAt& b, const GatherWorks
 }
 
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
-                          std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace) {
+                          std::uint64_t key, const ReflectedLight& b, GatherWorkspace& workspace) {
     cast_gather(stage, x, n, own, rays, key, workspace);
-    return read_gather(stage, b, workspace);
+    return read_gather(b, workspace);
+}
+
+Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
+                          std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace) {
+    return gather_reflected(stage, x, n, own, rays, key, PointwiseLight(b), workspace);
 }
 
 }  // namespace exitance

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "exitance/transport/hemisphere.hpp"
@@ -11,12 +13,41 @@ namespace exitance {
 /// Reflected radiosity b at a point of a region, W/m^2: what a ray reads where it hits.
 using RadiosityAt = std::function<Spectrum(RegionId, const Point&)>;
 
+/// Where a ray hit the front of a surface.
+struct HitPoint {
+    RegionId region;
+    Point y;
+};
+
+/// The same for many rays at once: what lies under their hits is found together.
+class ReflectedLight {
+  public:
+    virtual ~ReflectedLight() = default;
+    /// values[i] = b at hits[i], W/m^2; as many values as hits.
+    virtual void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const = 0;
+};
+
+/// A function of one point as light for many rays.
+class PointwiseLight final : public ReflectedLight {
+  public:
+    explicit PointwiseLight(RadiosityAt b) : b_(std::move(b)) {}
+    void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override {
+        for (std::size_t i = 0; i < hits.size(); ++i) values[i] = b_(hits[i].region, hits[i].y);
+    }
+
+  private:
+    RadiosityAt b_;
+};
+
 /// Room for the rays of one gather; one a thread.
 struct GatherWorkspace {
     std::vector<Point> origins;  ///< One: where all rays begin.
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
     std::vector<std::uint8_t> quarter;  ///< Of the points' order that a ray comes from.
+    std::vector<HitPoint> fronts;       ///< What there is to read,
+    std::vector<std::uint8_t> share;    ///< the quarter that it counts in,
+    std::vector<Spectrum> values;       ///< and what was read.
     std::vector<std::uint32_t> filled;  ///< Rays in each cell so far.
 };
 
@@ -32,11 +63,13 @@ struct Gathered {
 /// density cos / pi around n: E = mean of b at their first hits. `own` is the region that x lies on, or none. The
 /// directions are scrambled Sobol points named by `key`. Unbiased; error ~ rays^-3/4.
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
+                          std::uint64_t key, const ReflectedLight& b, GatherWorkspace& workspace);
+Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
                           std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace);
 
 /// Its two steps, for those who read several functions with the same rays: cast them, then read b where they hit.
 void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
                  GatherWorkspace& workspace);
-Gathered read_gather(const Stage& stage, const RadiosityAt& b, const GatherWorkspace& workspace);
+Gathered read_gather(const ReflectedLight& b, GatherWorkspace& workspace);
 
 }  // namespace exitance

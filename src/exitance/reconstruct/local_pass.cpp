@@ -25,7 +25,7 @@ bool LocalPass::is_too_noisy(ElementId e, const LocalPassDemand& demand) const {
 
 /// Gathers with the rays that the element's area suggests, or that it or its parent took before, and once more with as
 /// many as the noise then asks for.
-LocalPass::Sampled LocalPass::sample(ElementId e, const RadiosityAt& b, const LocalPassDemand& demand,
+LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand,
                                      GatherWorkspace& workspace) const {
     const ElementId parent = tree_.parent(e);
     const unsigned inherited = parent.is_none() ? 0 : sampled_[parent].place_rays / 2;
@@ -49,7 +49,7 @@ LocalPass::Sampled LocalPass::sample(ElementId e, const RadiosityAt& b, const Lo
     return out;
 }
 
-LocalPass::Sampled LocalPass::sample(ElementId e, const RadiosityAt& b, unsigned rays,
+LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, unsigned rays,
                                      GatherWorkspace& workspace) const {
     const Patch& patch = tree_.patch(e);
     const RegionId region = tree_.region(e);
@@ -113,7 +113,7 @@ ElementFunction LocalPass::finished(LocalPassReport& report) const {
     return out;
 }
 
-ElementFunction LocalPass::gather(const RadiosityAt& b, bool fresh, const LocalPassDemand& demand,
+ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand,
                                   LocalPassReport& report, Progress& progress, const StopRequest& stop) {
     std::vector<ElementId> active = tree_.leaves();
     const bool known = !fresh && sampled_.size() == tree_.size();

@@ -43,7 +43,7 @@ class LocalPass {
     LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed);
 
     /// Gathers b. `fresh`: b is not what was gathered last. `report.rays` counts those of this call.
-    ElementFunction gather(const RadiosityAt& b, bool fresh, const LocalPassDemand& demand, LocalPassReport& report,
+    ElementFunction gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand, LocalPassReport& report,
                            Progress& progress, const StopRequest& stop);
 
   private:
@@ -57,8 +57,9 @@ class LocalPass {
         unsigned place_rays = 0;     ///< Of one place, in the end; 0: not gathered yet.
     };
 
-    Sampled sample(ElementId e, const RadiosityAt& b, const LocalPassDemand& demand, GatherWorkspace& workspace) const;
-    Sampled sample(ElementId e, const RadiosityAt& b, unsigned rays, GatherWorkspace& workspace) const;
+    Sampled sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand,
+                   GatherWorkspace& workspace) const;
+    Sampled sample(ElementId e, const ReflectedLight& b, unsigned rays, GatherWorkspace& workspace) const;
     double allowed_noise(ElementId e, const LocalPassDemand& demand) const;
     bool is_too_noisy(ElementId e, const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);

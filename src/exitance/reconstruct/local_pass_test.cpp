@@ -16,7 +16,7 @@ class OneBrightFace : public testing::Test {
     Scene scene = test::make(test::closed_box({}, {2, 1.5, 1}));
     Stage stage{scene};
     RegionId bright = scene.surfaces()[SurfaceId(5)].region;
-    RadiosityAt b = [this](RegionId region, const Point&) { return Spectrum(region == bright ? 1.0 : 0.0); };
+    PointwiseLight b{[this](RegionId region, const Point&) { return Spectrum(region == bright ? 1.0 : 0.0); }};
     LocalPass pass{stage, {.edge = 0.8, .grading_levels = 0}, 1};
     static constexpr LocalPassDemand coarse = {.rays = {.average = 32}, .noise = 0.002, .tolerance = 0.002},
                                      fine = {.rays = {.average = 64}, .noise = 0.0007, .tolerance = 0.0007};
@@ -82,7 +82,7 @@ TEST(LocalPass, GathersConstantLightExactly) {
     const StopRequest stop;
     LocalPassReport report;
     const ElementFunction E =
-        pass.gather([](RegionId, const Point&) { return Spectrum(2.0); }, true,
+        pass.gather(PointwiseLight([](RegionId, const Point&) { return Spectrum(2.0); }), true,
                     {.rays = {.average = 16}, .noise = 1e-3, .tolerance = 1e-3}, report, progress, stop);
     for (const auto& value : E.values) EXPECT_NEAR(value[0], 2, 1e-6);  // single precision
     EXPECT_EQ(report.noise, 0);

@@ -26,6 +26,8 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
         std::vector<Point> origins;
         std::vector<Vec3> directions;
         std::vector<RayHit> found;
+        std::vector<LeafFinder::Query> queries;
+        std::vector<std::size_t> of_ray;
         for (std::size_t i = begin; i < end; ++i) {
             const ElementId e = numbering.leaves[i];
             const Patch& patch = tree.patch(e);
@@ -38,12 +40,15 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
                 directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
             }
             stage.tracer.nearest(origins, directions, tree.region(e), found);
+            queries.clear(), of_ray.clear();
             for (std::size_t k = 0; k < count; ++k) {
                 if (found[k].surface.is_none() || !found[k].front) continue;
                 const RegionId hit = stage.scene.surfaces()[found[k].surface].region;
-                const Point y = origins[k] + found[k].distance * directions[k];
-                hits_[first_[i] + k] = numbering.number[locator.find(hit, y).element];
+                queries.push_back(locator.root_of(hit, origins[k] + found[k].distance * directions[k]));
+                of_ray.push_back(first_[i] + k);
             }
+            locator.leaves().find(queries);
+            for (std::size_t k = 0; k < queries.size(); ++k) hits_[of_ray[k]] = queries[k].leaf;
         }
     });
 }

@@ -1,0 +1,171 @@
+#include "exitance/mesh/leaf_finder.hpp"
+
+#include <bit>
+
+namespace exitance {
+
+/// Walks the tree from its roots and writes cuts and leaves down in the coordinates of the root.
+struct LeafFinder::Builder {
+    const ElementTree& tree;
+    LeafFinder& out;
+    Field<ElementId, std::uint32_t> number;
+    std::size_t leaves_met = 0;
+
+    /// Own coordinates of an element are (root's - origin) x scale: all elements are parallel to their root.
+    struct Frame {
+        Vec2 origin, scale;
+
+        Frame part(Vec2 at, Vec2 stretch) const {
+            return {{origin.x + at.x / scale.x, origin.y + at.y / scale.y}, {scale.x * stretch.x, scale.y * stretch.y}};
+        }
+    };
+
+    std::uint32_t add_node(const Frame& frame, Vec2 normal, double offset) {
+        const Vec2 n = {normal.x * frame.scale.x, normal.y * frame.scale.y};
+        out.nodes_.push_back({n, offset + dot(n, frame.origin), {0, 0}});
+        return static_cast<std::uint32_t>(out.nodes_.size() - 1);
+    }
+    void set(std::uint32_t node, std::size_t side, std::uint32_t part) { out.nodes_[node].part[side] = part; }
+
+    std::uint32_t add(ElementId e, const Frame& frame) {
+        if (tree.is_leaf(e)) {
+            ++leaves_met;
+            out.leaves_[number[e]] = {frame.origin, frame.scale, e, tree.patch(e).shape};
+            return is_leaf | number[e];
+        }
+        if (tree.way(e) == Cut::line) return add_line(e, frame);
+        return tree.patch(e).is_triangle() ? add_triangle(e, frame) : add_parallelogram(e, frame);
+    }
+
+    std::uint32_t add_line(ElementId e, const Frame& frame) {
+        const IdRange<ElementId> children = tree.children(e);
+        const CutLine line = tree.line(e);
+        const std::uint32_t node = add_node(frame, line.normal, line.offset);
+        for (std::size_t side = 0; side < 2; ++side) {
+            const auto [origin, size] = tree.cell_frame(e, side);
+            set(node, side, add(children[side], frame.part(origin, {1 / size.x, 1 / size.y})));
+        }
+        return node;
+    }
+
+    /// Corners at (1, 0) and (0, 1), then what the third line leaves: the corner at (0, 0) and the middle, upside down.
+    std::uint32_t add_triangle(ElementId e, const Frame& frame) {
+        const IdRange<ElementId> children = tree.children(e);
+        const std::uint32_t u = add_node(frame, {1, 0}, 0.5), v = add_node(frame, {0, 1}, 0.5),
+                            w = add_node(frame, {1, 1}, 0.5);
+        set(u, 0, v), set(v, 0, w);
+        set(u, 1, add(children[1], frame.part({0.5, 0}, {2, 2})));
+        set(v, 1, add(children[2], frame.part({0, 0.5}, {2, 2})));
+        set(w, 0, add(children[0], frame.part({0, 0}, {2, 2})));
+        set(w, 1, add(children[3], frame.part({0.5, 0.5}, {-2, -2})));
+        return u;
+    }
+
+    std::uint32_t add_parallelogram(ElementId e, const Frame& frame) {
+        const IdRange<ElementId> children = tree.children(e);
+        const Cut way = tree.way(e);
+        const double r = way == Cut::both ? 0.5 : tree.ratio(e);
+        const auto halves = [&](Vec2 along, const Frame& whole, ElementId low, ElementId high) {
+            const Vec2 across = {along.y, along.x};
+            const std::uint32_t node = add_node(whole, along, r);
+            set(node, 0, add(low, whole.part({0, 0}, (1 / r) * along + across)));
+            set(node, 1, add(high, whole.part(r * along, (1 / (1 - r)) * along + across)));
+            return node;
+        };
+        if (way == Cut::u) return halves({1, 0}, frame, children[0], children[1]);
+        if (way == Cut::v) return halves({0, 1}, frame, children[0], children[1]);
+        const std::uint32_t node = add_node(frame, {0, 1}, r);
+        set(node, 0, halves({1, 0}, frame.part({0, 0}, {1, 2}), children[0], children[1]));
+        set(node, 1, halves({1, 0}, frame.part({0, 0.5}, {1, 2}), children[2], children[3]));
+        return node;
+    }
+};
+
+LeafFinder::LeafFinder(const ElementTree& tree) {
+    Builder builder{tree, *this, Field<ElementId, std::uint32_t>(tree.size())};
+    std::uint32_t count = 0;
+    for (ElementId e : tree.ids())
+        if (tree.is_leaf(e)) builder.number[e] = count++;
+    leaves_.resize(count);
+    nodes_.reserve(tree.size());
+    for (ElementId root : tree.roots()) {
+        const std::size_t before = builder.leaves_met;
+        const std::uint32_t whole = builder.add(root, {{0, 0}, {1, 1}});
+        // About four cells a leaf, as square as the root's shape allows.
+        const double cells = 4.0 * static_cast<double>(builder.leaves_met - before);
+        const double aspect = norm(tree.patch(root).a) / norm(tree.patch(root).b);
+        const auto power = [](double wanted) {
+            constexpr double most = 1024;
+            return std::bit_floor(static_cast<std::uint32_t>(std::clamp(wanted, 1.0, most)));
+        };
+        Grid grid{static_cast<std::uint32_t>(start_.size())};
+        if (cells > 4) grid.columns = power(std::sqrt(cells * aspect)), grid.rows = power(cells / grid.columns);
+        for (std::uint32_t row = 0; row < grid.rows; ++row)
+            for (std::uint32_t column = 0; column < grid.columns; ++column) {
+                const Vec2 lo = {static_cast<double>(column) / grid.columns, static_cast<double>(row) / grid.rows};
+                start_.push_back(deepest_around(whole, lo, lo + Vec2{1.0 / grid.columns, 1.0 / grid.rows}));
+            }
+        grids_.push_back(grid);
+    }
+}
+
+/// The last part on the way down from `part` that holds a whole box.
+std::uint32_t LeafFinder::deepest_around(std::uint32_t part, Vec2 lo, Vec2 hi) const {
+    const Vec2 middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
+    while (!(part & is_leaf)) {
+        const Node& node = nodes_[part];
+        const double height = dot(node.normal, middle) - node.offset;
+        const double reach = std::abs(node.normal.x) * half.x + std::abs(node.normal.y) * half.y;
+        const double margin = 1e-12 * (std::abs(node.normal.x) + std::abs(node.normal.y));  // rounding
+        if (std::abs(height) <= reach + margin) break;
+        part = node.part[height > 0 ? 1 : 0];
+    }
+    return part;
+}
+
+/// Where a point's way down begins, in `start_`.
+std::size_t LeafFinder::cell(std::size_t root, Vec2 uv) const {
+    const Grid& grid = grids_[root];
+    const auto index = [](double t, std::uint32_t count) {
+        return std::min(static_cast<std::uint32_t>(t * count), count - 1);
+    };
+    return grid.first + static_cast<std::size_t>(index(uv.y, grid.rows)) * grid.columns + index(uv.x, grid.columns);
+}
+
+LeafFinder::Found LeafFinder::find(std::size_t root, Vec2 uv) const {
+    std::uint32_t part = start_[cell(root, uv)];
+    while (!(part & is_leaf)) part = nodes_[part].part_of(uv);
+    const std::uint32_t number = part & ~is_leaf;
+    const Leaf& leaf = leaves_[number];
+    const Vec2 own = {(uv.x - leaf.origin.x) * leaf.scale.x, (uv.y - leaf.origin.y) * leaf.scale.y};
+    return {number, into_shape(own, leaf.shape)};
+}
+
+void LeafFinder::find(std::span<Query> queries) const {
+    constexpr std::size_t together = 32;
+    std::size_t at[together];
+    for (std::size_t first = 0; first < queries.size(); first += together) {
+        const std::span<Query> batch = queries.subspan(first, std::min(together, queries.size() - first));
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            at[i] = cell(batch[i].root, batch[i].uv);
+            __builtin_prefetch(&start_[at[i]]);
+        }
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            batch[i].leaf = start_[at[i]];
+            if (!(batch[i].leaf & is_leaf)) __builtin_prefetch(&nodes_[batch[i].leaf]);
+        }
+        for (bool more = true; more;) {
+            more = false;
+            for (Query& q : batch) {
+                if (q.leaf & is_leaf) continue;
+                q.leaf = nodes_[q.leaf].part_of(q.uv);
+                if (q.leaf & is_leaf) continue;
+                __builtin_prefetch(&nodes_[q.leaf]);
+                more = true;
+            }
+        }
+        for (Query& q : batch) q.leaf &= ~is_leaf;
+    }
+}
+
+}  // namespace exitance

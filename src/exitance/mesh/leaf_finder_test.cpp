@@ -1,0 +1,67 @@
+#include "exitance/mesh/leaf_finder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/core/random.hpp"
+
+namespace exitance {
+namespace {
+
+/// A parallelogram and a triangle, cut at random in every way there is.
+ElementTree cut_at_random(int cuts, std::uint64_t seed) {
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0, 0, 0}, {3, 0.2, 0}, {0.5, 1, 0}, Patch::Shape::parallelogram});
+    tree.add_root(RegionId(1), {{0, 0, 1}, {1, 0, 0}, {0, 2, 0}, Patch::Shape::triangle});
+    RandomStream random(seed, Stream::mesh);
+    for (int i = 0; i < cuts; ++i) {
+        const std::vector<ElementId> leaves = tree.leaves();
+        const ElementId leaf = leaves[random.bits() % leaves.size()];
+        if (tree.is_cell(leaf) || i % 7 == 3) {
+            const Vec2 n = {random.uniform() - 0.5, random.uniform() - 0.5};
+            tree.split_by_line(leaf, {n, dot(n, tree.centre(leaf))}, 0);
+        } else {
+            tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), 0.2 + 0.6 * random.uniform());
+        }
+    }
+    return tree;
+}
+
+TEST(LeafFinder, FindsWhatTheTreeFinds) {
+    for (const int cuts : {0, 1, 5, 40, 300}) {
+        const ElementTree tree = cut_at_random(cuts, static_cast<std::uint64_t>(cuts));
+        const LeafFinder finder(tree);
+        EXPECT_EQ(finder.size(), tree.leaves().size());
+        RandomStream random(2, Stream::mesh);
+        for (int i = 0; i < 2000; ++i) {
+            const std::size_t root = random.bits() % 2;
+            const ElementId e = tree.roots()[root];
+            const double s = random.uniform(), t = random.uniform();
+            const Vec2 uv = uniform_in_shape(tree.patch(e).shape, s, t);
+            const LeafFinder::Found found = finder.find(root, uv);
+            const ElementTree::Place place = tree.leaf_at(e, uv);
+            ASSERT_EQ(finder.id(found.leaf), place.element);
+            LeafFinder::Query query{static_cast<std::uint32_t>(root), uv, 0};
+            finder.find(std::span(&query, 1));
+            EXPECT_EQ(query.leaf, found.leaf);
+            EXPECT_EQ(finder.id(found.leaf), tree.leaves()[found.leaf]);
+            // Rounding, of thirty cuts within one another at most.
+            EXPECT_NEAR(found.uv.x, place.uv.x, 1e-9);
+            EXPECT_NEAR(found.uv.y, place.uv.y, 1e-9);
+        }
+    }
+}
+
+TEST(LeafFinder, TakesCornersAndEdgesOfTheRoot) {
+    const ElementTree tree = cut_at_random(100, 3);
+    const LeafFinder finder(tree);
+    for (const Vec2 uv : {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}, Vec2{0.5, 0}, Vec2{0, 0.5}, Vec2{0.5, 0.5}})
+        for (std::size_t root = 0; root < 2; ++root) {
+            const LeafFinder::Found found = finder.find(root, uv);
+            const Point p = tree.patch(tree.roots()[root]).at(uv),
+                        back = tree.patch(finder.id(found.leaf)).at(found.uv);
+            EXPECT_LT(norm(p - back), 1e-12);  // rounding
+        }
+}
+
+}  // namespace
+}  // namespace exitance

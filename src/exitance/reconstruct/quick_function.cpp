@@ -1,0 +1,51 @@
+#include "exitance/reconstruct/quick_function.hpp"
+
+namespace exitance {
+
+QuickFunction::QuickFunction(const ElementFunction& function, std::size_t region_count)
+    : locator_(function.tree, region_count) {
+    const ElementTree& tree = function.tree;
+    Field<ElementId, ElementId> root(tree.size());
+    for (ElementId e : tree.ids()) {
+        root[e] = tree.parent(e).is_none() ? e : root[tree.parent(e)];
+        if (!tree.is_leaf(e)) continue;
+        const Patch &patch = tree.patch(e), &whole = tree.patch(root[e]);
+        const Vec2 middle = whole.coordinates(patch.at(0.5, 0.5));
+        Polynomial p{static_cast<float>(middle.x), static_cast<float>(middle.y), {}};
+        // The leaf is parallel to its root: its sides are so long in the root's coordinates, some of them reversed.
+        const Point origin = whole.at(p.u, p.v);
+        const Vec2 at = patch.coordinates(origin);
+        const double a = dot(patch.a, whole.a) / squared_norm(whole.a),
+                     b = dot(patch.b, whole.b) / squared_norm(whole.b);
+        const auto* corner = &function.values[function.first_value[e]];
+        for (std::size_t k = 0; k < bands; ++k) {
+            const double c0 = corner[0][k], cu = corner[1][k] - c0, cv = corner[patch.is_triangle() ? 2 : 3][k] - c0;
+            const double cm = patch.is_triangle() ? 0 : corner[2][k] - c0 - cu - cv;
+            const double value[4] = {c0 + cu * at.x + cv * at.y + cm * at.x * at.y, (cu + cm * at.y) / a,
+                                     (cv + cm * at.x) / b, cm / (a * b)};
+            for (std::size_t i = 0; i < 4; ++i) p.coefficient[i][k] = static_cast<float>(value[i]);
+        }
+        leaves_.push_back(p);
+    }
+}
+
+void QuickFunction::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
+    constexpr std::size_t together = 32;
+    std::array<LeafFinder::Query, together> queries;
+    for (std::size_t first = 0; first < hits.size(); first += together) {
+        const std::size_t count = std::min(together, hits.size() - first);
+        for (std::size_t i = 0; i < count; ++i)
+            queries[i] = locator_.root_of(hits[first + i].region, hits[first + i].y);
+        locator_.leaves().find(std::span(queries).first(count));
+        for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(&leaves_[queries[i].leaf]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Polynomial& p = leaves_[queries[i].leaf];
+            const double u = queries[i].uv.x - p.u, v = queries[i].uv.y - p.v, uv = u * v;
+            const auto& c = p.coefficient;
+            for (std::size_t b = 0; b < bands; ++b)
+                values[first + i][b] = c[0][b] + u * c[1][b] + v * c[2][b] + uv * c[3][b];
+        }
+    }
+}
+
+}  // namespace exitance

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/reconstruct/gather.hpp"
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+/// A function on elements for rays, which read it in great numbers: the leaves under many hits are found together, and
+/// a leaf's polynomial stands in one line of memory. The same values as the function's, up to single precision.
+class QuickFunction final : public ReflectedLight {
+  public:
+    QuickFunction(const ElementFunction& function, std::size_t region_count);
+
+    void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
+
+  private:
+    /// Of 1, u, v, uv, where (u, v) are the coordinates of the leaf's root, from a middle of the leaf.
+    struct alignas(64) Polynomial {
+        float u, v;
+        std::array<std::array<float, bands>, 4> coefficient;
+    };
+
+    ElementLocator locator_;
+    std::vector<Polynomial> leaves_;  ///< By leaf number.
+};
+
+}  // namespace exitance
