@@ -78,6 +78,33 @@ TEST(HostileSolutions, CutNothingAlongLinesThatMissIt) {
     }
 }
 
+TEST(HostileSolutions, SliversCutFromSliversAreNone) {
+    // Thin triangles that a solve halves again and again keep few digits of their areas.
+    Solution s = sample_solution();
+    RandomStream random(3, Stream::mesh);
+    s.indirect = {};
+    const Vec3 a{0.3, 0.7, -0.2};
+    s.indirect.tree.add_root(RegionId(std::size_t(0)),
+                             {{0.2, 0, 0.5}, a, 1.1 * a + Vec3{0, 1e-11, 0}, Patch::Shape::triangle});
+    ElementId e = s.indirect.tree.roots()[0];
+    for (int depth = 0; depth < 12; ++depth) {
+        const Vec2 n = {random.uniform() - 0.5, random.uniform() - 0.5};
+        e = s.indirect.tree.split_by_line(e, {n, dot(n, s.indirect.tree.centre(e))}, 0);
+        ASSERT_FALSE(e.is_none());
+    }
+    s.indirect.first_value.resize(s.indirect.tree.size(), 0);
+    for (ElementId leaf : s.indirect.tree.leaves()) {
+        s.indirect.first_value[leaf] = static_cast<std::uint32_t>(s.indirect.values.size());
+        s.indirect.values.resize(s.indirect.values.size() +
+                                 static_cast<std::size_t>(s.indirect.tree.patch(leaf).corner_count()));
+    }
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", s));
+    const Result<Solution> back = load_solution(folder / "s.h5");
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->indirect.tree.size(), s.indirect.tree.size());
+}
+
 TEST(HostileSolutions, MayNotChangeTheKindOfASet) {
     const TemporaryFolder folder;
     Hdf5Writer out;
