@@ -73,7 +73,7 @@ def accessor(i):
     return values.reshape(-1, columns) if columns > 1 else values
 
 
-glb_area, glb_flux, glb_light = 0, 0, 0
+glb_area, glb_flux = 0, 0
 for mesh in gltf["meshes"]:
     for primitive in mesh["primitives"]:
         values = {name: accessor(i) for name, i in primitive["attributes"].items()}
@@ -95,9 +95,7 @@ for mesh in gltf["meshes"]:
         assert np.allclose(values["_RADIOSITY"], np.pi * radiance + rho * values["_IRRADIANCE"], rtol=1e-5)
         a, f = area_and_flux(values["POSITION"].astype(float), cells, values["_RADIOSITY"])
         glb_area, glb_flux = glb_area + a, glb_flux + f
-        glb_light = glb_light + values["_RADIOSITY"].sum(axis=0, dtype=float)
-light = vtk_to_numpy(vtu.GetPointData().GetArray("radiosity")).sum(axis=0, dtype=float)
-assert np.isclose(glb_area, area, rtol=1e-5) and np.allclose(glb_light, light, rtol=1e-9)
+assert np.isclose(glb_area, area, rtol=1e-5)
 # Quadrilaterals may be cut along either diagonal; their values are random here, so that the flux depends on it.
 assert np.allclose(glb_flux, flux, rtol=0.05), (glb_flux, flux)
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "exitance/io/atomic_file.hpp"
-#include "exitance/io/element_mesh.hpp"
+#include "exitance/io/conforming_mesh.hpp"
 #include "exitance/io/export_formats.hpp"
 #include "exitance/io/tone_map.hpp"
 
@@ -35,7 +35,9 @@ struct Triangles {
     std::vector<Primitive> primitives;
 };
 
-Triangles make_triangles(const Solution& solution, const ElementMesh& mesh, const ToneMap& tone) {
+Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
+    const ConformingMesh conforming = make_conforming(make_element_mesh(solution));
+    const ElementMesh& mesh = conforming.mesh;
     std::vector<std::size_t> order(mesh.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     const auto key = [&](std::size_t i) { return std::pair(mesh.group[i], mesh.material[i]); };
@@ -50,9 +52,15 @@ Triangles make_triangles(const Solution& solution, const ElementMesh& mesh, cons
                                       out.index.size(), 0});
         Primitive& primitive = out.primitives.back();
         const Normal& n = solution.scene.regions()[RegionId(static_cast<std::size_t>(mesh.region[i]))].plane.n;
-        for (std::uint32_t c = 2; c < mesh.corner_count(i); ++c)
-            for (const std::size_t corner : {std::size_t(0), std::size_t(c - 1), std::size_t(c)})
+        const auto add_triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
+            for (const std::size_t corner : {a, b, c})
                 out.index.push_back(static_cast<std::uint32_t>(primitive.vertices + corner));
+        };
+        const std::size_t count = mesh.corner_count(i);
+        if (conforming.has_middle[i])
+            for (std::size_t c = 0; c + 1 < count; ++c) add_triangle(count - 1, c, (c + 1) % (count - 1));
+        else
+            for (std::size_t c = 2; c < count; ++c) add_triangle(0, c - 1, c);
         for (std::uint32_t p = mesh.first_point[i]; p < mesh.first_point[i + 1]; ++p) {
             Spectrum light;
             Float3 radiosity, irradiance;
@@ -183,7 +191,7 @@ std::string make_json(const Scene& scene, const Triangles& triangles, const Tone
 Result<void> write_glb(const Solution& solution, const std::string& path) {
     static_assert(std::endian::native == std::endian::little);
     const ToneMap tone = make_tone_map(solution);
-    const Triangles triangles = make_triangles(solution, make_element_mesh(solution), tone);
+    const Triangles triangles = make_triangles(solution, tone);
     const std::string json = make_json(solution.scene, triangles, tone);
     const std::size_t binary = triangles.position.size() * sizeof(Float3) * attributes + triangles.index.size() * 4;
     const std::size_t total = 12 + 8 + json.size() + 8 + binary;
