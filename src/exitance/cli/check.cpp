@@ -37,8 +37,9 @@ std::string report(const CheckedScene& checked) {
     const Vec3 size = scene.box().size();
     return text + fmt::format(
                       "The scene can be used: {} surfaces of {:.4g} m^2 ({} after joining coplanar neighbours), "
-                      "{} emitters, {} materials, {:.4g} x {:.4g} x {:.4g} m.\n",
+                      "{} emitters, {}{} materials, {:.4g} x {:.4g} x {:.4g} m.\n",
                       scene.surfaces().size(), area, scene.regions().size(), scene.emitters().size(),
+                      scene.lights().empty() ? "" : fmt::format("{} lights without extent, ", scene.lights().size()),
                       scene.materials().size(), size.x, size.y, size.z);
 }
 

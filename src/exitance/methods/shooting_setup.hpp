@@ -18,8 +18,11 @@ class ShootingSetup {
     /// Hands over what was found. The setup is empty afterwards.
     GlobalLight finish(const SolveReport& report);
 
-    /// Is the emitters' own light shot too (`--visibility fractional`), or exact and apart?
-    bool shoots_direct_light() const { return input_.options.visibility == VisibilityKind::fractional; }
+    /// Is the emitters' own light shot too (`--visibility fractional`), or exact and apart? Lights without extent have
+    /// no patch to shoot from: with any of them it is apart.
+    bool shoots_direct_light() const {
+        return input_.options.visibility == VisibilityKind::fractional && input_.stage.scene.lights().empty();
+    }
 
     ElementTree tree;
     std::vector<ElementId> patches;      ///< Leaves of the tree as it was given.

@@ -16,6 +16,9 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
     EnergyBalance out;
     for (const Region& region : scene.regions())
         out.emitted += region.area * sum(scene.materials()[region.material].exitance);
+    for (const PunctualLight& light : scene.lights()) out.emitted += sum(light.power());
+    // Parallel light comes from outside: what meets a surface counts as emitted.
+    for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * sum(direct.fit[e].parallel);
     const auto absorb = [&](RegionId region, double area, const Spectrum& E) {
         out.absorbed += area * sum((Spectrum(1.0) - scene.material(region).reflectance) * E);
     };

@@ -48,6 +48,8 @@ class PathTracer {
             if (survival <= 0 || random.uniform() >= survival) return sum;
             throughput *= rho / survival;
             sum += throughput * shadow_ray(*y, random);
+            const Beams& beams = stage_.direct.beams();
+            if (!beams.empty()) sum += throughput * beams.irradiance({y->x, y->n, y->region});
             const double u = random.uniform(), v = random.uniform();
             const std::optional<Vertex> next = follow(*y, cosine_direction(Frame(y->n), u, v));
             if (next) {
@@ -119,6 +121,7 @@ class PathTracer {
     /// Direct light at y by one shadow ray, weighted against the ray that the path takes anyway.
     Spectrum shadow_ray(const Vertex& y, RandomStream& random) const {
         thread_local std::vector<double> chance;
+        if (lights_.empty()) return {};
         const double total = chances(y, chance);
         const double pick = random.uniform() * total, u = random.uniform(), v = random.uniform();
         if (total <= 0) return {};

@@ -14,7 +14,8 @@ bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rou
 
 }  // namespace
 
-DirectLight::DirectLight(const Scene& scene, const Occluders& occluders) : occluders_(&occluders) {
+DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
+    : occluders_(&occluders), beams_(scene.lights(), occluders) {
     for (RegionId r : scene.regions().ids()) {
         if (!scene.material(r).emits()) continue;
         const Region& region = scene.regions()[r];
@@ -44,14 +45,13 @@ Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, 
         const double f = form_factor(at, emitter, scratch);
         if (f > 0) sum += f * emitter.exitance;
     }
-    return sum;
+    return beams_.empty() ? sum : sum + beams_.irradiance(at);
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
                           Workspace& scratch) const {
     light.n = n, light.own = own;
-    light.sources.clear();
-    light.candidates.clear();
+    light.sources.clear(), light.beams.clear(), light.candidates.clear();
     const Point middle = centroid(receiver);
     double radius = occluders_->rounding();
     for (const Point& p : receiver) radius = std::max(radius, norm(p - middle));
@@ -69,13 +69,13 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
             if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
         }
     }
+    if (!beams_.empty()) beams_.prepare(receiver, n, own, light.beams, light.candidates);
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
                           Workspace& scratch) const {
     light.n = whole.n, light.own = whole.own;
-    light.sources.clear();
-    light.candidates.clear();
+    light.sources.clear(), light.beams.clear(), light.candidates.clear();
     for (const ReceiverLight::Source& source : whole.sources) {
         const Emitter& emitter = emitters_[source.emitter];
         scratch.shaft.set(*occluders_, {receiver, whole.n, whole.own},
@@ -83,6 +83,8 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
         const auto from = std::span(whole.candidates).subspan(source.first, source.count);
         add_source(source.emitter, source.piece, scratch.shaft.classify(from, scratch.candidates), light, scratch);
     }
+    if (!whole.beams.empty())
+        beams_.prepare(receiver, whole.n, whole.own, whole.beams, whole.candidates, light.beams, light.candidates);
 }
 
 void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light,
@@ -93,7 +95,8 @@ void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, Re
     light.candidates.insert(light.candidates.end(), scratch.candidates.begin(), scratch.candidates.end());
 }
 
-Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch) const {
+Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
+                                 Spectrum* parallel) const {
     const Receiver at{x, light.n, light.own};
     Spectrum sum;
     for (const ReceiverLight::Source& source : light.sources) {
@@ -101,7 +104,7 @@ Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Wor
         const double f = visible_form_factor(*occluders_, at, source.piece, candidates, scratch);
         if (f > 0) sum += f * emitters_[source.emitter].exitance;
     }
-    return sum;
+    return light.beams.empty() ? sum : sum + beams_.irradiance(at, light.beams, light.candidates, parallel);
 }
 
 }  // namespace exitance

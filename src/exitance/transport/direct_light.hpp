@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "exitance/scene/scene.hpp"
+#include "exitance/transport/beams.hpp"
 #include "exitance/transport/occluders.hpp"
 #include "exitance/transport/shaft.hpp"
 #include "exitance/transport/visible_part.hpp"
@@ -20,13 +21,14 @@ struct ReceiverLight {
     Normal n;
     RegionId own;
     std::vector<Source> sources;  ///< Those that are not certainly hidden.
+    std::vector<Beam> beams;      ///< Of lights without extent, likewise.
     std::vector<PieceId> candidates;
 
-    bool is_dark() const { return sources.empty(); }           ///< No light from any emitter, certainly.
+    bool is_dark() const { return sources.empty() && beams.empty(); }  ///< No light from anywhere, certainly.
     bool is_unshadowed() const { return candidates.empty(); }  ///< Smooth: no shadow edge crosses it, certainly.
 };
 
-/// The light that arrives straight from the emitters, exact at every point.
+/// The light that arrives straight from the emitters and from lights without extent, exact at every point.
 class DirectLight {
   public:
     using Workspace = VisibilityWorkspace;
@@ -38,9 +40,10 @@ class DirectLight {
     ///
     ///     E = sum over emitters s of  M_s F(x, visible part of s)
     ///
-    /// Exact but for rounding (1e-12 relative where F is not tiny). x is to lie on region `own` (a point off its plane
-    /// by more than rounding can be shaded by that region's neighbours), or own is none. A point that another surface
-    /// covers is for the caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
+    /// and what lights without extent bring (beams.hpp). Exact but for rounding (1e-12 relative where F is not tiny). x
+    /// is to lie on region `own` (a point off its plane by more than rounding can be shaded by that region's
+    /// neighbours), or own is none. A point that another surface covers is for the caller to ask about
+    /// (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
     /// Looks at the emitters from a convex polygon of region `own` (metres, counter-clockwise about n); fills `light`,
@@ -52,8 +55,12 @@ class DirectLight {
     void prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
                  Workspace& scratch) const;
 
-    /// The irradiance at a point of the polygon that `light` was made for: as above, up to rounding.
-    Spectrum irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch) const;
+    /// The irradiance at a point of the polygon that `light` was made for: as above, up to rounding. What comes from
+    /// parallel light is added to `parallel`, if given.
+    Spectrum irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
+                        Spectrum* parallel = nullptr) const;
+
+    const Beams& beams() const { return beams_; }
 
     /// An emitting region: its convex pieces, and a ball around it for quick rejection.
     struct Emitter {
@@ -75,6 +82,7 @@ class DirectLight {
 
     const Occluders* occluders_;
     std::vector<Emitter> emitters_;
+    Beams beams_;
 };
 
 }  // namespace exitance

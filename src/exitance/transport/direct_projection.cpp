@@ -15,8 +15,10 @@ DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementI
     if (light.is_dark()) return out;
     std::vector<Spectrum> value(rule.size());
     for (std::size_t i = 0; i < rule.size(); ++i) {
-        value[i] = stage.direct.irradiance(light, patch.at(rule[i].uv), workspace);
+        Spectrum parallel;
+        value[i] = stage.direct.irradiance(light, patch.at(rule[i].uv), workspace, &parallel);
         out.mean += rule[i].weight * value[i];
+        out.parallel += rule[i].weight * parallel;
     }
     const ElementFit fit(tree, e, rule, value);
     for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = fit.corner(i);

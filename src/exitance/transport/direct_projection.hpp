@@ -23,6 +23,7 @@ struct DirectProjectionOptions {
 struct DirectFit {
     std::array<Spectrum, 4> corners;
     Spectrum mean;              ///< W/m^2
+    Spectrum parallel;          ///< What parallel light has in the mean, W/m^2.
     double misfit_squared = 0;  ///< Mean of (w (E - polynomial))^2, see light_weight().
 };
 

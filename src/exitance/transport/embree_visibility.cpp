@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <vector>
 
 #include "exitance/core/check.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
 #include "exitance/geometry/triangulation.hpp"
+#include "exitance/scene/hash_chains.hpp"
 #include "exitance/transport/visibility.hpp"
 
 namespace exitance {
@@ -64,6 +67,9 @@ struct RayTracer::Content {
     Owned<RTCDevice, rtcReleaseDevice> device;
     Owned<RTCScene, rtcReleaseScene> rtc;
     std::vector<SurfaceId> surface_of;  ///< Of every triangle.
+    /// Of every surface: the one of the same corners that faces the other way, as the two sides of a sheet do; none
+    /// else. Empty where no surface has one.
+    Field<SurfaceId, SurfaceId> other_side;
 
     explicit Content(const Scene& s)
         : scene(&s),
@@ -97,6 +103,28 @@ struct RayTracer::Content {
         // The order of a leaf's triangles, and with it which of two equally near ones is met, follows from how many
         // threads build; one always builds the same.
         run_alone([&] { rtcJoinCommitScene(rtc); });
+        find_other_sides();
+    }
+
+    void find_other_sides() {
+        const auto& surfaces = scene->surfaces();
+        HashChains chains(surfaces.size());
+        Field<SurfaceId, std::uint64_t> keys(surfaces.size());
+        for (SurfaceId s : surfaces.ids()) {
+            for (const Point& p : scene->outline(s)) {  // in any order
+                const Float3 q = local(p);
+                keys[s] += hash(std::bit_cast<std::uint32_t>(q.x), std::bit_cast<std::uint32_t>(q.y),
+                                std::bit_cast<std::uint32_t>(q.z));
+            }
+            for (std::uint32_t e = chains.first(keys[s]); e != HashChains::end; e = chains.next(e)) {
+                const SurfaceId t(e);
+                if (keys[t] != keys[s] || dot(surfaces[t].normal, surfaces[s].normal) > -0.999) continue;
+                other_side.resize(surfaces.size());
+                other_side[s] = t, other_side[t] = s;
+                break;
+            }
+            chains.add(keys[s]);
+        }
     }
 
     Float3 local(const Point& p) const { return to_float(scale * (p - centre)); }
@@ -111,6 +139,10 @@ struct RayTracer::Content {
         hit = RayHit();
         if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return true;
         hit.surface = surface_of[packet.hit.primID[lane]];
+        // Of a sheet's two sides Embree finds either; a ray meets the one that faces it.
+        if (other_side.size() > 0 && !other_side[hit.surface].is_none() &&
+            dot(scene->surfaces()[hit.surface].normal, direction) > 0)
+            hit.surface = other_side[hit.surface];
         const Surface& surface = scene->surfaces()[hit.surface];
         if (surface.region == own && !own.is_none()) return false;
         const double slope = dot(surface.normal, direction);

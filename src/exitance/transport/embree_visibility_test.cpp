@@ -107,5 +107,25 @@ TEST(RayTracer, GivesTheSameHitsOnAnyNumberOfThreads) {
     set_threads(0);
 }
 
+TEST(RayTracer, MeetsTheSideOfASheetThatFacesTheRay) {
+    // A horizontal sheet with two sides, of one outline begun at different corners.
+    const Scene scene = test::make(
+        {{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {0, 1, 0.2}}}, {{{1, 1, 0.2}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0.2}}}});
+    const RayTracer tracer(scene);
+    RandomStream random(1, Stream::visibility);
+    for (int i = 0; i < 200; ++i) {
+        const Point target{0.05 + 0.9 * random.uniform(), 0.05 + 0.9 * random.uniform(), 0.1};
+        for (const double z : {2.0, -2.0}) {
+            const Point eye{random.uniform(), random.uniform(), z};
+            const Vec3 d = target - eye;
+            RayHit hit;
+            tracer.nearest(std::span(&d, 1), eye, RegionId(), std::span(&hit, 1));
+            ASSERT_FALSE(hit.surface.is_none());
+            EXPECT_TRUE(hit.front);
+            EXPECT_EQ(scene.surfaces()[hit.surface].normal.z > 0, z > 0);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace exitance

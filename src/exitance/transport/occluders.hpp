@@ -48,6 +48,14 @@ class Occluders {
             region, [&](std::uint32_t i) { return visit(tree.pieces[i]); }, direction);
     }
 
+    /// Calls visit(piece) for every piece of a size whose box the segment from `origin` to origin + d meets, nearer ones
+    /// first, until visit returns true.
+    template <class Visit>
+    void visit_segment(Size size, const Point& origin, const Vec3& d, const Visit& visit) const {
+        const Tree& tree = trees_[static_cast<std::size_t>(size)];
+        tree.bvh.visit_segment(origin, d, 1, [&](std::uint32_t i) { return visit(tree.pieces[i]) ? 0.0 : 1.0; });
+    }
+
     /// How far apart two places may be that are meant to be the same, metres: a few roundings of the coordinates.
     double rounding() const { return rounding_; }
 

@@ -47,7 +47,7 @@ struct Stage {
         bool reflects = false;
         for (const Region& region : scene.regions())
             reflects |= max(scene.materials()[region.material].reflectance) > 0;
-        return reflects && !scene.emitters().empty();
+        return reflects && scene.has_light();
     }
 };
 
