@@ -1,12 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <ostream>
 
 #include "exitance/core/parallel.hpp"
 #include "fuzz/mutator.hpp"
 #include "fuzz/target.hpp"
 
 namespace exitance::fuzz {
+
+void PrintTo(const Target& target, std::ostream* out) {
+    *out << target.name;
+}
+
 namespace {
 
 /// How many damaged files every reader is given; EXITANCE_FUZZ_ROUNDS in the environment asks for more.
