@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "cli/small_scene.hpp"
+#include "exitance/io/solution_file.hpp"
+#include "support/sample_solution.hpp"
 
 namespace exitance::test {
 
@@ -24,6 +26,9 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--gather", "5"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1,1 2,2,2 175"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1 2,2"}).status, 2);
+    run = run_program({"render", solution, "-o", picture, "--camera", "kitchen"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("no camera 'kitchen'"), std::string::npos) << run.err;
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--size", "0x25"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--samples", "100000"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", folder / "absent/room.png", "--size", "4x4"}).status, 5);
@@ -46,6 +51,22 @@ TEST(ProgramRender, KnowsProjectionsAndWritesLinearPictures) {
     EXPECT_EQ(run_program({"render", solution, "-o", hdr, "--size", "32x16"}).status, 0);
     EXPECT_TRUE(read_text(hdr).starts_with("#?RADIANCE\n"));
     EXPECT_NE(read_text(hdr).find("-Y 16 +X 32\n"), std::string::npos);
+}
+
+TEST(ProgramRender, TakesTheCamerasThatCameWithAScene) {
+    const TemporaryFolder folder;
+    const Solution solution = sample_solution();
+    ASSERT_FALSE(solution.scene.cameras().empty());
+    ASSERT_TRUE(write_solution(folder / "s.h5", solution));
+    const std::string picture = folder / "s.png";
+    for (const std::string& camera : {solution.scene.cameras()[0].name, std::string("1")}) {
+        const Finished run =
+            run_program({"render", folder / "s.h5", "-o", picture, "--size", "16x16", "--camera", camera});
+        EXPECT_EQ(run.status, 0) << run.err;
+    }
+    const Finished run = run_program({"render", folder / "s.h5", "-o", picture, "--camera", "attic"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find(solution.scene.cameras()[0].name), std::string::npos) << run.err;
 }
 
 }  // namespace exitance::test

@@ -108,10 +108,14 @@ std::vector<double> read_numbers(const std::string& option, std::string words) {
     return numbers;
 }
 
-/// "auto", or "ex,ey,ez tx,ty,tz fov": metres and degrees; the last may be left out.
+/// "auto", "ex,ey,ez tx,ty,tz fov" (metres and degrees; the last may be left out), or what the scene's cameras are
+/// called.
 void read_camera(const std::string& words, RenderArguments& arguments) {
-    if (words == "auto") {
-        arguments.camera.reset(), arguments.fov.reset();
+    arguments.camera.reset(), arguments.fov.reset(), arguments.camera_name.clear();
+    if (words == "auto") return;
+    if (words.find_first_of(", ") == std::string::npos ||
+        words.find_first_not_of("0123456789.,+-eE ") != std::string::npos) {
+        arguments.camera_name = words;
         return;
     }
     const std::vector<double> n = read_numbers("--camera", words);
@@ -263,8 +267,8 @@ void declare(CLI::App& app, RenderArguments& arguments) {
         ->required();
     app.add_option_function<std::string>(
            "--camera", [&arguments](const std::string& w) { read_camera(w, arguments); },
-           "auto (default): one that shows much; or 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal "
-           "angle in degrees (orthographic: width in metres)")
+           "auto (default): one that shows much; 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal "
+           "angle in degrees (orthographic: width in metres); or a camera of the scene, by name or by number from 1")
         ->type_name("CAMERA");
     add_choice(app, "--projection", projection_names, arguments.projection,
                "Default perspective; fisheye: equidistant; panorama: 360 x 180 degrees");

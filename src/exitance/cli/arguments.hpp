@@ -57,7 +57,8 @@ struct ExportArguments : CommonArguments {
 
 struct RenderArguments : CommonArguments {
     std::string solution, output;
-    std::optional<Camera> camera;  ///< None: one that shows the scene well.
+    std::optional<Camera> camera;  ///< None: the scene's of the name below, or else one that shows the scene well.
+    std::string camera_name;       ///< Of a camera that came with the scene, or its number, counted from 1.
     std::optional<double> fov;     ///< Where a camera was given with one.
     Projection projection = Projection::perspective;
     PictureSize size;

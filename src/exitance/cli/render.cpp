@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 
 #include "exitance/cli/signals.hpp"
@@ -44,9 +46,32 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
     return std::nullopt;
 }
 
+/// A camera that came with the scene.
+Result<Camera> find_camera(const RenderArguments& arguments, const Scene& scene) {
+    const std::vector<SceneCamera>& all = scene.cameras();
+    const std::string& name = arguments.camera_name;
+    auto found = std::find_if(all.begin(), all.end(), [&](const SceneCamera& c) { return c.name == name; });
+    std::size_t number = 0;
+    const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (found == all.end() && failed == std::errc() && end == name.data() + name.size() && number >= 1 &&
+        number <= all.size())
+        found = all.begin() + static_cast<std::ptrdiff_t>(number - 1);
+    if (found == all.end()) {
+        std::vector<std::string> names;
+        for (const SceneCamera& c : all) names.push_back(fmt::format("'{}'", c.name));
+        return Error{ErrorCode::usage, fmt::format("the scene has no camera '{}'", name), "--camera",
+                     all.empty() ? "no camera came with the scene: give 'ex,ey,ez tx,ty,tz fov'"
+                                 : fmt::format("it has {}", fmt::join(names, ", "))};
+    }
+    Camera camera{found->eye, found->target, found->fov, found->up, arguments.projection};
+    if (found->width > 0) camera.fov = found->width, camera.projection = Projection::orthographic;
+    return camera;
+}
+
 /// The camera asked for, with what was left open.
-Camera choose_camera(const RenderArguments& arguments, const RadiosityFunction& light) {
+Result<Camera> choose_camera(const RenderArguments& arguments, const RadiosityFunction& light) {
     const Solution& solution = light.solution();
+    if (!arguments.camera_name.empty()) return find_camera(arguments, solution.scene);
     if (!arguments.camera)
         return automatic_camera(solution, light.stage().tracer, arguments.projection, arguments.size);
     Camera camera = *arguments.camera;
@@ -105,15 +130,16 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     if (!solution) return terminal.fail(solution.error());
 
     const RadiosityFunction light(*solution);
-    const Camera camera = choose_camera(arguments, light);
-    if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(camera)));
-    PictureOptions options{camera, arguments.size, static_cast<int>(arguments.samples)};
+    const Result<Camera> camera = choose_camera(arguments, light);
+    if (!camera) return terminal.fail(camera.error());
+    if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(*camera)));
+    PictureOptions options{*camera, arguments.size, static_cast<int>(arguments.samples)};
     options.gather = static_cast<unsigned>(arguments.gather);
     const Picture picture = take_picture(light, options, terminal.progress(), stop);
     if (signals.received()) return *signals.received();
     terminal.progress().finish();
-    const Result<void> written = ending(arguments.output) == ".png" ? write_display(arguments, light, camera, picture)
-                                                                    : write_linear(arguments, camera, picture);
+    const Result<void> written = ending(arguments.output) == ".png" ? write_display(arguments, light, *camera, picture)
+                                                                    : write_linear(arguments, *camera, picture);
     return written ? ExitCode::done : terminal.fail(written.error());
 }
 

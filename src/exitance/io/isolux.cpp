@@ -22,7 +22,7 @@ std::vector<int> find_lines(const Picture& picture, const ColourScale& scale) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const auto compare = [&](std::size_t other) {
             const Pixel &a = picture.pixels[i], &b = picture.pixels[other];
-            if (a.region.is_none() || a.region != b.region || steps_below[i] == steps_below[other]) return;
+            if (a.region.is_none() || a.region != b.region || a.emits() || steps_below[i] == steps_below[other]) return;
             lines[i] = std::max(steps_below[i], steps_below[other]) - 1;
         };
         if ((i + 1) % width != 0) compare(i + 1);

@@ -26,7 +26,7 @@ class Scout {
     Scout(const Solution& solution, const RayTracer& tracer)
         : solution_(solution), tracer_(tracer), locator_(solution.interpolant.tree, solution.scene.regions().size()) {}
 
-    View look(const Camera& camera, PictureSize coarse = {24, 15}) const {
+    View look(const Camera& camera, PictureSize coarse) const {
         const CameraRays rays(camera, coarse);
         std::vector<Point> origins;
         std::vector<Vec3> directions;
@@ -68,45 +68,64 @@ class Scout {
     ElementLocator locator_;
 };
 
-/// From near the four upright edges of the scene's box, at the height of eyes or above, towards its middle.
+/// The best camera in a closed room: from near the four upright edges of the scene's box, at the height of eyes or
+/// above, towards its middle, or from outside through a side that is open. None where no camera sees fronts alone.
 std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, PictureSize size) {
     constexpr double closed = 0.95;  // share of fronts that makes a room: the rest may be windows and open doors
     const Box& box = scene.box();
     const Vec3 extent = box.size();
     const double height = std::min(extent.z, 3.0);  // metres; in a hall one looks as in a room
     const double fov = size.width >= size.height ? 75 : 55;
+    std::optional<Camera> best;
+    double best_quality = 0;
+    const auto consider = [&](const Camera& camera) {
+        const View view = scout.look(camera, {24, 15});
+        if (view.fronts >= closed && view.quality() > best_quality) best = camera, best_quality = view.quality();
+    };
     for (const double inset : {0.06, 0.15, 0.25, 0.35}) {  // a room need not reach into the corners of its box
-        std::optional<Camera> best;
-        double best_quality = 0;
         for (int corner = 0; corner < 4; ++corner)
             for (const double level : {0.55, 0.68, 0.8}) {
                 const double s = corner & 1 ? 1 - inset : inset, t = corner & 2 ? 1 - inset : inset;
-                const Camera camera{box.lo + Vec3{s * extent.x, t * extent.y, level * height},
-                                    {box.centre().x, box.centre().y, box.lo.z + 0.4 * height},
-                                    fov};
-                const View view = scout.look(camera);
-                if (view.fronts >= closed && view.quality() > best_quality)
-                    best = camera, best_quality = view.quality();
+                consider({box.lo + Vec3{s * extent.x, t * extent.y, level * height},
+                          {box.centre().x, box.centre().y, box.lo.z + 0.4 * height},
+                          fov});
             }
-        if (best) return best;
+        if (best) break;
     }
-    return std::nullopt;
+    for (int side = 0; side < 4; ++side) {
+        const Vec3 out = side < 2 ? Vec3{side == 0 ? -1.0 : 1.0, 0, 0} : Vec3{0, side == 2 ? -1.0 : 1.0, 0};
+        const double depth = side < 2 ? extent.x : extent.y, width = side < 2 ? extent.y : extent.x;
+        const double seen = std::min(width, extent.z * size.width / size.height);  // across the opening, metres
+        const double away = 0.5 * seen * 0.98 / std::tan(20 * degree);
+        consider({box.centre() + (0.5 * depth + away) * out, box.centre(), 40});
+    }
+    return best;
 }
 
+/// From so far that the scene's box fills the picture, towards its middle.
+Camera camera_at(const Box& box, const Vec3& back, double fov, PictureSize size) {
+    const double half_width = std::tan(0.5 * fov * degree), half_height = half_width * size.height / size.width;
+    const Vec3 right = normalized(cross(back, {0, 0, -1})), up = cross(back, right);
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 half = 0.5 * box.size();
+        const Vec3 p = {corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y, corner & 4 ? half.z : -half.z};
+        const double aside = std::max(std::abs(dot(p, right)) / half_width, std::abs(dot(p, up)) / half_height);
+        distance = std::max(distance, dot(p, back) + 1.04 * aside);
+    }
+    return {box.centre() + distance * back, box.centre(), fov};
+}
+
+/// On the side of a scene that shows most fronts and most variety of light.
 Camera camera_outside(const Scene& scene, const Scout& scout, PictureSize size) {
-    constexpr double fov = 40;
-    const double half_width = std::tan(0.5 * fov * degree);
-    const double half_height = half_width * size.height / size.width;
-    const double distance = 0.5 * scene.size() / std::sin(std::atan(std::min(half_width, half_height)));
     Camera best;
     double most = -1;
     for (const int elevation : {25, 50, -25})
         for (int step = 0; step < 8; ++step) {
             const double a = (45 * step - 60) * degree, e = elevation * degree;
-            const Vec3 back{std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-            const Point middle = scene.box().centre();
-            const Camera camera{middle + distance * back, middle, fov};
-            const View view = scout.look(camera);
+            const Camera camera =
+                camera_at(scene.box(), {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, 40, size);
+            const View view = scout.look(camera, {24, 24 * size.height / size.width + 1});
             const double quality = view.fronts * (0.5 + std::min(view.variety, 1.0));
             if (quality > most) best = camera, most = quality;
         }

@@ -1,5 +1,6 @@
 #include "exitance/reconstruct/picture.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/core/parallel.hpp"
@@ -30,13 +31,6 @@ std::vector<Vec2> places_about_pixel(int samples, std::uint64_t seed) {
     return places;
 }
 
-std::size_t middle_of(std::span<const Vec2> places) {
-    std::size_t best = 0;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        if (dot(places[i], places[i]) < dot(places[best], places[best])) best = i;
-    return best;
-}
-
 /// Makes one tile of a picture after the other. One a thread.
 class TilePainter {
   public:
@@ -46,7 +40,6 @@ class TilePainter {
           options_(options),
           rays_(options.camera, options.size),
           places_(places),
-          middle_(middle_of(places)),
           light_(light, options.gather, options.seed) {}
 
     /// The tile whose upper left pixel is (x0, y0).
@@ -76,15 +69,12 @@ class TilePainter {
     /// Traces the rays of all pixels, one pixel after the other.
     void trace(int x0, int x1, int y0, int y1) {
         origins_.clear(), directions_.clear(), ends_.clear();
-        middle_ray_.clear();
         Point origin;
         Vec3 direction;
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
-                middle_ray_.push_back(none);
-                for (std::size_t i = 0; i < places_.size(); ++i) {
-                    if (!rays_.ray(x + 0.5 + places_[i].x, y + 0.5 + places_[i].y, origin, direction)) continue;
-                    if (i == middle_) middle_ray_.back() = directions_.size();
+                for (const Vec2& place : places_) {
+                    if (!rays_.ray(x + 0.5 + place.x, y + 0.5 + place.y, origin, direction)) continue;
                     origins_.push_back(origin), directions_.push_back(direction);
                 }
                 ends_.push_back(directions_.size());
@@ -106,8 +96,9 @@ class TilePainter {
             const bool front = !hit.surface.is_none() && hit.front;
             met_.push_back(front ? scene_.surfaces()[hit.surface].region : RegionId());
             if (!hit.surface.is_none()) (hit.front ? out.front : out.back) += 1;
-            if (i == middle_ray_[pixel_in_tile]) out.region = met_.back();
         }
+        if (met_.size() == places_.size() && std::equal(met_.begin() + 1, met_.end(), met_.begin()))
+            out.region = met_.front();
         for (std::size_t i = 0; i < met_.size(); ++i) {
             if (met_[i].is_none()) continue;
             const RegionId region = met_[i];
@@ -138,19 +129,16 @@ class TilePainter {
         pixel.front /= all, pixel.back /= all, pixel.emitting /= all;
     }
 
-    static constexpr std::size_t none = static_cast<std::size_t>(-1);
-
     const Scene& scene_;
     const RayTracer& tracer_;
     const PictureOptions& options_;
     CameraRays rays_;
     std::span<const Vec2> places_;
-    std::size_t middle_;
     TileLight light_;
     std::vector<Point> origins_, points_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> hits_;
-    std::vector<std::size_t> ends_, middle_ray_;  ///< Of every pixel.
+    std::vector<std::size_t> ends_;  ///< Of every pixel.
     std::vector<RegionId> met_;
     std::vector<Spot> spots_;
 };

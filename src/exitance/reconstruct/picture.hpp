@@ -17,7 +17,7 @@ struct Pixel {
     float front = 0;       ///< Share of the samples that meet a front.
     float emitting = 0;    ///< Share that meet an emitter's front.
     float back = 0;        ///< Share that meet a back; what is left meets nothing.
-    RegionId region = {};  ///< What the sample nearest to the middle meets the front of; none if it does not.
+    RegionId region = {};  ///< What every sample meets the front of; none if they differ.
 
     bool emits() const { return emitting > 0; }
 };
