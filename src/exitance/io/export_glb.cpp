@@ -9,6 +9,7 @@
 #include "exitance/io/atomic_file.hpp"
 #include "exitance/io/conforming_mesh.hpp"
 #include "exitance/io/export_formats.hpp"
+#include "exitance/io/glb_nodes.hpp"
 #include "exitance/io/tone_map.hpp"
 
 namespace exitance {
@@ -87,20 +88,6 @@ Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
     return out;
 }
 
-std::string json_text(const std::string& text) {
-    std::string out(1, '"');
-    for (char c : text) {
-        if (c == '"' || c == '\\')
-            out += '\\', out += c;
-        else if (static_cast<unsigned char>(c) < 0x20)
-            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else
-            out += c;
-    }
-    out += '"';
-    return out;
-}
-
 std::string json_triple(const auto& v) {
     return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }
@@ -124,64 +111,83 @@ std::string material_json(const Material& material) {
 constexpr const char* attribute_names[] = {"POSITION", "NORMAL", "_RADIOSITY", "_IRRADIANCE", "COLOR_0"};
 constexpr std::size_t attributes = std::size(attribute_names);
 
-std::string make_json(const Scene& scene, const Triangles& triangles, const ToneMap& tone) {
-    fmt::memory_buffer text;
-    const auto out = std::back_inserter(text);
-    const std::size_t array_bytes = triangles.position.size() * sizeof(Float3),
-                      index_bytes = triangles.index.size() * 4;
+/// Items of JSON arrays, with commas between them.
+struct Lists {
+    std::string nodes, meshes, accessors;
+    std::size_t node_count = 0, accessor_count = 0;
+
+    static void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ",") + item; }
+    std::size_t add_accessor(const std::string& item) {
+        add(accessors, item);
+        return accessor_count++;
+    }
+};
+
+std::string primitive_json(const Primitive& p, Lists& lists) {
+    std::string names;
+    for (std::size_t a = 0; a < attributes; ++a) {
+        std::string accessor =
+            fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
+                        a, p.first_vertex * sizeof(Float3), p.vertices);
+        if (a == 0) accessor += fmt::format(",\"min\":{},\"max\":{}", json_triple(p.lo), json_triple(p.hi));
+        Lists::add(names, fmt::format("\"{}\":{}", attribute_names[a], lists.add_accessor(accessor + "}")));
+    }
+    const std::size_t indices = lists.add_accessor(
+        fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
+                    attributes, p.first_index * 4, p.indices));
+    return fmt::format("{{\"attributes\":{{{}}},\"indices\":{},\"material\":{}}}", names, indices, p.material);
+}
+
+/// A node and a mesh a group; a primitive a material in it.
+void add_groups(const Scene& scene, std::span<const Primitive> primitives, Lists& lists) {
+    for (std::size_t first = 0, last = 0; first < primitives.size(); first = last) {
+        std::string items;
+        for (; last < primitives.size() && primitives[last].group == primitives[first].group; ++last)
+            Lists::add(items, primitive_json(primitives[last], lists));
+        const std::string name = json_text(scene.groups()[GroupId(primitives[first].group)]);
+        Lists::add(lists.nodes, fmt::format("{{\"mesh\":{},\"name\":{}}}", lists.node_count++, name));
+        Lists::add(lists.meshes, fmt::format("{{\"name\":{},\"primitives\":[{}]}}", name, items));
+    }
+}
+
+std::string extensions_json(const Scene& scene, const GlbNodes& placed) {
     bool unlit = false, emits = false;
     for (const Material& m : scene.materials()) (m.emits() ? emits : unlit) = true;
-    const std::string used = fmt::format("{}{}{}", unlit ? "\"KHR_materials_unlit\"" : "", unlit && emits ? "," : "",
-                                         emits ? "\"KHR_materials_emissive_strength\"" : "");
-    fmt::format_to(
-        out,
-        "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"W/m^2\","
-        "\"radianceUnit\":\"W/(m^2 sr)\",\"exposure\":{},\"white\":{}}}}},\"extensionsUsed\":[{}],\"scene\":0,",
-        EXITANCE_VERSION, tone.scale, tone.white, used);
+    std::string used;
+    if (unlit) Lists::add(used, "\"KHR_materials_unlit\"");
+    if (emits) Lists::add(used, "\"KHR_materials_emissive_strength\"");
+    if (placed.lights.empty()) return fmt::format("\"extensionsUsed\":[{}],", used);
+    Lists::add(used, "\"KHR_lights_punctual\"");
+    return fmt::format("\"extensionsUsed\":[{}],\"extensions\":{{\"KHR_lights_punctual\":{{\"lights\":[{}]}}}},", used,
+                       placed.lights);
+}
 
-    // A node and a mesh a group; a primitive a material in it.
-    std::string nodes, meshes, scene_nodes, accessors;
-    std::size_t node = 0, accessor = 0;
-    for (std::size_t first = 0, last = 0; first < triangles.primitives.size(); first = last, ++node) {
-        const std::size_t group = triangles.primitives[first].group;
-        while (last < triangles.primitives.size() && triangles.primitives[last].group == group) ++last;
-        const char* comma = node == 0 ? "" : ",";
-        const std::string name = json_text(scene.groups()[GroupId(group)]);
-        scene_nodes += fmt::format("{}{}", comma, node);
-        nodes += fmt::format("{}{{\"mesh\":{},\"name\":{}}}", comma, node, name);
-        meshes += fmt::format("{}{{\"name\":{},\"primitives\":[", comma, name);
-        for (std::size_t k = first; k < last; ++k) {
-            const Primitive& p = triangles.primitives[k];
-            meshes += k == first ? "{\"attributes\":{" : ",{\"attributes\":{";
-            for (std::size_t a = 0; a < attributes; ++a) {
-                meshes += fmt::format("{}\"{}\":{}", a == 0 ? "" : ",", attribute_names[a], accessor);
-                accessors += fmt::format(
-                    "{}{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
-                    accessor == 0 ? "" : ",", a, p.first_vertex * sizeof(Float3), p.vertices);
-                if (a == 0) accessors += fmt::format(",\"min\":{},\"max\":{}", json_triple(p.lo), json_triple(p.hi));
-                accessors += "}", ++accessor;
-            }
-            accessors += fmt::format(
-                ",{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
-                attributes, p.first_index * 4, p.indices);
-            meshes += fmt::format("}},\"indices\":{},\"material\":{}}}", accessor++, p.material);
-        }
-        meshes += "]}";
-    }
-    std::string materials, views;
-    for (const Material& m : scene.materials())
-        materials += fmt::format("{}{}", materials.empty() ? "" : ",", material_json(m));
+std::string make_json(const Scene& scene, const Triangles& triangles, const ToneMap& tone) {
+    const GlbNodes placed = make_light_and_camera_nodes(scene);
+    Lists lists;
+    add_groups(scene, triangles.primitives, lists);
+    if (placed.count > 0) Lists::add(lists.nodes, placed.nodes);
+    std::string scene_nodes, materials, views;
+    for (std::size_t i = 0; i < lists.node_count + placed.count; ++i) Lists::add(scene_nodes, std::to_string(i));
+    for (const Material& m : scene.materials()) Lists::add(materials, material_json(m));
+    const std::size_t array_bytes = triangles.position.size() * sizeof(Float3),
+                      index_bytes = triangles.index.size() * 4;
     for (std::size_t a = 0; a < attributes; ++a)
-        views += fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"byteStride\":12,\"target\":34962}},",
-                             a * array_bytes, array_bytes);
-    views += fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
-                         attributes * array_bytes, index_bytes);
-    fmt::format_to(
-        out,
-        "\"scenes\":[{{\"nodes\":[{}]}}],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],"
-        "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
-        scene_nodes, nodes, meshes, materials, accessors, views, attributes * array_bytes + index_bytes);
-    std::string json(text.data(), text.size());
+        Lists::add(views, fmt::format(
+                              "{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"byteStride\":12,\"target\":34962}}",
+                              a * array_bytes, array_bytes));
+    Lists::add(views, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
+                                  attributes * array_bytes, index_bytes));
+    std::string json = fmt::format(
+        "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"W/m^2\","
+        "\"radianceUnit\":\"W/(m^2 "
+        "sr)\",\"exposure\":{},\"white\":{}}}}},{}\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}],"
+        "\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],\"bufferViews\":[{}],{}"
+        "\"buffers\":[{{\"byteLength\":{}}}]}}",
+        EXITANCE_VERSION, tone.scale, tone.white, extensions_json(scene, placed), scene_nodes, lists.nodes,
+        lists.meshes, materials, lists.accessors, views,
+        placed.cameras.empty() ? "" : fmt::format("\"cameras\":[{}],", placed.cameras),
+        attributes * array_bytes + index_bytes);
     json.resize((json.size() + 3) / 4 * 4, ' ');
     return json;
 }

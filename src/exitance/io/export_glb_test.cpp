@@ -6,6 +6,7 @@
 
 #include "exitance/io/conforming_mesh.hpp"
 #include "exitance/io/export.hpp"
+#include "exitance/io/glb_nodes.hpp"
 #include "exitance/io/scene_file.hpp"
 #include "exitance/io/whole_file.hpp"
 #include "exitance/reconstruct/area_samples.hpp"
@@ -74,7 +75,8 @@ Glb exported(const Solution& solution) {
 TEST(ExportGlb, EveryAccessorHoldsWhatTheSpecificationAsksFor) {
     const Glb glb = exported(sample_solution(300));
     EXPECT_EQ(glb.text["asset"]["version"], "2.0");
-    EXPECT_EQ(glb.text["nodes"].size(), glb.text["meshes"].size());
+    EXPECT_EQ(glb.text["nodes"].size(), glb.text["meshes"].size() + glb.text["cameras"].size() +
+                                            glb.text["extensions"]["KHR_lights_punctual"]["lights"].size());
     std::size_t triangles = 0;
     for (const json& mesh : glb.text["meshes"])
         for (const json& primitive : mesh["primitives"]) {
@@ -126,6 +128,12 @@ TEST(ExportGlb, ReadBackAsASceneItHasTheSameSurfacesAndDirectLight) {
     ASSERT_TRUE(back.scene);
     EXPECT_EQ(back.scene->regions().size(), solution.scene.regions().size());
     EXPECT_EQ(back.scene->groups().size(), solution.scene.groups().size());
+    ASSERT_EQ(back.scene->lights().size(), solution.scene.lights().size());
+    ASSERT_EQ(back.scene->cameras().size(), solution.scene.cameras().size());
+    const SceneCamera &camera = solution.scene.cameras()[0], &again = back.scene->cameras()[0];
+    EXPECT_EQ(again.name, camera.name);
+    EXPECT_NEAR(again.fov, camera.fov, 1e-9);
+    EXPECT_NEAR(norm(normalized(again.target - again.eye) - normalized(camera.target - camera.eye)), 0, 1e-12);
     double light = 0, difference = 0;
     const Stage before(solution.scene), after(*back.scene);
     DirectLight::Workspace workspace;
@@ -136,6 +144,11 @@ TEST(ExportGlb, ReadBackAsASceneItHasTheSameSurfacesAndDirectLight) {
         light += mean(a), difference += std::abs(mean(a - b));
     }
     EXPECT_LT(difference, 1e-5 * light);  // coordinates in single precision: 1e-7 of the room's size
+}
+
+TEST(ExportGlb, NamesThatAreNoUtf8AreTakenForLatin1) {
+    EXPECT_EQ(json_text("caf\xe9 \"1\"\n"), "\"caf\\u00e9 \\\"1\\\"\\u000a\"");
+    EXPECT_EQ(json_text("caf\xc3\xa9"), "\"caf\xc3\xa9\"");
 }
 
 TEST(ConformingMesh, HasNoCornerOnAnEdgeOfItsRegion) {

@@ -94,6 +94,12 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& direct, const
     double radius_squared = 0;
     for (std::uint32_t i = 0; i < spot.count; ++i)
         radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));
+    for (const Beam& beam : direct.beams) {
+        const PunctualLight& lamp = light_.solution().scene.lights()[beam.light];
+        const double distance = small * norm(lamp.position - middle);
+        if (lamp.kind == PunctualLight::Kind::spot) return false;  // its cone may have a sharp edge
+        if (!lamp.is_directional() && radius_squared > distance * distance) return false;
+    }
     for (const ReceiverLight::Source& source : direct.sources) {
         const DirectLight::Emitter& emitter = light_.stage().direct.emitters()[source.emitter];
         const double distance = small * (norm(emitter.centre - middle) - emitter.radius);
