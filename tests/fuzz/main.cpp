@@ -1,7 +1,8 @@
 // exitance-fuzz READER [--seconds N] [--rounds N] [--seed N] [FILE...]
 //
 // Gives a reader damaged files until the time is over, or the files named. Ends with status 1 and the path of the file
-// when one makes the reader crash, hang for more than 5 s, or hold more than ten times the file's size and 64 MiB.
+// when one makes the reader crash, hang for more than 5 s, or ask at a time for more memory than ten times the file's
+// size and 64 MiB.
 
 #include <signal.h>
 #include <unistd.h>

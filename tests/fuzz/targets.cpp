@@ -55,14 +55,22 @@ void read_gltf_bytes(const std::string& bytes) {
     (void)load_scene(file_with(bytes, "s.gltf"));
 }
 
+std::vector<std::string> rad_corpus() {
+    return corpus_folder("rad");
+}
+void read_rad_bytes(const std::string& bytes) {
+    file_with("void light l 0 0 3 1 1 1\nl polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n!xform -t 0 0 1 leaf.rad\n", "part.rad");
+    file_with("l ring r 0 0 8 0 0 0 0 0 1 0 .5\n", "leaf.rad");
+    (void)load_scene(file_with(bytes, "s.rad"));
+}
+
 }  // namespace
 
 std::span<const Target> targets() {
     static constexpr std::array all = {
-        Target{"obj", obj_corpus, read_obj_bytes},
-        Target{"mtl", mtl_corpus, read_mtl_bytes},
-        Target{"glb", glb_corpus, read_glb_bytes, mend_glb},
-        Target{"gltf", gltf_corpus, read_gltf_bytes},
+        Target{"obj", obj_corpus, read_obj_bytes},           Target{"mtl", mtl_corpus, read_mtl_bytes},
+        Target{"glb", glb_corpus, read_glb_bytes, mend_glb}, Target{"gltf", gltf_corpus, read_gltf_bytes},
+        Target{"rad", rad_corpus, read_rad_bytes},
     };
     return all;
 }

@@ -4,8 +4,8 @@
 
 namespace exitance::fuzz {
 
-/// From now on the process ends, with a word about it, when it asks for more than `bytes` at a time or holds that much
-/// more than now. 0: no limit. Sees malloc, so operator new and C libraries alike.
+/// From now on the process ends, with a word about it, when it asks for more than `bytes` at a time. 0: no limit. Sees
+/// malloc, so operator new and C libraries alike.
 void limit_memory(std::size_t bytes);
 
 /// The most that was held beyond what was held at the last limit_memory, bytes.

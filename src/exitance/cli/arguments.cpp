@@ -190,7 +190,7 @@ void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
 
 void declare(CLI::App& app, SolveArguments& arguments) {
     SolveOptions& o = arguments.options;
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb)")->required();
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
     app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
     add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
     add_choice(app, "--basis", basis_names, o.basis, "Of method matrix");
@@ -298,7 +298,7 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 }
 
 void declare(CLI::App& app, CheckArguments& arguments) {
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb)")->required();
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
     declare_json(app, arguments);
 }
 
@@ -309,7 +309,7 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
 }
 
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb)")->required();
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
     app.add_option("-o,--output", arguments.output, "Matrix to write: .csv, or .vf as View3D does")
         ->type_name("FILE")
         ->required();

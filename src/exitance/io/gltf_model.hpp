@@ -8,6 +8,7 @@
 
 #include "exitance/core/result.hpp"
 #include "exitance/geometry/vec.hpp"
+#include "exitance/io/affine.hpp"
 #include "exitance/scene/point_light.hpp"
 #include "exitance/scene/scene.hpp"
 
@@ -46,17 +47,6 @@ class GltfRows {
     std::size_t stride_ = 0, count_ = 0;
     Number number_ = Number::float32;
     bool normalized_ = false;
-};
-
-/// A matrix of three rows and four columns: points are turned, scaled and moved.
-struct Affine {
-    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< Where the axes go,
-    Vec3 origin;                              ///< and the origin.
-
-    Vec3 vector(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
-    Point point(const Point& p) const { return origin + vector(p); }
-    Affine operator*(const Affine& o) const { return {vector(o.x), vector(o.y), vector(o.z), point(o.origin)}; }
-    double determinant() const { return dot(x, cross(y, z)); }
 };
 
 /// What a glTF file says, as far as light cares; indices are checked, numbers of a kind. Y up, metres.

@@ -5,6 +5,7 @@
 
 #include "exitance/io/gltf.hpp"
 #include "exitance/io/obj.hpp"
+#include "exitance/io/radiance.hpp"
 #include "exitance/io/whole_file.hpp"
 #include "exitance/scene/findings.hpp"
 
@@ -47,9 +48,10 @@ CheckedScene load_scene(const std::string& path) {
         return refused(ErrorCode::cannot_read, path, "there is no such file", "");
     const std::string end = ending(path);
     if (end == ".obj") return checked(read_obj(path));
+    if (end == ".rad") return checked(read_radiance(path));
     if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return checked(read_gltf(path));
     return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
-                   "known endings: .obj, .gltf, .glb");
+                   "known endings: .obj, .gltf, .glb, .rad");
 }
 
 }  // namespace exitance

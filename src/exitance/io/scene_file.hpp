@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb). Every error of the file is among the findings.
+/// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb, .rad). Every error of the file is among the findings.
 /// An unreadable file has the code cannot_read, everything else that is wrong bad_input.
 CheckedScene load_scene(const std::string& path);
 
