@@ -428,9 +428,8 @@ ReadScene RadianceReader::read() {
     for (const auto& [what, note] : notes_)
         out_.findings.push_back(
             {Finding::Kind::warning, note.file, note.line,
-             note.count == 1
-                 ? fmt::format("{} cannot be represented: it is left out", what)
-                 : fmt::format("{} cannot be represented: left out {} times, the first of them here", what, note.count),
+             fmt::format("left out: {}{}", what,
+                         note.count == 1 ? "" : fmt::format(" ({} times, the first of them here)", note.count)),
              ""});
     return std::move(out_);
 }
