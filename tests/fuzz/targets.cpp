@@ -2,7 +2,9 @@
 #include <cstring>
 
 #include "exitance/io/mtl.hpp"
+#include "exitance/io/probe_file.hpp"
 #include "exitance/io/scene_file.hpp"
+#include "fuzz/solution_target.hpp"
 #include "fuzz/target.hpp"
 
 namespace exitance::fuzz {
@@ -64,13 +66,41 @@ void read_rad_bytes(const std::string& bytes) {
     (void)load_scene(file_with(bytes, "s.rad"));
 }
 
+std::vector<std::string> csv_corpus() {
+    return corpus_folder("csv");
+}
+void read_csv_bytes(const std::string& bytes) {
+    (void)load_probe_points(file_with(bytes, "p.csv"));
+}
+
+std::vector<std::string> pts_corpus() {
+    return corpus_folder("pts");
+}
+void read_pts_bytes(const std::string& bytes) {
+    (void)load_probe_points(file_with(bytes, "p.pts"));
+}
+
+std::vector<std::string> reference_corpus() {
+    return corpus_folder("reference");
+}
+void read_reference_bytes(const std::string& bytes) {
+    (void)load_probe_reference(file_with(bytes, "r.csv"));
+}
+
 }  // namespace
 
 std::span<const Target> targets() {
     static constexpr std::array all = {
-        Target{"obj", obj_corpus, read_obj_bytes},           Target{"mtl", mtl_corpus, read_mtl_bytes},
-        Target{"glb", glb_corpus, read_glb_bytes, mend_glb}, Target{"gltf", gltf_corpus, read_gltf_bytes},
+        Target{"obj", obj_corpus, read_obj_bytes},
+        Target{"mtl", mtl_corpus, read_mtl_bytes},
+        Target{"glb", glb_corpus, read_glb_bytes, mend_glb},
+        Target{"gltf", gltf_corpus, read_gltf_bytes},
         Target{"rad", rad_corpus, read_rad_bytes},
+        Target{"csv", csv_corpus, read_csv_bytes},
+        Target{"pts", pts_corpus, read_pts_bytes},
+        Target{"reference", reference_corpus, read_reference_bytes},
+        Target{"solution", solution_corpus, read_solution_bytes},
+        Target{"values", value_corpus, read_solution_with_values},
     };
     return all;
 }

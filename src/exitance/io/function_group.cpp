@@ -33,6 +33,10 @@ class Replay {
             if (tree.is_leaf(e) && cut_[e.value] != 0)
                 return "lacks the children of element " + std::to_string(e.value);
         if (root != region_.size()) return "has fewer roots than patches";
+        std::vector<bool> has_root(region_count_);
+        for (const std::uint32_t region : region_) has_root[region] = true;
+        const auto bare = std::find(has_root.begin(), has_root.end(), false);
+        if (bare != has_root.end()) return "has no element on region " + std::to_string(bare - has_root.begin());
         return {};
     }
 
@@ -42,10 +46,13 @@ class Replay {
         const double* p = &patch_[9 * i];
         for (int k = 0; k < 9; ++k)
             if (!std::isfinite(p[k])) return false;
-        tree.add_root(RegionId(region_[i]), {{p[0], p[1], p[2]},
-                                             {p[3], p[4], p[5]},
-                                             {p[6], p[7], p[8]},
-                                             shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram});
+        const Patch patch{{p[0], p[1], p[2]},
+                          {p[3], p[4], p[5]},
+                          {p[6], p[7], p[8]},
+                          shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram};
+        const double squared_area = squared_norm(cross(patch.a, patch.b));
+        if (!(squared_area > 0 && std::isfinite(1 / squared_area))) return false;  // no place would have coordinates
+        tree.add_root(RegionId(region_[i]), patch);
         return true;
     }
     bool split(ElementTree& tree) {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "exitance/io/solution_groups.hpp"
+#include "exitance/io/stored_scene_check.hpp"
 
 namespace exitance {
 namespace {
@@ -301,6 +302,8 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     }
     for (std::uint32_t s : emitters) scene.emitters_.emplace_back(s);
     scene.box_.lo = box[0], scene.box_.hi = box[1];
+    if (const std::optional<std::string> wrong = find_nonsense(scene))
+        return file.fail(group + "/corner", "and the sets beside it make no scene: " + *wrong), Scene();
     return scene;
 }
 

@@ -1,6 +1,7 @@
 #include "exitance/io/solution_file.hpp"
 
 #include "exitance/io/solution_groups.hpp"
+#include "exitance/io/stored_scene_check.hpp"
 
 namespace exitance {
 namespace {
@@ -60,6 +61,8 @@ Result<Solution> load_solution(const std::string& path) {
     solution.interpolant = read_function(file, "exitance/interpolant", regions);
     solution.statistics = read_statistics(file, "exitance/statistics");
     if (file.failed()) return file.error();
+    for (const ElementTree* tree : {&solution.indirect.tree, &solution.interpolant.tree})
+        if (const auto nonsense = find_nonsense(*tree, solution.scene)) return wrong("is damaged: " + *nonsense);
     return solution;
 }
 

@@ -82,16 +82,16 @@ TEST(HostileSolutions, SliversCutFromSliversAreNone) {
     // Thin triangles that a solve halves again and again keep few digits of their areas.
     Solution s = sample_solution();
     RandomStream random(3, Stream::mesh);
-    s.indirect = {};
-    const Vec3 a{0.3, 0.7, -0.2};
-    s.indirect.tree.add_root(RegionId(std::size_t(0)),
-                             {{0.2, 0, 0.5}, a, 1.1 * a + Vec3{0, 1e-11, 0}, Patch::Shape::triangle});
-    ElementId e = s.indirect.tree.roots()[0];
+    s.indirect = sample_function(s.scene, 1, 0);
+    const Vec3 a{0.3, 0.7, 0};
+    ElementId e = s.indirect.tree.add_root(RegionId(std::size_t(0)),
+                                           {{0.2, 0.1, 0}, a, 1.1 * a + Vec3{0, 1e-11, 0}, Patch::Shape::triangle});
     for (int depth = 0; depth < 12; ++depth) {
         const Vec2 n = {random.uniform() - 0.5, random.uniform() - 0.5};
         e = s.indirect.tree.split_by_line(e, {n, dot(n, s.indirect.tree.centre(e))}, 0);
         ASSERT_FALSE(e.is_none());
     }
+    s.indirect.values.clear();
     s.indirect.first_value.resize(s.indirect.tree.size(), 0);
     for (ElementId leaf : s.indirect.tree.leaves()) {
         s.indirect.first_value[leaf] = static_cast<std::uint32_t>(s.indirect.values.size());
@@ -103,6 +103,40 @@ TEST(HostileSolutions, SliversCutFromSliversAreNone) {
     const Result<Solution> back = load_solution(folder / "s.h5");
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(back->indirect.tree.size(), s.indirect.tree.size());
+}
+
+TEST(HostileSolutions, WithElementsApartFromTheSceneAreErrors) {
+    const TemporaryFolder folder;
+    const auto outcome = [&](const auto& change) {
+        Solution s = sample_solution();
+        change(s);
+        EXPECT_TRUE(write_solution(folder / "s.h5", s));
+        const Result<Solution> back = load_solution(folder / "s.h5");
+        return back ? std::string() : back.error().message;
+    };
+    EXPECT_EQ(outcome([](Solution&) {}), "");
+    const auto with_root = [](const Patch& patch) {
+        return [patch](Solution& s) {
+            ElementTree tree;
+            for (ElementId root : s.indirect.tree.roots())
+                tree.add_root(s.indirect.tree.region(root), root.value == 0 ? patch : s.indirect.tree.patch(root));
+            s.indirect = {tree, Field<ElementId, std::uint32_t>(tree.size()), {}};
+            for (ElementId e : tree.ids()) {
+                s.indirect.first_value[e] = static_cast<std::uint32_t>(s.indirect.values.size());
+                s.indirect.values.resize(s.indirect.values.size() +
+                                         static_cast<std::size_t>(tree.patch(e).corner_count()));
+            }
+        };
+    };
+    const Patch good = sample_solution().indirect.tree.patch(ElementId(std::size_t(0)));
+    EXPECT_EQ(outcome(with_root(good)), "");
+    Patch bad = good;
+    bad.origin.z += 1;
+    EXPECT_NE(outcome(with_root(bad)).find("does not lie on its region"), std::string::npos);
+    bad = good, bad.a = 1e150 * good.a;
+    EXPECT_NE(outcome(with_root(bad)), "");
+    bad = good, bad.b = bad.a;  // no area, no coordinates
+    EXPECT_NE(outcome(with_root(bad)).find("makes no tree at element 0"), std::string::npos);
 }
 
 TEST(HostileSolutions, MayNotChangeTheKindOfASet) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace exitance::fuzz {
+
+/// Solutions as they are written, small ones.
+std::vector<std::string> solution_corpus();
+
+/// Loads a solution, and if it is one, asks for light and means of it.
+void read_solution_bytes(const std::string& bytes);
+
+/// A solution whose container is whole, but not what it holds: the bytes say which values become what.
+std::vector<std::string> value_corpus();
+void read_solution_with_values(const std::string& script);
+
+}  // namespace exitance::fuzz
