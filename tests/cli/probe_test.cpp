@@ -111,4 +111,15 @@ TEST_F(ProgramProbe, WhatIsNotASolutionIsBadInput) {
     }
 }
 
+TEST_F(ProgramProbe, LeavesNothingBehindAfterASignal) {
+    const TemporaryFolder folder;
+    RunningProgram run({"probe", solution(), "--points", "-", "-o", folder / "E.csv", "--reference", "1000000000",
+                        "--progress", "json"},
+                       points);
+    ASSERT_TRUE(run.wait_for("paths"));
+    run.send(SIGTERM);
+    EXPECT_EQ(run.finish().status, 143);
+    EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+}
+
 }  // namespace exitance::test

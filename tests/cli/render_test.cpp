@@ -53,6 +53,18 @@ TEST(ProgramRender, KnowsProjectionsAndWritesLinearPictures) {
     EXPECT_NE(read_text(hdr).find("-Y 16 +X 32\n"), std::string::npos);
 }
 
+TEST(ProgramRender, LeavesNothingBehindAfterASignal) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    RunningProgram run(
+        {"render", folder / "s.h5", "-o", folder / "s.png", "--gather", "4096", "--camera", "1", "--progress", "json"});
+    ASSERT_TRUE(run.wait_for("render"));
+    run.send(SIGINT);
+    EXPECT_EQ(run.finish().status, 130);
+    EXPECT_FALSE(std::filesystem::exists(folder / "s.png"));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 1);  // the solution alone
+}
+
 TEST(ProgramRender, TakesTheCamerasThatCameWithAScene) {
     const TemporaryFolder folder;
     const Solution solution = sample_solution();

@@ -50,6 +50,7 @@ for name in ("radiosity", "irradiance"):
     assert np.array_equal(*(vtk_to_numpy(g.GetPointData().GetArray(name)) for g in (hdf, vtu)))
 for name in ("surface", "region", "material", "group"):
     assert np.array_equal(*(vtk_to_numpy(g.GetCellData().GetArray(name)) for g in (hdf, vtu)))
+assert b"W/m^2" in open(folder + "s.vtu", "rb").read(200) and b"W/m^2" in open(folder + "s.obj", "rb").read(200)
 area, flux = of_vtk(vtu)
 
 # glTF by hand first, so that every accessor is looked at, and by VTK's reader after.

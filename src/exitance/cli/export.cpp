@@ -1,5 +1,6 @@
 #include "exitance/io/export.hpp"
 
+#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/solution_file.hpp"
 
@@ -7,10 +8,14 @@ namespace exitance {
 
 /// exitance export SOLUTION -o FILE
 ExitCode run(const ExportArguments& arguments, Terminal& terminal) {
+    StopRequest stop;
+    const SignalGuard signals(stop);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
+    if (signals.received()) return *signals.received();
     const Result<void> written = export_solution(*solution, arguments.output);
-    return written ? ExitCode::done : terminal.fail(written.error());
+    if (!written) return terminal.fail(written.error());
+    return signals.received().value_or(ExitCode::done);
 }
 
 }  // namespace exitance

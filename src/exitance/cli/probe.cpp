@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/probe_file.hpp"
@@ -11,8 +12,8 @@
 namespace exitance {
 namespace {
 
-/// Points taken at a time: memory stays small however many there are.
-constexpr std::size_t batch = 1 << 16;
+/// Points taken at a time: memory stays small however many there are, and a signal need not wait for long.
+constexpr std::size_t batch = 1 << 13;
 
 std::vector<ProbePoint> zip(const ProbePoints& probes) {
     std::vector<ProbePoint> out;
@@ -22,9 +23,10 @@ std::vector<ProbePoint> zip(const ProbePoints& probes) {
 }
 
 Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeReader& reader,
-                         ProbeWriter& writer) {
+                         ProbeWriter& writer, const StopRequest& stop) {
     ProbePoints probes;
     while (true) {
+        if (stop.requested()) return {};
         if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
         if (probes.size() == 0) return writer.commit();
         const std::vector<ProbePoint> points = zip(probes);
@@ -38,13 +40,14 @@ Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunctio
 
 /// Paths in place of the solution. All points together, since a point's random numbers go by its place.
 Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeReader& reader,
-                             ProbeWriter& writer, Terminal& terminal) {
+                             ProbeWriter& writer, Terminal& terminal, const StopRequest& stop) {
     ProbePoints probes;
     if (const Result<void> read = reader.next(probes, std::numeric_limits<std::size_t>::max()); !read)
         return read.error();
     const std::vector<ProbePoint> points = zip(probes);
     const std::vector<ReferenceLight> values =
-        reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), StopRequest());
+        reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
+    if (stop.requested()) return {};
     const Locator locator(scene);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SurfaceId surface = locator.find(points[i].x, points[i].n);
@@ -60,6 +63,8 @@ Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene
 
 /// exitance probe SOLUTION --points POINTS -o LIGHT
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
+    StopRequest stop;
+    const SignalGuard signals(stop);
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
@@ -69,9 +74,11 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     Result<ProbeWriter> writer = ProbeWriter::create(arguments.output, {.standard_errors = by_paths});
     if (!writer) return terminal.fail(writer.error());
 
-    const Result<void> written = by_paths ? write_reference(arguments, solution->scene, *reader, *writer, terminal)
-                                          : write_light(arguments, RadiosityFunction(*solution), *reader, *writer);
-    return written ? ExitCode::done : terminal.fail(written.error());
+    const Result<void> written = by_paths
+                                     ? write_reference(arguments, solution->scene, *reader, *writer, terminal, stop)
+                                     : write_light(arguments, RadiosityFunction(*solution), *reader, *writer, stop);
+    if (!written) return terminal.fail(written.error());
+    return signals.received().value_or(ExitCode::done);  // after a signal the file is not there
 }
 
 }  // namespace exitance

@@ -67,9 +67,10 @@ Result<void> write_obj(const Solution& solution, const std::string& path) {
         text.clear();
     };
     const std::size_t full = 1 << 16;
-    fmt::format_to(
-        out, "# leaves of an exitance solution; colours: sRGB of the radiosity, tone-mapped by {:.6g}\nmtllib {}\n",
-        tone.scale, mtl.substr(mtl.rfind('/') + 1));
+    fmt::format_to(out,
+                   "# leaves of an exitance solution; metres, Z up; colours: sRGB of the radiosity in W/m^2, "
+                   "tone-mapped by {:.6g}\nmtllib {}\n",
+                   tone.scale, mtl.substr(mtl.rfind('/') + 1));
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         Spectrum light;
         for (std::size_t b = 0; b < bands; ++b) light[b] = static_cast<double>(mesh.radiosity[i][b]);

@@ -77,7 +77,8 @@ Result<void> write_vtu(const Solution& solution, const std::string& path) {
     Result<AtomicFile> file = AtomicFile::create(path);
     if (!file) return file.error();
     file->write(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+        "<?xml version=\"1.0\"?>\n<!-- exitance: points in metres, radiosity and irradiance in W/m^2 -->\n<VTKFile "
+        "type=\"UnstructuredGrid\" version=\"1.0\" "
         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
         std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" + std::to_string(mesh.size()) + "\">\n");
     file->write("<PointData Vectors=\"radiosity\">\n");

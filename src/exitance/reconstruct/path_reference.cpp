@@ -154,6 +154,7 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
     const std::uint32_t each = static_cast<std::uint32_t>((paths + randomisations - 1) / randomisations);
     std::vector<ReferenceLight> out(points.size());
     progress.phase("paths");
+    progress.advance(0);
     for (std::size_t first = 0; first < points.size() && !stop.requested(); first += chunk) {
         const std::size_t count = std::min(chunk, points.size() - first);
         parallel_for(count, 1, [&](std::size_t local) {
@@ -167,8 +168,10 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
             for (std::size_t k = 0; k < randomisations; ++k) {
                 const ScrambledSobol first_directions(hash(seed, static_cast<std::uint64_t>(Stream::reference), i, k));
                 RandomStream random(seed, Stream::reference, i, k);
-                for (std::uint32_t p = 0; p < each; ++p)
+                for (std::uint32_t p = 0; p < each; ++p) {
+                    if (p % 1024 == 0 && stop.requested()) return;
                     batch[k] += tracer.path({x, n, region}, first_directions(p, 0), first_directions(p, 1), random);
+                }
                 batch[k] *= 1.0 / each;
                 out[i].irradiance += batch[k] / randomisations;
             }
