@@ -25,7 +25,7 @@ Beams::Arrival Beams::arrival(const PunctualLight& light, const Receiver& at) co
 
 bool Beams::blocks(PieceId p, const Receiver& at, const Point& from) const {
     const ConvexPiece& piece = occluders_->pieces()[p];
-    if (piece.region == at.own) return false;
+    if (occluders_->is_own(piece.region, at.own)) return false;
     const std::span<const Point> corners = occluders_->corners(p);
     const double here = dot(piece.plane.n, at.x - corners[0]), there = dot(piece.plane.n, from - corners[0]);
     const double rounding = occluders_->rounding();
@@ -101,7 +101,7 @@ void Beams::prepare_light(std::uint32_t number, std::span<const Point> receiver,
     const std::size_t first = candidates.size();
     std::vector<Point> part, rest;
     const bool hidden = each_piece(region, [&](PieceId p) {
-        if (occluders_->pieces()[p].region == own) return false;
+        if (occluders_->is_own(occluders_->pieces()[p].region, own)) return false;
         part.assign(occluders_->corners(p).begin(), occluders_->corners(p).end());
         if (std::all_of(part.begin(), part.end(), [&](const Point& q) { return dot(n, q - receiver[0]) <= slack; }))
             return false;

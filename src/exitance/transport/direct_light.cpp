@@ -38,8 +38,16 @@ double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Work
     return sum;
 }
 
+/// Points come from files and from rays, off their plane by more than rounding: there the other side of a sheet would
+/// stand between them and all light.
+Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) const {
+    if (own.is_none()) return {x, n, own};
+    const Plane& plane = occluders_->scene().regions()[own].plane;
+    return {x - plane.signed_distance(x) * plane.n, n, own};
+}
+
 Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
-    const Receiver at{x, n, own};
+    const Receiver at = receiver(x, n, own);
     Spectrum sum;
     for (const Emitter& emitter : emitters_) {
         const double f = form_factor(at, emitter, scratch);
@@ -97,7 +105,7 @@ void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, Re
 
 Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
                                  Spectrum* parallel) const {
-    const Receiver at{x, light.n, light.own};
+    const Receiver at = receiver(x, light.n, light.own);
     Spectrum sum;
     for (const ReceiverLight::Source& source : light.sources) {
         const auto candidates = std::span(light.candidates).subspan(source.first, source.count);

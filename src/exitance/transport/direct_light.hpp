@@ -41,9 +41,8 @@ class DirectLight {
     ///     E = sum over emitters s of  M_s F(x, visible part of s)
     ///
     /// and what lights without extent bring (beams.hpp). Exact but for rounding (1e-12 relative where F is not tiny). x
-    /// is to lie on region `own` (a point off its plane by more than rounding can be shaded by that region's
-    /// neighbours), or own is none. A point that another surface covers is for the caller to ask about
-    /// (Occluders::is_covered). About 1-5 microseconds an emitter in view.
+    /// lies on region `own`, into whose plane it is moved, or own is none. A point that another surface covers is for
+    /// the caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
     /// Looks at the emitters from a convex polygon of region `own` (metres, counter-clockwise about n); fills `light`,
@@ -78,6 +77,7 @@ class DirectLight {
     double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
 
   private:
+    Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
     static void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch);
 
     const Occluders* occluders_;

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <vector>
 
 #include "exitance/core/check.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
 #include "exitance/geometry/triangulation.hpp"
-#include "exitance/scene/hash_chains.hpp"
+#include "exitance/scene/other_side.hpp"
 #include "exitance/transport/visibility.hpp"
 
 namespace exitance {
@@ -66,10 +64,8 @@ struct RayTracer::Content {
     double lift_off;
     Owned<RTCDevice, rtcReleaseDevice> device;
     Owned<RTCScene, rtcReleaseScene> rtc;
-    std::vector<SurfaceId> surface_of;  ///< Of every triangle.
-    /// Of every surface: the one of the same corners that faces the other way, as the two sides of a sheet do; none
-    /// else. Empty where no surface has one.
-    Field<SurfaceId, SurfaceId> other_side;
+    std::vector<SurfaceId> surface_of;       ///< Of every triangle.
+    Field<SurfaceId, SurfaceId> other_side;  ///< Of sheets; empty where there are none.
 
     explicit Content(const Scene& s)
         : scene(&s),
@@ -77,7 +73,8 @@ struct RayTracer::Content {
           scale(std::exp2(-std::ilogb(s.size()))),
           lift_off(lift * s.size()),
           device(rtcNewDevice(nullptr)),
-          rtc(rtcNewScene(device)) {
+          rtc(rtcNewScene(device)),
+          other_side(other_sides_of_surfaces(s)) {
         std::vector<Float3> corners;
         std::vector<std::array<std::uint32_t, 3>> triangles;
         for (SurfaceId id : s.surfaces().ids()) {
@@ -103,28 +100,6 @@ struct RayTracer::Content {
         // The order of a leaf's triangles, and with it which of two equally near ones is met, follows from how many
         // threads build; one always builds the same.
         run_alone([&] { rtcJoinCommitScene(rtc); });
-        find_other_sides();
-    }
-
-    void find_other_sides() {
-        const auto& surfaces = scene->surfaces();
-        HashChains chains(surfaces.size());
-        Field<SurfaceId, std::uint64_t> keys(surfaces.size());
-        for (SurfaceId s : surfaces.ids()) {
-            for (const Point& p : scene->outline(s)) {  // in any order
-                const Float3 q = local(p);
-                keys[s] += hash(std::bit_cast<std::uint32_t>(q.x), std::bit_cast<std::uint32_t>(q.y),
-                                std::bit_cast<std::uint32_t>(q.z));
-            }
-            for (std::uint32_t e = chains.first(keys[s]); e != HashChains::end; e = chains.next(e)) {
-                const SurfaceId t(e);
-                if (keys[t] != keys[s] || dot(surfaces[t].normal, surfaces[s].normal) > -0.999) continue;
-                other_side.resize(surfaces.size());
-                other_side[s] = t, other_side[t] = s;
-                break;
-            }
-            chains.add(keys[s]);
-        }
     }
 
     Float3 local(const Point& p) const { return to_float(scale * (p - centre)); }

@@ -5,6 +5,7 @@
 
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/geometry/triangulation.hpp"
+#include "exitance/scene/other_side.hpp"
 
 namespace exitance {
 namespace {
@@ -19,7 +20,7 @@ Box box_of(std::span<const Point> corners) {
 
 }  // namespace
 
-Occluders::Occluders(const Scene& scene) : scene_(&scene) {
+Occluders::Occluders(const Scene& scene) : scene_(&scene), other_side_(other_sides_of_regions(scene)) {
     const Box& b = scene.box();
     const double reach = std::max(
         {std::abs(b.lo.x), std::abs(b.lo.y), std::abs(b.lo.z), std::abs(b.hi.x), std::abs(b.hi.y), std::abs(b.hi.z)});
@@ -92,7 +93,7 @@ bool Occluders::is_covered(const Point& x, const Normal& n, RegionId own) const 
     near.add(x + Vec3{reach, reach, reach});
     const auto covers = [&](PieceId p) {
         const ConvexPiece& piece = pieces_[p];
-        if (piece.region == own) return false;
+        if (is_own(piece.region, own)) return false;
         const double facing = dot(piece.plane.n, n);
         const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // of the piece above x
         if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return false;

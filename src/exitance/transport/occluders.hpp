@@ -48,12 +48,17 @@ class Occluders {
             region, [&](std::uint32_t i) { return visit(tree.pieces[i]); }, direction);
     }
 
-    /// Calls visit(piece) for every piece of a size whose box the segment from `origin` to origin + d meets, nearer ones
-    /// first, until visit returns true.
+    /// Calls visit(piece) for every piece of a size whose box the segment from `origin` to origin + d meets, nearer
+    /// ones first, until visit returns true.
     template <class Visit>
     void visit_segment(Size size, const Point& origin, const Vec3& d, const Visit& visit) const {
         const Tree& tree = trees_[static_cast<std::size_t>(size)];
         tree.bvh.visit_segment(origin, d, 1, [&](std::uint32_t i) { return visit(tree.pieces[i]) ? 0.0 : 1.0; });
+    }
+
+    /// Is a region the one that a receiver lies on, or the other side of the same sheet? Neither can shade it.
+    bool is_own(RegionId region, RegionId own) const {
+        return region == own || (other_side_.size() > 0 && !own.is_none() && other_side_[own] == region);
     }
 
     /// How far apart two places may be that are meant to be the same, metres: a few roundings of the coordinates.
@@ -75,6 +80,7 @@ class Occluders {
     Field<PieceId, ConvexPiece> pieces_;
     Field<RegionId, IdRange<PieceId>> of_region_;
     std::vector<Point> corners_;
+    Field<RegionId, RegionId> other_side_;  ///< Empty where no region is one side of a sheet.
     struct Tree {
         std::vector<PieceId> pieces;
         Bvh bvh;

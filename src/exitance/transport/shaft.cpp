@@ -82,7 +82,7 @@ void Shaft::add_supporting_planes(std::span<const Point> edges, std::span<const 
 
 bool Shaft::reaches_in(PieceId p) {
     const ConvexPiece& piece = occluders_->pieces()[p];
-    if (piece.region == receiver_region_ || piece.region == source_region_) return false;
+    if (occluders_->is_own(piece.region, receiver_region_) || piece.region == source_region_) return false;
     const std::span<const Point> corners = occluders_->corners(p);
     if (highest(corners, source_plane_) <= piece.thickness) return false;
     bool crosses = false;

@@ -132,7 +132,7 @@ bool region_hides_everything(const Occluders& occluders, const Receiver& at, Reg
 Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate,
                  Workspace& scratch) {
     const ConvexPiece& piece = occluders.pieces()[candidate];
-    if (piece.region == at.own || piece.region == source.region) return Hides::nothing;
+    if (occluders.is_own(piece.region, at.own) || piece.region == source.region) return Hides::nothing;
     const std::span<const Point> corners = occluders.corners(candidate);
     const double facing = dot(piece.plane.n, at.x - corners[0]);
     if (std::abs(facing) <= occluders.rounding()) return Hides::nothing;  // seen edge-on
