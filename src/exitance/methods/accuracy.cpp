@@ -21,7 +21,8 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     Knobs knobs;
     knobs.solve_mesh = {edge_for_elements(pieces, count(16)), strips + (error < 0.01 ? 1 : 0)};
     knobs.solve_rays = {.average = std::clamp(1.5 / error, 32.0, 256.0), .least = 16, .most = 1024};
-    knobs.direct_tolerance = 2.5 * error;
+    // What is projected is only gathered from, and its means are right; unless it is what is delivered.
+    knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
     knobs.residual = 0.05 * error;
     // Two strips more where the light is delivered than its mean square needs: at an edge, too, it is to be right.
     knobs.gather_mesh = {edge_for_elements(pieces, count(5)), strips + (error < 0.01 ? 2 : 0)};

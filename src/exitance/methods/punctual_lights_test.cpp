@@ -82,7 +82,7 @@ TEST(PunctualLights, AreLitByEveryMethod) {
     const Scene scene = room_with_bulb();
     const std::vector<ProbePoint> points = {
         {{1.5, 1, 0}, {0, 0, 1}}, {{0.2, 1, 0}, {0, 0, 1}}, {{3, 1, 1}, {-1, 0, 0}}};
-    const Solution matrix = solved(scene, {.error = 0.05});
+    const Solution matrix = solved(scene, {.error = 0.02});
     const auto expected = RadiosityFunction(matrix).at(points);
     for (const Method method : {Method::progressive, Method::monte_carlo}) {
         const Solution solution =

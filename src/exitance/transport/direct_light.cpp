@@ -14,6 +14,11 @@ bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rou
 
 }  // namespace
 
+void ReceiverLight::clear() {
+    sources.clear(), beams.clear(), candidates.clear();
+    open.clear(), open_light.clear();
+}
+
 DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
     : occluders_(&occluders), beams_(scene.lights(), occluders) {
     for (RegionId r : scene.regions().ids()) {
@@ -59,7 +64,7 @@ Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
                           Workspace& scratch) const {
     light.n = n, light.own = own;
-    light.sources.clear(), light.beams.clear(), light.candidates.clear();
+    light.clear();
     const Point middle = centroid(receiver);
     double radius = occluders_->rounding();
     for (const Point& p : receiver) radius = std::max(radius, norm(p - middle));
@@ -69,9 +74,14 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
             dot(n, emitter.centre - middle) <= -emitter.radius)
             continue;
         for (PieceId piece : emitter.pieces) {
+            if (occluders_->has_nothing_inside()) {
+                if (face_each_other({n, dot(n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
+                    add_open(e, piece, light);
+                continue;
+            }
             scratch.shaft.set(*occluders_, {receiver, n, own},
                               {occluders_->corners(piece), emitter.plane.n, emitter.region});
-            PieceId& likely = scratch.last_blocker(piece);
+            PieceId& likely = scratch.last_blocker(*occluders_, piece);
             if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) continue;
             add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
             if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
@@ -83,8 +93,12 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
 void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
                           Workspace& scratch) const {
     light.n = whole.n, light.own = whole.own;
-    light.sources.clear(), light.beams.clear(), light.candidates.clear();
+    light.clear();
     for (const ReceiverLight::Source& source : whole.sources) {
+        if (source.count == 0) {
+            add_open(source.emitter, source.piece, light);
+            continue;
+        }
         const Emitter& emitter = emitters_[source.emitter];
         scratch.shaft.set(*occluders_, {receiver, whole.n, whole.own},
                           {occluders_->corners(source.piece), emitter.plane.n, emitter.region});
@@ -95,19 +109,42 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
         beams_.prepare(receiver, whole.n, whole.own, whole.beams, whole.candidates, light.beams, light.candidates);
 }
 
+bool DirectLight::face_each_other(const Plane& receiver_plane, std::span<const Point> receiver,
+                                  const Plane& source_plane, std::span<const Point> source) const {
+    const auto rises_over = [&](std::span<const Point> points, const Plane& plane) {
+        return std::any_of(points.begin(), points.end(),
+                           [&](const Point& p) { return plane.signed_distance(p) > occluders_->rounding(); });
+    };
+    return rises_over(receiver, source_plane) && rises_over(source, receiver_plane);
+}
+
 void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light,
-                             Workspace& scratch) {
+                             Workspace& scratch) const {
     if (view == View::none) return;
+    if (view == View::open) return add_open(emitter, piece, light);
     light.sources.push_back({emitter, piece, static_cast<std::uint32_t>(light.candidates.size()),
                              static_cast<std::uint32_t>(scratch.candidates.size())});
     light.candidates.insert(light.candidates.end(), scratch.candidates.begin(), scratch.candidates.end());
+}
+
+void DirectLight::add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const {
+    const std::span<const Point> corners = occluders_->corners(piece);
+    const bool in_batch = corners.size() <= 4;
+    light.sources.push_back({emitter, piece, 0, 0, in_batch});
+    if (!in_batch) return;
+    light.open.add({corners[0], corners[1], corners[2], corners[corners.size() - 1]});
+    light.open_light.push_back(emitters_[emitter].exitance);
 }
 
 Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
                                  Spectrum* parallel) const {
     const Receiver at = receiver(x, light.n, light.own);
     Spectrum sum;
+    scratch.factors.resize(light.open.size());
+    point_to_quads(at.x, light.n, light.open, scratch.factors);
+    for (std::size_t i = 0; i < scratch.factors.size(); ++i) sum += scratch.factors[i] * light.open_light[i];
     for (const ReceiverLight::Source& source : light.sources) {
+        if (source.in_batch) continue;
         const auto candidates = std::span(light.candidates).subspan(source.first, source.count);
         const double f = visible_form_factor(*occluders_, at, source.piece, candidates, scratch);
         if (f > 0) sum += f * emitters_[source.emitter].exitance;

@@ -4,6 +4,7 @@
 
 #include "exitance/scene/scene.hpp"
 #include "exitance/transport/beams.hpp"
+#include "exitance/transport/form_factor_batch.hpp"
 #include "exitance/transport/occluders.hpp"
 #include "exitance/transport/shaft.hpp"
 #include "exitance/transport/visible_part.hpp"
@@ -17,13 +18,17 @@ struct ReceiverLight {
         std::uint32_t emitter = 0;
         PieceId piece;
         std::uint32_t first = 0, count = 0;  ///< Of `candidates`; none: all of the piece is visible.
+        bool in_batch = false;               ///< One of `open`.
     };
     Normal n;
     RegionId own;
     std::vector<Source> sources;  ///< Those that are not certainly hidden.
     std::vector<Beam> beams;      ///< Of lights without extent, likewise.
     std::vector<PieceId> candidates;
+    QuadBatch open;                    ///< Sources of four corners or less that are all visible, in their order,
+    std::vector<Spectrum> open_light;  ///< and their exitances.
 
+    void clear();
     bool is_dark() const { return sources.empty() && beams.empty(); }  ///< No light from anywhere, certainly.
     bool is_unshadowed() const { return candidates.empty(); }  ///< Smooth: no shadow edge crosses it, certainly.
 };
@@ -78,7 +83,11 @@ class DirectLight {
 
   private:
     Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
-    static void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch);
+    void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch) const;
+    void add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const;
+    /// Does any of either polygon rise over the plane of the other?
+    bool face_each_other(const Plane& receiver_plane, std::span<const Point> receiver, const Plane& source_plane,
+                         std::span<const Point> source) const;
 
     const Occluders* occluders_;
     std::vector<Emitter> emitters_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "exitance/core/parallel.hpp"
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/scene/other_side.hpp"
@@ -49,19 +50,55 @@ Occluders::Occluders(const Scene& scene) : scene_(&scene), other_side_(other_sid
     make_trees();
 }
 
+/// Which pieces have all of the scene on one side of their planes, up to rounding. Most have some corner of the
+/// scene's box, or of the large pieces before them, on either side; the others are compared with everything.
+std::vector<std::uint8_t> Occluders::find_outer() const {
+    std::vector<std::uint8_t> outer(pieces_.size(), false);
+    if (pieces_.empty()) return outer;
+    // Corners farthest out along many directions: if any two lie on different sides, so does the scene.
+    std::vector<Point> far;
+    for (int k = 0; k < 26; ++k) {
+        const int code = k < 13 ? k : k + 1;  // all of {-1, 0, 1}^3 but the middle
+        const Vec3 along{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
+        far.push_back(*std::max_element(corners_.begin(), corners_.end(),
+                                        [&](const Point& p, const Point& q) { return dot(along, p) < dot(along, q); }));
+    }
+    const auto crosses = [&](const Plane& plane, std::span<const Point> points) {
+        double low = 0, high = 0;
+        for (const Point& p : points) {
+            const double h = plane.signed_distance(p);
+            low = std::min(low, h), high = std::max(high, h);
+            if (low < -rounding_ && high > rounding_) return true;
+        }
+        return false;
+    };
+    parallel_for(pieces_.size(), 64, [&](std::size_t i) {
+        const Plane& plane = pieces_[PieceId(i)].plane;
+        outer[i] = !crosses(plane, far) && !crosses(plane, corners_);
+    });
+    return outer;
+}
+
 void Occluders::make_trees() {
+    const std::vector<std::uint8_t> is_outer = find_outer();
     std::vector<std::pair<double, std::uint32_t>> by_area;
-    for (PieceId p : pieces_.ids()) by_area.push_back({-squared_norm(area_vector(corners(p))), p.value});
+    for (PieceId p : pieces_.ids()) {
+        if (is_outer[p.value])
+            outer_.pieces.push_back(p);
+        else
+            by_area.push_back({-squared_norm(area_vector(corners(p))), p.value});
+    }
     const auto large = std::min(by_area.size(), static_cast<std::size_t>(4 * std::sqrt(by_area.size())));
     std::nth_element(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(large), by_area.end());
-    std::vector<bool> is_large(by_area.size());
+    std::vector<bool> is_large(pieces_.size());
     for (std::size_t i = 0; i < large; ++i) is_large[by_area[i].second] = true;
-    for (PieceId p : pieces_.ids()) trees_[is_large[p.value] ? 0 : 1].pieces.push_back(p);
-    for (Tree& tree : trees_) {
+    for (PieceId p : pieces_.ids())
+        if (!is_outer[p.value]) trees_[is_large[p.value] ? 0 : 1].pieces.push_back(p);
+    for (Tree* tree : {&trees_[0], &trees_[1], &outer_}) {
         std::vector<Box> boxes;
-        boxes.reserve(tree.pieces.size());
-        for (PieceId p : tree.pieces) boxes.push_back(box_of(corners(p)));
-        tree.bvh = Bvh(boxes);
+        boxes.reserve(tree->pieces.size());
+        for (PieceId p : tree->pieces) boxes.push_back(box_of(corners(p)));
+        tree->bvh = Bvh(boxes);
     }
 }
 
@@ -101,15 +138,15 @@ bool Occluders::is_covered(const Point& x, const Normal& n, RegionId own) const 
         if (!contains(corners(p), piece.plane.n, x)) return false;
         return facing > 0 || own.is_none() || !is_back_of(own, piece.region);
     };
-    for (const Tree& tree : trees_)
-        if (tree.bvh.visit_box(near, [&](std::uint32_t i) { return covers(tree.pieces[i]); })) return true;
+    for (const Tree* tree : {&trees_[0], &trees_[1], &outer_})
+        if (tree->bvh.visit_box(near, [&](std::uint32_t i) { return covers(tree->pieces[i]); })) return true;
     return false;
 }
 
 std::size_t Occluders::memory_bytes() const {
-    return trees_[0].bvh.memory_bytes() + trees_[1].bvh.memory_bytes() + pieces_.size() * sizeof(PieceId) +
-           corners_.capacity() * sizeof(Point) + pieces_.size() * sizeof(ConvexPiece) +
-           of_region_.size() * sizeof(IdRange<PieceId>);
+    return trees_[0].bvh.memory_bytes() + trees_[1].bvh.memory_bytes() + outer_.bvh.memory_bytes() +
+           pieces_.size() * sizeof(PieceId) + corners_.capacity() * sizeof(Point) +
+           pieces_.size() * sizeof(ConvexPiece) + of_region_.size() * sizeof(IdRange<PieceId>);
 }
 
 }  // namespace exitance

@@ -43,23 +43,39 @@ class Occluders {
     /// along `direction`, until visit returns true. Returns whether it did.
     template <class Visit>
     bool visit_region(Size size, const ConvexRegion& region, const Visit& visit, const Vec3& direction) const {
-        const Tree& tree = trees_[static_cast<std::size_t>(size)];
-        return tree.bvh.visit_region(
-            region, [&](std::uint32_t i) { return visit(tree.pieces[i]); }, direction);
+        return (size == Size::large && walk(outer_, region, visit, direction)) ||
+               visit_inner(size, region, visit, direction);
     }
 
     /// Calls visit(piece) for every piece of a size whose box the segment from `origin` to origin + d meets, nearer
-    /// ones first, until visit returns true.
+    /// ones first (those that all of the scene lies on one side of before the other large ones), until visit returns
+    /// true.
     template <class Visit>
     void visit_segment(Size size, const Point& origin, const Vec3& d, const Visit& visit) const {
-        const Tree& tree = trees_[static_cast<std::size_t>(size)];
-        tree.bvh.visit_segment(origin, d, 1, [&](std::uint32_t i) { return visit(tree.pieces[i]) ? 0.0 : 1.0; });
+        bool ended = false;
+        const auto walk_along = [&](const Tree& tree) {
+            tree.bvh.visit_segment(origin, d, 1, [&](std::uint32_t i) {
+                ended = visit(tree.pieces[i]);
+                return ended ? 0.0 : 1.0;
+            });
+        };
+        if (size == Size::large) walk_along(outer_);
+        if (!ended) walk_along(trees_[static_cast<std::size_t>(size)]);
     }
 
     /// Is a region the one that a receiver lies on, or the other side of the same sheet? Neither can shade it.
     bool is_own(RegionId region, RegionId own) const {
         return region == own || (other_side_.size() > 0 && !own.is_none() && other_side_[own] == region);
     }
+
+    /// As visit_region, without the pieces that all of the scene lies on one side of, such as the walls of a single
+    /// room: they stand between no two points of surfaces.
+    template <class Visit>
+    bool visit_inner(Size size, const ConvexRegion& region, const Visit& visit, const Vec3& direction) const {
+        return walk(trees_[static_cast<std::size_t>(size)], region, visit, direction);
+    }
+    /// Is there no piece but those?
+    bool has_nothing_inside() const { return outer_.pieces.size() == pieces_.size(); }
 
     /// How far apart two places may be that are meant to be the same, metres: a few roundings of the coordinates.
     double rounding() const { return rounding_; }
@@ -73,6 +89,7 @@ class Occluders {
 
   private:
     void make_trees();
+    std::vector<std::uint8_t> find_outer() const;
     void add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane);
     bool is_back_of(RegionId a, RegionId b) const;
 
@@ -85,7 +102,14 @@ class Occluders {
         std::vector<PieceId> pieces;
         Bvh bvh;
     };
-    std::array<Tree, 2> trees_;  ///< Indexed by Size.
+    template <class Visit>
+    static bool walk(const Tree& tree, const ConvexRegion& region, const Visit& visit, const Vec3& direction) {
+        return tree.bvh.visit_region(
+            region, [&](std::uint32_t i) { return visit(tree.pieces[i]); }, direction);
+    }
+
+    std::array<Tree, 2> trees_;  ///< Indexed by Size; without the outer ones.
+    Tree outer_;                 ///< Pieces with all of the scene on one side.
     double rounding_ = 0;
 };
 

@@ -145,14 +145,18 @@ View Shaft::classify(std::vector<PieceId>& candidates) {
     candidates.clear();
     in_vain_.clear();
     if (receiver_.empty() || source_.empty()) return View::none;
+    if (are_in_scene() && occluders_->has_nothing_inside()) return View::open;
     const auto look = [&](PieceId p) {
         if (!reaches_in(p)) return false;
         candidates.push_back(p);
         return blocks_all(p);
     };
     const Vec3 direction = source_[0] - receiver_[0];  // from the receiver on: near walls block most
-    const bool blocked = occluders_->visit_region(Occluders::Size::large, region_, look, direction) ||
-                         occluders_->visit_region(Occluders::Size::small, region_, look, direction);
+    const bool in_scene = are_in_scene();
+    bool blocked = false;
+    for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})
+        blocked = blocked || (in_scene ? occluders_->visit_inner(size, region_, look, direction)
+                                       : occluders_->visit_region(size, region_, look, direction));
     if (blocked) blocker_ = candidates.back();
     if (blocked) candidates.clear();
     return blocked ? View::none : candidates.empty() ? View::open : View::mixed;

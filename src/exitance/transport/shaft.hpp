@@ -30,7 +30,7 @@ struct Facet {
 /// Source: [Haines91] with the polygons' own planes in place of boxes; blocking by one convex occluder follows from the
 /// segments between corners, since for fixed x the points whose segment to x meets a convex set form a convex set. A
 /// region with openings blocks as the convex hull of those segments' crossings does, where that misses the openings.
-/// "Certain" is up to slivers as thin as rounding.
+/// "Certain" is up to slivers as thin as rounding. Polygons with a region lie on surfaces of the scene.
 class Shaft {
   public:
     /// Prepares for a pair; O(|R| |S| (|R| + |S|)). Reusable, keeps its memory.
@@ -52,6 +52,8 @@ class Shaft {
   private:
     void clip_by(const Plane& plane, std::vector<Point>& polygon);
     void add_supporting_planes(std::span<const Point> edges, std::span<const Point> corners);
+    /// Then what all of the scene lies on one side of does not stand between them.
+    bool are_in_scene() const { return !receiver_region_.is_none() && !source_region_.is_none(); }
     bool reaches_in(PieceId p);
     bool blocks_all(PieceId p);
     bool blocks_all(RegionId r);

@@ -52,6 +52,10 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
     for (const Point& p : corners) scratch.source.push_back(p - at.x);
     clip_in_place(scratch.source, at.n, 0, scratch);
+}
+
+/// The planes of the pyramid from x over the source, in scratch.source_pyramid.
+void make_pyramid(Workspace& scratch) {
     scratch.source_pyramid.clear();
     for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {
         const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
@@ -211,8 +215,11 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
                            VisiblePartMethod method) {
     begin(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
+    const bool in_scene = !at.own.is_none();  // what lies on the scene's hull stands between none of its points
+    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, method);
+    make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
-    PieceId& likely = scratch.last_blocker(source);
+    PieceId& likely = scratch.last_blocker(occluders, source);
     const auto hides_everything = [&](PieceId p) {
         const bool hides = add_shadow(occluders, at, emitter, p, scratch) == Hides::everything;
         if (hides) likely = p;
@@ -225,11 +232,14 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
         scratch.outlines.clear();
     }
     make_region(occluders, at, source, scratch);
-    // From the receiver on: near walls hide most.
-    if (occluders.visit_region(Occluders::Size::large, scratch.region, hides_everything, scratch.source[0])) return 0;
+    const auto visit = [&](Occluders::Size size) {  // from the receiver on: near walls hide most
+        return in_scene ? occluders.visit_inner(size, scratch.region, hides_everything, scratch.source[0])
+                        : occluders.visit_region(size, scratch.region, hides_everything, scratch.source[0]);
+    };
+    if (visit(Occluders::Size::large)) return 0;
     const std::size_t large = scratch.shadows.size();
     if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
-    if (occluders.visit_region(Occluders::Size::small, scratch.region, hides_everything, scratch.source[0])) return 0;
+    if (visit(Occluders::Size::small)) return 0;
     return finish(at.n, large > 1 ? large : 0, scratch, method);
 }
 
@@ -238,6 +248,8 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
                            VisiblePartMethod method) {
     begin(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
+    if (candidates.empty()) return finish(at.n, 0, scratch, method);
+    make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     for (PieceId p : candidates)
         if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;

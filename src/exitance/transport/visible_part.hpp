@@ -53,16 +53,19 @@ class VisibilityWorkspace {
     std::vector<std::pair<double, double>> intervals;
     std::vector<PieceId> candidates;
     std::vector<double> heights;
+    std::vector<double> factors;  ///< Of sources that are all visible.
     ConvexRegion region;
     RegionCover cover;
     std::vector<RegionId> uncovering;  ///< Regions of several pieces that do not hide all of the source.
     Shaft shaft;
 
     /// What hid a source last, and is likely to hide it again: asked first, it saves the search. What it does not hide
-    /// is searched for as ever, so the answer does not depend on it.
-    PieceId& last_blocker(PieceId source) {
+    /// is searched for as ever, so the answer does not depend on it; nor does it when the workspace comes from another
+    /// scene, since only pieces that there are are remembered.
+    PieceId& last_blocker(const Occluders& occluders, PieceId source) {
         Blocker& entry = blockers_[source.value % blockers_.size()];
-        if (entry.source != source) entry = {source, PieceId()};
+        const bool known = entry.source == source && entry.blocker.value < occluders.pieces().size();
+        if (!known) entry = {source, PieceId()};
         return entry.blocker;
     }
 

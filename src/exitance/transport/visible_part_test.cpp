@@ -211,5 +211,43 @@ TEST(Occluders, KnowWhatIsCovered) {
     EXPECT_FALSE(Occluders(sheet).is_covered({0.5, 0.5, 0}, {0, 0, 1}, sheet.surfaces()[SurfaceId(0)].region));
 }
 
+TEST(Occluders, KnowThatTheWallsOfARoomStandBetweenNoneOfItsPoints) {
+    std::vector<Face> faces = test::closed_box({}, {2, 3, 1});
+    const Scene box = test::make(faces);
+    EXPECT_TRUE(Occluders(box).has_nothing_inside());
+    faces.push_back({rectangle(0.5, 0.5, 1, 1, 0.4)});
+    const Scene scene = test::make(faces);
+    const Occluders occluders(scene);
+    EXPECT_FALSE(occluders.has_nothing_inside());
+    std::size_t inner = 0, all = 0;
+    for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small}) {
+        occluders.visit_inner(size, {}, [&](PieceId) { return ++inner, false; }, {});
+        occluders.visit_region(size, {}, [&](PieceId) { return ++all, false; }, {});
+    }
+    EXPECT_EQ(inner, 1u);
+    EXPECT_EQ(all, 7u);
+}
+
+TEST(DirectLight, OfManyOpenEmittersIsThatOfEachByItself) {
+    std::vector<Face> faces = test::closed_box({}, {2, 3, 1});
+    for (std::size_t i = 0; i < faces.size(); ++i) faces[i].exitance = 1 + static_cast<double>(i);
+    const Scene scene = test::make(faces);
+    const Occluders occluders(scene);
+    const DirectLight direct(scene, occluders);
+    VisibilityWorkspace scratch;
+    ReceiverLight light, part;
+    const RegionId own = scene.surfaces()[SurfaceId(0)].region;
+    const Normal& n = scene.regions()[own].plane.n;
+    direct.prepare(scene.outline(SurfaceId(0)), n, own, light, scratch);
+    direct.prepare(scene.outline(SurfaceId(0)), light, part, scratch);
+    EXPECT_EQ(light.open.size(), 5u);
+    EXPECT_EQ(part.open.size(), 5u);
+    double by_itself = 0;
+    for (const DirectLight::Emitter& e : direct.emitters())
+        by_itself += e.exitance[0] * direct.form_factor({{0.3, 0.2, 0}, n, own}, e, scratch);
+    for (const ReceiverLight& l : {light, part})
+        EXPECT_NEAR(direct.irradiance(l, {0.3, 0.2, 0}, scratch)[0], by_itself, 1e-11);  // the batch's 1e-12
+}
+
 }  // namespace
 }  // namespace exitance
