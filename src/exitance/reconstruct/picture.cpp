@@ -11,8 +11,6 @@
 namespace exitance {
 namespace {
 
-constexpr int tile_side = 32, block_side = 8;  // pixels
-
 /// A number in [-1, 1] with the density of a tent, from one that is uniform in [0, 1).
 double tent(double u) {
     return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
@@ -40,7 +38,7 @@ class TilePainter {
           options_(options),
           rays_(options.camera, options.size),
           places_(places),
-          light_(light, options.gather, options.seed) {}
+          light_(light, static_cast<std::uint32_t>(places.size()), options.gather, options.seed) {}
 
     /// The tile whose upper left pixel is (x0, y0).
     void paint(int x0, int y0, Picture& picture) {
@@ -51,8 +49,8 @@ class TilePainter {
         std::size_t pixel_in_tile = 0;
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
-                const int block = (y - y0) / block_side * tile_side + (x - x0) / block_side;
-                sort_by_region(pixel_in_tile++, static_cast<std::uint32_t>(block), at(x, y), picture);
+                const Spot pixel{{}, x - x0, y - y0, at(x, y)};
+                sort_by_region(pixel_in_tile++, pixel, picture.pixels[at(x, y)]);
             }
         light_.evaluate(points_, spots_);
         for (const Spot& spot : spots_) add(spot, picture.pixels[spot.pixel]);
@@ -87,9 +85,8 @@ class TilePainter {
     }
 
     /// What one pixel's rays have met: a spot for every region.
-    void sort_by_region(std::size_t pixel_in_tile, std::uint32_t block, std::uint32_t pixel, Picture& picture) {
+    void sort_by_region(std::size_t pixel_in_tile, const Spot& pixel, Pixel& out) {
         const std::size_t first = pixel_in_tile == 0 ? 0 : ends_[pixel_in_tile - 1], last = ends_[pixel_in_tile];
-        Pixel& out = picture.pixels[pixel];
         met_.clear();
         for (std::size_t i = first; i < last; ++i) {
             const RayHit& hit = hits_[i];
@@ -102,7 +99,8 @@ class TilePainter {
         for (std::size_t i = 0; i < met_.size(); ++i) {
             if (met_[i].is_none()) continue;
             const RegionId region = met_[i];
-            Spot spot{region, block, pixel, static_cast<std::uint32_t>(points_.size()), 0};
+            Spot spot = pixel;
+            spot.region = region, spot.first = static_cast<std::uint32_t>(points_.size());
             for (std::size_t k = i; k < met_.size(); ++k) {
                 if (met_[k] != region) continue;
                 points_.push_back(origins_[first + k] + hits_[first + k].distance * directions_[first + k]);

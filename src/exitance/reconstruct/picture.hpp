@@ -42,9 +42,10 @@ struct PictureOptions {
 /// What is seen is the function that `probe` evaluates: exact direct light, indirect light from the elements. The
 /// picture is cut into blocks; on the part of a region that shows in one, a shaft tells which emitters are all in view
 /// there, certainly hidden, or have something in between (DirectLight::prepare). Where nothing is in between, light is
-/// smooth, and one evaluation serves a pixel as long as it looks small from the emitters. Elsewhere four samples are
-/// evaluated, and if they differ by more than a hundredth, all. The same bits on any number of threads. A stop leaves
-/// the rest of the picture empty. About 0.1 us a sample and 1-5 us a pixel and emitter in a penumbra.
+/// smooth, and one evaluation serves a pixel as long as it looks small from the emitters. Elsewhere it serves a pixel
+/// that differs from none of its neighbours by more than a hundredth; of the others four samples are evaluated, and if
+/// these differ by more than a hundredth, all. The same bits on any number of threads. A stop leaves the rest of the
+/// picture empty. About 0.1 us a sample and 1-2 us a pixel and emitter that something stands before.
 Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
                      const StopRequest& stop);
 

@@ -49,31 +49,42 @@ class Octagon {
 };
 
 constexpr std::uint32_t probing = 4;  ///< Points of a spot that tell whether the others are wanted.
+constexpr double alike = 0.01;        ///< Values that differ by less make no difference to their mean.
 
-/// Do values differ by so little that more of them would not change their mean?
-bool agree(std::span<const Spectrum> values) {
-    constexpr double alike = 0.01;
-    double lo = HUGE_VAL, hi = 0;
-    for (const Spectrum& value : values) lo = std::min(lo, mean(value)), hi = std::max(hi, mean(value));
-    return hi - lo <= alike * hi;
+bool agree(const Spectrum& a, const Spectrum& b) {
+    return std::abs(mean(a) - mean(b)) <= alike * std::max(mean(a), mean(b));
 }
 
-/// The mean of value(i) over [0, count): of the first few if these agree.
+/// The mean of value(i) over [0, count): of the first few if these differ little beside `rest` and themselves.
 template <class Value>
-Spectrum probed_mean(std::uint32_t count, const Value& value) {
+Spectrum probed_mean(std::uint32_t count, const Spectrum& rest, const Value& value) {
     Spectrum values[probing], sum;
     const std::uint32_t few = std::min(count, probing);
-    for (std::uint32_t i = 0; i < few; ++i) sum += values[i] = value(i);
-    if (few == count || agree(std::span(values, few))) return sum / few;
+    bool all_agree = true;
+    for (std::uint32_t i = 0; i < few; ++i) {
+        sum += values[i] = value(i);
+        for (std::uint32_t k = 0; k < i; ++k) all_agree &= agree(rest + values[i], rest + values[k]);
+    }
+    if (few == count || all_agree) return sum / few;
     for (std::uint32_t i = few; i < count; ++i) sum += value(i);
     return sum / count;
 }
 
 }  // namespace
 
-/// What is known of the emitters from everywhere on these spots; false where they are too slender to ask.
-bool TileLight::prepare(std::span<const Spot> spots, RegionId region, const ReceiverLight* whole, ReceiverLight& out) {
+TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed)
+    : light_(light),
+      samples_(samples),
+      gather_(gather),
+      seed_(seed),
+      direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()) {
+    spot_at_.fill(0);
+}
+
+/// What is known of the emitters from everywhere on these spots of one region; false where they are too slender to ask.
+bool TileLight::prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out) {
     const Stage& stage = light_.stage();
+    const RegionId region = spots.front().region;
     const Normal& n = stage.scene.regions()[region].plane.n;
     Octagon octagon(n);
     for (const Spot& spot : spots)
@@ -87,20 +98,26 @@ bool TileLight::prepare(std::span<const Spot> spots, RegionId region, const Rece
     return true;
 }
 
+const ReceiverLight* TileLight::look_at_block(std::span<const Spot> spots, const ReceiverLight* whole,
+                                              ReceiverLight& room) {
+    const bool worth = whole && !whole->is_dark() && !whole->is_unshadowed();
+    return worth && prepare(spots, whole, room) ? &room : whole;
+}
+
 /// Is a spot so small beside its distance from every emitter that direct light is linear over it? E ~ 1 / d^2 over
 /// r = d / 30 departs from its tangent by at most (r / d)^2 times a few: less than 1%, and its mean by a fraction.
-bool TileLight::looks_small(const Spot& spot, const ReceiverLight& direct, const Point& middle) const {
+bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const {
     constexpr double small = 1.0 / 30;
     double radius_squared = 0;
     for (std::uint32_t i = 0; i < spot.count; ++i)
         radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));
-    for (const Beam& beam : direct.beams) {
+    for (const Beam& beam : known.beams) {
         const PunctualLight& lamp = light_.solution().scene.lights()[beam.light];
         const double distance = small * norm(lamp.position - middle);
         if (lamp.kind == PunctualLight::Kind::spot) return false;  // its cone may have a sharp edge
         if (!lamp.is_directional() && radius_squared > distance * distance) return false;
     }
-    for (const ReceiverLight::Source& source : direct.sources) {
+    for (const ReceiverLight::Source& source : known.sources) {
         const DirectLight::Emitter& emitter = light_.stage().direct.emitters()[source.emitter];
         const double distance = small * (norm(emitter.centre - middle) - emitter.radius);
         if (distance <= 0 || radius_squared > distance * distance) return false;
@@ -108,56 +125,85 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& direct, const
     return true;
 }
 
-Spectrum TileLight::elements(const Spot& spot, std::uint32_t i) {
-    const Point& x = points_[spot.first + i];
-    if (gather_ == 0) return light_.elements(spot.region, x);
-    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), spot.pixel, i);
+/// What is not exact direct light, mean over a spot.
+Spectrum TileLight::elements(const Spot& spot) {
+    if (gather_ == 0)
+        return probed_mean(spot.count, Spectrum(),
+                           [&](std::uint32_t i) { return light_.elements(spot.region, points_[spot.first + i]); });
     const Normal& n = light_.stage().scene.regions()[spot.region].plane.n;
-    return light_.gathered({x, n}, spot.region, gather_, key, gathering_);
+    Spectrum sum;  // every gather has noise of its own
+    for (std::uint32_t i = 0; i < spot.count; ++i) {
+        const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), spot.pixel, i);
+        sum += light_.gathered({points_[spot.first + i], n}, spot.region, gather_, key, gathering_);
+    }
+    return sum / spot.count;
 }
 
-/// `direct` is null where nothing could be prepared.
-Spectrum TileLight::irradiance(const Spot& spot, const ReceiverLight* direct) {
-    const DirectLight& exact = light_.stage().direct;
-    const Spectrum share = gather_ > 0 ? Spectrum(1) : light_.exact_share();
-    const auto direct_at = [&](const Point& x) {
-        if (direct) return share * exact.irradiance(*direct, x, visibility_);
-        const Normal& n = light_.stage().scene.regions()[spot.region].plane.n;
-        return share * exact.irradiance(x, n, spot.region, visibility_);
-    };
-    const auto elements_at = [&](std::uint32_t i) { return elements(spot, i); };
-    const auto elements_mean = [&] {
-        if (gather_ == 0) return probed_mean(spot.count, elements_at);
-        Spectrum sum;  // every gather has noise of its own
-        for (std::uint32_t i = 0; i < spot.count; ++i) sum += elements_at(i);
-        return sum / spot.count;
-    };
-    if (squared(share) == 0 || (direct && direct->is_dark())) return elements_mean();
+Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const Point& x) {
+    const Stage& stage = light_.stage();
+    if (known) return direct_share_ * stage.direct.irradiance(*known, x, visibility_);
+    const Normal& n = stage.scene.regions()[spot.region].plane.n;
+    return direct_share_ * stage.direct.irradiance(x, n, spot.region, visibility_);
+}
+
+/// Direct light at one place of a spot; true if that is certainly the mean over all of it.
+bool TileLight::first_guess(const Spot& spot, const ReceiverLight* known, Spectrum& light) {
+    if (squared(direct_share_) == 0 || (known && known->is_dark())) return true;
     Point middle;
     for (std::uint32_t i = 0; i < spot.count; ++i) middle += points_[spot.first + i] / spot.count;
-    if (direct && direct->is_unshadowed() && looks_small(spot, *direct, middle))
-        return direct_at(middle) + elements_mean();
-    return probed_mean(spot.count, [&](std::uint32_t i) { return direct_at(points_[spot.first + i]); }) +
-           elements_mean();
+    const bool smooth = known && known->is_unshadowed() && looks_small(spot, *known, middle);
+    // The middle of what shows beside something else may be hidden behind that, and lie in another light.
+    light = direct(spot, known, smooth || spot.count == samples_ ? middle : points_[spot.first]);
+    return smooth || spot.count == 1;
+}
+
+bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const {
+    int neighbours = 0;
+    const auto [x, y] = std::pair(spots[i].x, spots[i].y);
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, tile_side - 1); ++v)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, tile_side - 1); ++u) {
+            const std::uint32_t found = spot_at_[static_cast<std::size_t>(v * tile_side + u)];
+            if (found == 0 || found == i + 1) continue;
+            ++neighbours;
+            if (!agree(spots[found - 1].irradiance, spots[i].irradiance)) return true;
+        }
+    return neighbours < 3;  // too few to be told by
+}
+
+/// All spots of one region, block by block.
+void TileLight::evaluate_region(std::span<Spot> spots) {
+    const ReceiverLight* whole = prepare(spots, nullptr, whole_) ? &whole_ : nullptr;
+    settled_.assign(spots.size(), 0), rest_.resize(spots.size());
+    for (std::size_t begin = 0, end = 0; begin < spots.size(); begin = end) {
+        const auto block = static_cast<std::size_t>(block_of(spots[begin]));
+        while (end < spots.size() && block_of(spots[end]) == static_cast<int>(block)) ++end;
+        known_[block] = look_at_block(spots.subspan(begin, end - begin), whole, parts_[block]);
+        for (std::size_t i = begin; i < end; ++i) {
+            Spectrum light;
+            settled_[i] = first_guess(spots[i], known_[block], light);
+            rest_[i] = elements(spots[i]);
+            spots[i].irradiance = rest_[i] + light;
+            spot_at_[static_cast<std::size_t>(spots[i].y * tile_side + spots[i].x)] = static_cast<std::uint32_t>(i + 1);
+        }
+    }
+    for (std::size_t i = 0; i < spots.size(); ++i) settled_[i] |= !differs_from_neighbours(spots, i);
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+        Spot& spot = spots[i];
+        spot_at_[static_cast<std::size_t>(spot.y * tile_side + spot.x)] = 0;
+        if (settled_[i]) continue;
+        const ReceiverLight* known = known_[static_cast<std::size_t>(block_of(spot))];
+        const auto direct_at = [&](std::uint32_t k) { return direct(spot, known, points_[spot.first + k]); };
+        spot.irradiance = rest_[i] + probed_mean(spot.count, rest_[i], direct_at);
+    }
 }
 
 void TileLight::evaluate(std::span<const Point> points, std::vector<Spot>& spots) {
     points_ = points;
-    const auto key = [](const Spot& s) { return std::tuple(s.region, s.block, s.pixel); };
+    const auto key = [](const Spot& s) { return std::tuple(s.region, block_of(s), s.pixel); };
     std::sort(spots.begin(), spots.end(), [&](const Spot& a, const Spot& b) { return key(a) < key(b); });
     for (std::size_t first = 0, last = 0; first < spots.size(); first = last) {
         while (last < spots.size() && spots[last].region == spots[first].region) ++last;
-        const std::span<Spot> of_region = std::span(spots).subspan(first, last - first);
-        const RegionId region = spots[first].region;
-        const bool known = prepare(of_region, region, nullptr, whole_);
-        for (std::size_t begin = 0, end = 0; begin < of_region.size(); begin = end) {
-            while (end < of_region.size() && of_region[end].block == of_region[begin].block) ++end;
-            const std::span<Spot> of_block = of_region.subspan(begin, end - begin);
-            const bool worth = known && !whole_.is_dark() && !whole_.is_unshadowed();
-            const bool nearer = worth && prepare(of_block, region, &whole_, part_);
-            const ReceiverLight* direct = nearer ? &part_ : known ? &whole_ : nullptr;
-            for (Spot& spot : of_block) spot.irradiance = irradiance(spot, direct);
-        }
+        evaluate_region(std::span(spots).subspan(first, last - first));
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "exitance/reconstruct/gather.hpp"
@@ -7,10 +8,12 @@
 
 namespace exitance {
 
+constexpr int tile_side = 32;  ///< Pixels.
+
 /// What one pixel shows of one region.
 struct Spot {
     RegionId region;
-    std::uint32_t block = 0;             ///< Pixels of one block lie side by side.
+    int x = 0, y = 0;                    ///< The pixel's place in its tile, from 0 to tile_side - 1.
     std::uint32_t pixel = 0;             ///< Names the random numbers of its gather.
     std::uint32_t first = 0, count = 0;  ///< Of the points seen, in an order in which the first four are well spread.
     Spectrum irradiance = {};            ///< Mean over the points, W/m^2.
@@ -19,26 +22,41 @@ struct Spot {
 /// Light on the spots of a picture's tile, as take_picture describes it. One a thread; keeps its memory.
 class TileLight {
   public:
-    /// `gather` rays a point, 0 for none. Keeps a reference to `light`.
-    TileLight(const RadiosityFunction& light, unsigned gather, std::uint64_t seed)
-        : light_(light), gather_(gather), seed_(seed) {}
+    /// `samples` points a pixel; `gather` rays a point, 0 for none. Keeps a reference to `light`.
+    TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed);
 
     /// Fills in the irradiance of every spot and brings the spots into an order of its own. `points` are places in the
     /// open on the spots' regions, metres.
     void evaluate(std::span<const Point> points, std::vector<Spot>& spots);
 
   private:
-    bool prepare(std::span<const Spot> spots, RegionId region, const ReceiverLight* whole, ReceiverLight& out);
-    Spectrum irradiance(const Spot& spot, const ReceiverLight* direct);
-    Spectrum elements(const Spot& spot, std::uint32_t i);
-    bool looks_small(const Spot& spot, const ReceiverLight& direct, const Point& middle) const;
+    static constexpr int block_side = 8, blocks = (tile_side / block_side) * (tile_side / block_side);
+    static int block_of(const Spot& spot) {
+        return spot.y / block_side * (tile_side / block_side) + spot.x / block_side;
+    }
+
+    void evaluate_region(std::span<Spot> spots);
+    const ReceiverLight* look_at_block(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& room);
+    bool prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out);
+    Spectrum direct(const Spot& spot, const ReceiverLight* known, const Point& x);
+    bool first_guess(const Spot& spot, const ReceiverLight* known, Spectrum& light);
+    Spectrum elements(const Spot& spot);
+    bool looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const;
+    bool differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const;
 
     const RadiosityFunction& light_;
+    std::uint32_t samples_;
     unsigned gather_;
     std::uint64_t seed_;
+    Spectrum direct_share_;  ///< Of exact direct light, on top of the rest.
     std::span<const Point> points_;
     std::vector<Point> outline_;
-    ReceiverLight whole_, part_;
+    ReceiverLight whole_;
+    std::array<ReceiverLight, blocks> parts_;
+    std::array<const ReceiverLight*, blocks> known_;            ///< Null where nothing could be prepared.
+    std::array<std::uint32_t, tile_side * tile_side> spot_at_;  ///< Of the region at hand: one past the spot's number.
+    std::vector<std::uint8_t> settled_;
+    std::vector<Spectrum> rest_;  ///< Of every spot: all but exact direct light.
     DirectLight::Workspace visibility_;
     GatherWorkspace gathering_;
 };
