@@ -1,0 +1,302 @@
+#include "exitance/transport/link_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/core/random.hpp"
+#include "exitance/transport/direct_projection.hpp"
+
+namespace exitance {
+
+LinkJudge::LinkJudge(const LinkSites& sites, const NodalField& b, const Field<ElementId, double>& roughness,
+                     const LinkTolerance& tolerance)
+    : sites_(sites),
+      b_(b),
+      roughness_(roughness),
+      tolerance_(tolerance),
+      n_(sites.nodes()),
+      square_(make_checks(Patch::Shape::parallelogram)),
+      triangle_(make_checks(Patch::Shape::triangle)),
+      near_row_(sites) {}
+
+/// Points between the nodes, the middle first, at which a polynomial of the basis and one of a degree more differ by
+/// about as much as in the mean.
+LinkJudge::Checks LinkJudge::make_checks(Patch::Shape shape) const {
+    Checks out;
+    if (shape == Patch::Shape::triangle) {
+        if (sites_.basis().order() == 2)
+            out.at = {{1.0 / 3, 1.0 / 3}, {0.5, 0.08}, {0.08, 0.5}, {0.42, 0.42}};
+        else
+            out.at = {{1.0 / 3, 1.0 / 3}, {0.12, 0.12}, {0.76, 0.12}, {0.12, 0.76}};
+    } else if (sites_.basis().order() == 2) {
+        out.at = {{0.5, 0.5}, {0.5, 0.08}, {0.92, 0.5}, {0.5, 0.92}, {0.08, 0.5}};
+    } else {
+        const double g = sites_.basis().order() == 1 ? 0.2887 : 0.26;
+        out.at = {{0.5, 0.5}, {0.5 - g, 0.5 - g}, {0.5 + g, 0.5 - g}, {0.5 - g, 0.5 + g}, {0.5 + g, 0.5 + g}};
+    }
+    out.factors.resize(out.at.size() * n_);
+    for (std::size_t i = 0; i < out.at.size(); ++i)
+        sites_.basis().interpolate(shape, out.at[i], std::span(out.factors).subspan(i * n_, n_));
+    return out;
+}
+
+/// Can the front of either be seen from anywhere on the other? Errs to yes.
+bool LinkJudge::may_see(ElementId p, ElementId q) const {
+    const Vec3 d = sites_.centre(q) - sites_.centre(p);
+    const double reach = sites_.radius(p) + sites_.radius(q), slack = sites_.stage().occluders.rounding();
+    return dot(sites_.normal(p), d) > slack - reach && -dot(sites_.normal(q), d) > slack - reach;
+}
+
+void LinkJudge::set_source(ElementId q, const Spectrum& weight) {
+    source_normal_ = sites_.normal(q);
+    source_area_ = sites_.tree().area(q) / pi;
+    source_roughness_ = mean(weight) * roughness_[q];
+    for (std::size_t l = 0; l < n_; ++l) {
+        source_node_[l] = sites_.node(q, l);
+        source_weight_[l] = sites_.weight(q, l);
+        source_light_[l] = mean(weight * b_.node(q, l));
+    }
+}
+
+LinkJudge::Row LinkJudge::row(const Point& x, const Normal& n) {
+    Row out{};
+    if (near_) {
+        ++form_factors_;
+        near_row_(x, n, out.data());
+        return out;
+    }
+    for (std::size_t l = 0; l < n_; ++l) {
+        const Vec3 d = source_node_[l] - x;
+        const double here = dot(n, d), there = -dot(source_normal_, d), rr = squared_norm(d);
+        if (here > 0 && there > 0) out[l] = source_weight_[l] * source_area_ * here * there / (rr * rr);
+    }
+    return out;
+}
+
+double LinkJudge::light(const Row& row) const {
+    double sum = 0;
+    for (std::size_t l = 0; l < n_; ++l) sum += row[l] * source_light_[l];
+    return sum;
+}
+
+double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& departure) {
+    const Normal& n = sites_.normal(p);
+    const Patch frame = sites_.frame(p);
+    const Checks& checks = this->checks(frame.shape);
+    const double gap = norm(sites_.centre(q) - sites_.centre(p)) - sites_.radius(p);
+    const double ratio = sites_.radius(q) / std::max(gap, 1e-3 * sites_.radius(q));
+    const int M = sites_.basis().order();
+
+    // The rule's error relative to what it gives falls like (size / distance)^(2 M).
+    constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1;
+    const double rule_error = tolerance_.systematic * rule_constant * std::pow(ratio, 2 * M);
+    near_ = false;
+    block_.clear();
+    double unit = 0, most = 0;
+    const auto at_nodes = [&] {
+        unit = most = 0;
+        for (std::size_t k = 0; k < n_; ++k) {
+            rows_[k] = row(sites_.node(p, k), n);
+            node_light_[k] = light(rows_[k]);
+            most = std::max(most, std::abs(node_light_[k]));
+            for (std::size_t l = 0; l < n_; ++l) unit += sites_.weight(p, k) * rows_[k][l];
+        }
+    };
+    if (ratio <= surely_near) {
+        at_nodes();
+        near_ = ratio > surely_far && most * rule_error > 0.2 * allowed;
+    }
+    if (ratio > surely_near || near_) {
+        near_ = true;
+        near_row_.set_source(q);
+        at_nodes();
+        if (n_ > 1)
+            for (std::size_t k = 0; k < n_; ++k)
+                for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(rows_[k][l]));
+    }
+    form_factor_ = rows_[0][0];
+    departure.fill(0);
+    for (std::size_t i = 0; i < checks.at.size(); ++i) {
+        departure[i] = light(row(frame.at(checks.at[i]), n));
+        for (std::size_t k = 0; k < n_; ++k) departure[i] -= checks.factors[i * n_ + k] * node_light_[k];
+    }
+    // Over a source of that size, the kernel departs from polynomials of degree M - 1 by so much.
+    const double unevenness = 0.5 * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
+    return (near_ ? 0 : most * rule_error) + tolerance_.systematic * unevenness;
+}
+
+void LinkJudge::triage(LinkPair& pair, std::span<const PieceId> pool) {
+    const LinkSites& s = sites_;
+    const std::vector<Point> receiver = s.tree().outline(pair.receiver), source = s.tree().outline(pair.source);
+    shaft_.set(s.stage().occluders, {receiver, s.normal(pair.receiver), s.tree().region(pair.receiver)},
+               {source, s.normal(pair.source), s.tree().region(pair.source)});
+    pair.view = pair.triaged ? shaft_.classify(pool.subspan(pair.first, pair.count), candidates_)
+                             : shaft_.classify(candidates_);
+    pair.triaged = true;
+}
+
+/// Rays from anywhere on the receiver to anywhere on the source; their share is one number.
+double LinkJudge::cast_one(ElementId p, ElementId q, unsigned count) {
+    const ScrambledSobol points(
+        hash(tolerance_.seed, static_cast<std::uint64_t>(Stream::visibility), p.value, q.value));
+    const Patch &receiver = sites_.tree().patch(p), &source = sites_.tree().patch(q);
+    from_.clear(), to_.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Point x = receiver.at(sites_.tree().uniform(p, points(i, 0), points(i, 1)));
+        const Point y = source.at(sites_.tree().uniform(q, points(i, 2), points(i, 3)));
+        if (dot(sites_.normal(p), y - x) <= 0 || dot(source_normal_, x - y) <= 0) continue;
+        from_.push_back(x), to_.push_back(y);
+    }
+    visible_[0] = 1;
+    if (from_.empty()) return 0;
+    rays_ += sites_.stage().tracer.occluded(from_, to_, sites_.tree().region(p), sites_.tree().region(q),
+                                            std::span(blocked_).first(from_.size()));
+    const auto open = std::count(blocked_.begin(), blocked_.begin() + static_cast<long>(from_.size()), false);
+    const double rays = static_cast<double>(from_.size());
+    visible_[0] = static_cast<double>(open) / rays;
+    // As many open as closed ones are half a ray short of certainty.
+    const double v = (static_cast<double>(open) + 0.5) / (rays + 1);
+    return std::abs(node_light_[0]) * std::sqrt(v * (1 - v) / rays);
+}
+
+/// `each` rays join a place near a receiver's node with one near a source's node: copies of the elements, so much
+/// smaller, stand around the nodes. Or one a receiver's node, to anywhere on the source.
+double LinkJudge::cast_many(ElementId p, ElementId q, unsigned each, bool few) {
+    const double size = n_ == 4 ? 0.42 : 0.22;
+    RandomStream random(tolerance_.seed, Stream::visibility, p.value, q.value);
+    const Patch receiver = sites_.frame(p), source = sites_.frame(q);
+    const auto around = [&](const Patch& frame, const Point& node) {
+        const double s = random.uniform(), t = random.uniform();
+        return node + size * (frame.at(uniform_in_shape(frame.shape, s, t)) - frame.centre());
+    };
+    from_.clear(), to_.clear(), pair_of_ray_.clear();
+    for (std::size_t k = 0; k < n_; ++k) {
+        if (sites_.weight(p, k) == 0) continue;
+        const std::size_t chosen = few ? static_cast<std::size_t>(random.uniform() * static_cast<double>(n_)) : n_;
+        for (std::size_t l = 0; l < n_; ++l) {
+            if (few && l != chosen) continue;
+            for (unsigned ray = 0; ray < each; ++ray) {
+                const Point x = around(receiver, sites_.node(p, k)), y = around(source, source_node_[l]);
+                if (dot(sites_.normal(p), y - x) <= 0 || dot(source_normal_, x - y) <= 0) continue;
+                from_.push_back(x), to_.push_back(y);
+                pair_of_ray_.push_back(k * n_ + l);
+            }
+        }
+    }
+    visible_.fill(1);
+    variance_.fill(0);
+    if (from_.empty()) return 0;
+    rays_ += sites_.stage().tracer.occluded(from_, to_, sites_.tree().region(p), sites_.tree().region(q),
+                                            std::span(blocked_).first(from_.size()));
+    std::array<double, 81> open{}, cast{};
+    for (std::size_t i = 0; i < from_.size(); ++i) {
+        cast[pair_of_ray_[i]] += 1;
+        if (!blocked_[i]) open[pair_of_ray_[i]] += 1;
+    }
+    double variance = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+        double through = 0, all = 0;
+        for (std::size_t i = k * n_; i < (k + 1) * n_; ++i) {
+            through += open[i], all += cast[i];
+            if (cast[i] > 0) visible_[i] = open[i] / cast[i];
+        }
+        if (all == 0) continue;
+        if (few)
+            for (std::size_t i = k * n_; i < (k + 1) * n_; ++i) visible_[i] = through / all;
+        const double v = (through + 0.5) / (all + 1);
+        variance_[k] = node_light_[k] * node_light_[k] * v * (1 - v) / all;
+        variance += sites_.weight(p, k) * variance_[k];
+    }
+    return std::sqrt(variance);
+}
+
+double LinkJudge::cast(ElementId p, ElementId q, bool few, double allowed) {
+    constexpr unsigned one_link = 16;
+    const auto once = [&](unsigned times) {
+        return n_ == 1 ? cast_one(p, q, few ? 4 : one_link * times) : cast_many(p, q, times, few);
+    };
+    const double error = once(1);
+    if (few || error <= allowed) return error;
+    return once(static_cast<unsigned>(std::clamp(std::ceil(std::pow(error / allowed, 2)), 2.0, 16.0)));
+}
+
+LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool) {
+    const auto [p, q] = std::pair{pair.receiver, pair.source};
+    Result out;
+    candidates_.clear();
+    if (!may_see(p, q)) return out;
+    const Material& material = sites_.stage().scene.material(sites_.tree().region(p));
+    set_source(q, light_weight(material));
+    const double area = sites_.tree().area(p), allowed = tolerance_.error / std::sqrt(area);
+    const double rule = send(p, q, allowed, out.departure);
+    double light = 0;
+    for (std::size_t k = 0; k < n_; ++k) light = std::max(light, std::abs(node_light_[k]));
+    const bool tiny = light < 0.3 * allowed;
+    if (tolerance_.triage && !tiny && pair.view == View::mixed) {
+        triage(pair, pool);
+        if (pair.view == View::none) return out;
+    } else if (pair.triaged && pair.view == View::mixed) {
+        const auto inherited = pool.subspan(pair.first, pair.count);
+        candidates_.assign(inherited.begin(), inherited.end());
+    }
+    out.link.receiver = p, out.link.source = q;
+    const bool leaf = sites_.tree().is_leaf(q);
+    double visibility = 0;
+    if (!leaf && rule > allowed) return out.verdict = Verdict::cut_source, out;
+    if (pair.view == View::mixed) {
+        // With half of it hidden, would the rays' error be far too large? Then they are not worth casting.
+        const double rays_a_node = n_ == 1 ? 16 : static_cast<double>(n_);
+        constexpr double far_too_large = 3;
+        if (!leaf && 0.5 * light / std::sqrt(rays_a_node) > far_too_large * allowed)
+            return out.verdict = Verdict::cut_source, out;
+        visibility = cast(p, q, tiny, leaf ? allowed : HUGE_VAL);
+        if (!leaf && visibility > allowed) return out.verdict = Verdict::cut_source, out;
+    }
+    hand_over(pair.view == View::open, out);
+    for (std::size_t k = 0; k < n_; ++k) out.light += area * sites_.weight(p, k) * std::abs(node_light_[k]);
+    out.squared_error = area * (rule * rule + visibility * visibility);
+    out.verdict = Verdict::accept;
+    return out;
+}
+
+/// What the rays have shown becomes bits where it is yes or no, and part of the block where it is in between.
+void LinkJudge::hand_over(bool open, Result& out) {
+    if (n_ == 1) {
+        out.link.factor = static_cast<float>(form_factor_ * (open ? 1 : visible_[0]));
+        out.departure[0] *= open ? 1 : visible_[0];
+        return;
+    }
+    double share = 1;
+    if (!open) {
+        share = 0;
+        bool partial = false;
+        for (std::size_t i = 0; i < n_ * n_; ++i) {
+            partial |= visible_[i] > 0 && visible_[i] < 1;
+            share += visible_[i] / static_cast<double>(n_ * n_);
+        }
+        if (tolerance_.fractional) {
+            visible_.fill(share);
+            partial = share > 0 && share < 1;
+        }
+        if (partial && !near_) {
+            for (std::size_t k = 0; k < n_; ++k)
+                for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(rows_[k][l]));
+            near_ = true;
+        }
+        if (near_)
+            for (std::size_t i = 0; i < n_ * n_; ++i) block_[i] *= static_cast<float>(visible_[i]);
+    }
+    for (double& d : out.departure) d *= share;
+    if (!open) {
+        out.variance = variance_;
+        for (std::size_t k = 0; k < n_; ++k)
+            for (std::size_t l = 0; l < n_; ++l)
+                out.shadowed[k] += rows_[k][l] * visible_[k * n_ + l] * source_light_[l];
+    }
+    out.near = near_;
+    out.link.block = Link::far;
+    for (std::size_t i = 0; i < n_ * n_; ++i)
+        if (open || near_ || visible_[i] > 0) out.link.set(i);
+}
+
+}  // namespace exitance

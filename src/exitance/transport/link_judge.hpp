@@ -1,0 +1,123 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/transport/links.hpp"
+#include "exitance/transport/near_row.hpp"
+#include "exitance/transport/shaft.hpp"
+
+namespace exitance {
+
+/// What decides whether a link is good enough.
+struct LinkTolerance {
+    /// Of one link: root of the receiver's area times the RMS error of the radiosity that it causes there, W/m^2 m.
+    double error = 0;
+    double interpolation = 0;  ///< Of all links of a receiver: root of its area times the RMS departure, likewise.
+    /// How much an error that is alike all over a receiver counts: it adds up from link to link and from reflection to
+    /// reflection, where others cancel.
+    double systematic = 1;
+    double least_area = 0;    ///< No element is cut below this, m^2.
+    bool fractional = false;  ///< The share of rays that get through, for all nodes of a link; else each its own.
+    bool triage = true;       ///< Look for certain visibility before rays are cast.
+    std::uint64_t seed = 1;
+};
+
+/// A pair of elements on its way to become a link, or several. What may stand in between is known or not.
+struct LinkPair {
+    ElementId receiver, source;
+    View view = View::mixed;
+    bool triaged = false;                ///< Has the pair, or one that holds it, been looked at?
+    std::uint32_t first = 0, count = 0;  ///< Mixed and looked at: the candidates, in the round's pool.
+};
+
+/// Looks at pairs of elements, and decides. One a thread; keeps its memory.
+///
+/// The error of a link is that of the radiosity w E which it causes, w the receiver's reflectance:
+/// - the rule: what its order leaves, and the source's departure from its own polynomial (`roughness`, by element, the
+///   RMS of mean bands) where the kernel is no polynomial over it. Then the source is cut;
+/// - visibility: the standard error of as many rays, where nothing is certain. Then the source is cut, or more are
+/// cast;
+/// - interpolation: light that the link sends to points between the receiver's nodes, against the nodes' polynomial.
+///   This is judged for all links of a receiver together: near an edge each part of a wall sends light that varies
+///   fast, while the whole of it hardly does.
+/// Source: the oracle of [Gortler93] and [Lischinski94], by samples; certain visibility of [Haines91] is inherited.
+class LinkJudge {
+  public:
+    enum class Verdict : std::uint8_t { drop, accept, cut_source };
+    /// Light at points between the receiver's nodes less the nodes' polynomial there, w E, W/m^2.
+    using Departure = std::array<double, 5>;
+    struct Result {
+        Verdict verdict = Verdict::drop;
+        Link link;
+        bool near = false;         ///< The kernel stands in block().
+        double squared_error = 0;  ///< Of rule and visibility: area times squared error, of an accepted link.
+        double light = 0;          ///< Of all of the receiver, in the open.
+        Departure departure{};
+        /// Where something stands in between: the light at the receiver's nodes, and the variance that rays leave.
+        std::array<double, 9> shadowed{}, variance{};
+    };
+
+    LinkJudge(const LinkSites& sites, const NodalField& b, const Field<ElementId, double>& roughness,
+              const LinkTolerance& tolerance);
+
+    /// `pool` holds the pairs' candidates. For a pair to be cut, what its parts inherit is in candidates().
+    Result judge(LinkPair& pair, std::span<const PieceId> pool);
+
+    std::span<const float> block() const { return block_; }  ///< nodes() x nodes(), receiver first.
+    std::span<const PieceId> candidates() const { return candidates_; }
+    std::size_t rays() const { return rays_; }
+    std::size_t form_factors() const { return form_factors_; }
+
+  private:
+    /// What each node of the source sends to a point of the receiver, in the open, for b = 1 there.
+    using Row = std::array<double, 9>;
+    bool may_see(ElementId p, ElementId q) const;
+    void set_source(ElementId q, const Spectrum& weight);
+    Row row(const Point& x, const Normal& n);
+    double light(const Row& row) const;
+    /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
+    double send(ElementId p, ElementId q, double allowed, Departure& departure);
+    void triage(LinkPair& pair, std::span<const PieceId> pool);
+    /// Rays between the two, a few or more if the error is not to be above `allowed`; returns the standard error of the
+    /// light that arrives.
+    double cast(ElementId p, ElementId q, bool few, double allowed);
+    double cast_one(ElementId p, ElementId q, unsigned count);
+    double cast_many(ElementId p, ElementId q, unsigned each, bool few);
+    void hand_over(bool open, Result& out);
+
+    struct Checks {
+        std::vector<Vec2> at;
+        std::vector<double> factors;  ///< A row of nodes() a point.
+    };
+    const Checks& checks(Patch::Shape shape) const { return shape == Patch::Shape::triangle ? triangle_ : square_; }
+    Checks make_checks(Patch::Shape shape) const;
+
+    const LinkSites& sites_;
+    const NodalField& b_;
+    const Field<ElementId, double>& roughness_;
+    const LinkTolerance& tolerance_;
+    std::size_t n_;
+    Checks square_, triangle_;
+
+    Shaft shaft_;
+    std::vector<PieceId> candidates_;
+    std::vector<float> block_;
+    NearRow near_row_;
+    std::vector<Point> from_, to_;
+    std::vector<std::size_t> pair_of_ray_;
+    Normal source_normal_;
+    double source_area_ = 0, source_roughness_ = 0;
+    std::array<double, 9> source_light_{}, source_weight_{};
+    std::array<Point, 9> source_node_;
+    std::array<double, 9> node_light_{};  ///< Light in the open at the receiver's nodes.
+    std::array<bool, 81 * 16> blocked_;
+    std::array<double, 81> visible_{};  ///< Share of the rays from a receiver's node to a source's that get through.
+    std::array<double, 9> variance_{};  ///< Of the light at the receiver's nodes.
+    std::array<Row, 9> rows_;           ///< From the receiver's nodes.
+    bool near_ = false;
+    double form_factor_ = 0;  ///< From the receiver's first node.
+    std::size_t rays_ = 0, form_factors_ = 0;
+};
+
+}  // namespace exitance

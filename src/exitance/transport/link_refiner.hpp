@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/core/progress.hpp"
+#include "exitance/transport/link_judge.hpp"
+
+namespace exitance {
+
+/// Finds the links of a hierarchy. Every piece begins as a receiver that is linked to all pieces; a source is cut until
+/// its link is good enough; a receiver is cut where the light of all its links together is no polynomial over it, and
+/// hands on to its parts those links that are to blame. Source: [Hanrahan91].
+///
+/// Rounds: all pairs of a round are judged on all threads against a tree that stands still; elements are cut in the
+/// order of their ids. So the result does not depend on threads. O(pieces^2 + links).
+class LinkRefiner {
+  public:
+    LinkRefiner(ElementTree& tree, LinkSites& sites) : tree_(tree), sites_(sites) {}
+
+    /// Starts with all pairs of pieces, or goes on from the links that it found before. `b`: the light that elements
+    /// reflect, at the nodes of all of them; elements that are cut hand on theirs, here and in each of `also`.
+    void refine(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance, Progress& progress,
+                const StopRequest& stop);
+
+    /// Cuts leaves; their parts take their functions, of `b` and of each of `also`.
+    void cut_elements(const std::vector<ElementId>& elements, NodalField& b, std::span<NodalField* const> also);
+
+    /// Root of areas times squared errors, of rules and visibility by link and of interpolation by receiver, W/m^2 m.
+    double error() const;
+    /// How much of the light that links carry meets nothing on its way, certainly.
+    double open_share() const;
+    std::size_t size() const { return links_.size(); }
+    Links make_links() const;
+
+    std::size_t rays() const { return rays_; }
+    std::size_t form_factors() const { return form_factors_; }
+
+  private:
+    using Departure = LinkJudge::Departure;
+    /// What a block of pairs came to.
+    struct Block;
+    std::vector<LinkPair> pairs_to_begin_with() const;
+    void judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
+               const StopRequest& stop);
+    /// Cuts receivers whose light departs too much from a polynomial; returns the pairs that their parts inherit.
+    std::vector<LinkPair> cut_receivers(NodalField& b, std::span<NodalField* const> also,
+                                        const LinkTolerance& tolerance);
+    void remove(const std::vector<bool>& links);
+
+    ElementTree& tree_;
+    LinkSites& sites_;
+    Field<ElementId, double> roughness_;
+    std::vector<Link> links_;
+    std::vector<bool> open_;  ///< By link: is its view certain?
+    std::vector<Departure> departure_;
+    /// Of a receiver, all its links together: see LinkJudge::Result.
+    struct Shadowed {
+        std::array<double, 9> light{}, variance{};
+    };
+    std::vector<Shadowed> shadowed_;             ///< By link.
+    std::vector<double> squared_error_, light_;  ///< By link; light: before anything blocks it, w E A.
+    std::vector<float> blocks_;
+    double interpolation_ = 0;  ///< Squared, as in error().
+    std::size_t rays_ = 0, form_factors_ = 0;
+    bool begun_ = false;
+};
+
+}  // namespace exitance

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/transport/link_sites.hpp"
+#include "exitance/transport/transport_operator.hpp"
+
+namespace exitance {
+
+/// A way for light between two elements, receiver first: their nodes see each other as the bits say. The kernel is made
+/// anew whenever light passes; what is kept is what is dear.
+struct Link {
+    ElementId receiver, source;
+    /// Bit k n + l: is node l of the source visible from node k of the receiver? Of order 1: unused.
+    std::array<std::uint32_t, 3> visible{};
+    /// Of order 1: form factor times visible share. Else where the link's block stands (Links::blocks_), or `far`.
+    union {
+        float factor;
+        std::uint32_t block;
+    };
+    static constexpr std::uint32_t far = 0xffffffffu;
+
+    bool sees(std::size_t bit) const { return visible[bit / 32] >> (bit % 32) & 1u; }
+    void set(std::size_t bit) { visible[bit / 32] |= 1u << (bit % 32); }
+};
+
+/// All links of a hierarchy, sorted by receiver, then by source.
+///
+/// Order 1: E = F V b with F from the receiver's middle, exactly. Higher orders: at each node x_k of the receiver
+///
+///     E_k = sum_l K_kl V_kl b_l,    K_kl = w_l A cos cos / (pi r^2) between x_k and y_l
+///
+/// over the nodes y_l of the source, with b_l its numbers: a rule as exact as the basis, made anew when it is applied.
+/// Where the source is so near that the rule is not exact enough, the block K is integrated once (NearRow) and kept.
+/// Source: [Hanrahan91], [Gortler93].
+class Links {
+  public:
+    /// `links` in any order; `blocks` holds nodes()^2 numbers for each link that is near.
+    Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks);
+
+    std::size_t size() const { return source_.size(); }
+    std::size_t memory_bytes() const;
+
+    /// E of every element that links lead to, at its nodes; of the others: zero. O(links).
+    void gather(const NodalField& b, NodalField& E) const;
+
+  private:
+    void gather_constants(std::size_t row, const NodalField& b, NodalField& E) const;
+    template <std::size_t groups>
+    void gather_kernels(std::size_t row, const NodalField& b, NodalField& E) const;
+
+    const LinkSites* sites_;
+    std::vector<ElementId> receiver_;  ///< Of each row.
+    std::vector<std::size_t> first_;   ///< Row i stands in [first_[i], first_[i + 1]).
+    std::vector<ElementId> source_;
+    std::vector<float> factor_;           ///< Order 1.
+    std::vector<std::uint32_t> visible_;  ///< Higher orders: `words_` a link.
+    std::vector<std::uint32_t> block_;    ///< Higher orders.
+    std::vector<float> blocks_;
+    std::size_t words_ = 0;
+};
+
+/// Links as an operator on what the leaves hold: unknown i n + k is node k of leaf number i. Pull, links, push.
+class LinkOperator final : public TransportOperator {
+  public:
+    LinkOperator(const LinkSites& sites, const Links& links, const LeafNumbering& numbering);
+
+    std::size_t size() const override { return numbering_->leaves.size() * sites_->nodes(); }
+    void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
+    /// No cheaper than gathering for all of them.
+    Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
+    std::size_t memory_bytes() const override { return links_->memory_bytes(); }
+
+  private:
+    const LinkSites* sites_;
+    const Links* links_;
+    const LeafNumbering* numbering_;
+    mutable NodalField b_, E_;
+};
+
+}  // namespace exitance

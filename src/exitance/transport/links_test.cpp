@@ -1,0 +1,160 @@
+#include "exitance/transport/links.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/transport/link_refiner.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr HierarchyBasis all_kinds[] = {HierarchyBasis::haar, HierarchyBasis::flatlet2, HierarchyBasis::flatlet3,
+                                        HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3};
+
+/// Links over a scene whose elements reflect b(x), refined until their errors are below `tolerance` each.
+struct Linked {
+    Stage stage;
+    ElementTree tree;
+    NodalBasis basis;
+    LinkSites sites;
+    NodalField b;
+    LinkRefiner refiner;
+
+    template <class Light>
+    Linked(const Scene& scene, HierarchyBasis kind, double tolerance, const Light& light)
+        : stage(scene),
+          tree(stage.make_elements({0.5, 0})),
+          basis(kind),
+          sites(stage, tree, basis),
+          b(sites),
+          refiner(tree, sites) {
+        for (ElementId e : tree.leaves())
+            for (std::size_t k = 0; k < sites.nodes(); ++k) b.set_node(e, k, Spectrum(light(sites.node(e, k))));
+        b.pull();
+        Progress silent;
+        StopRequest never;
+        refiner.refine(b, {}, {.error = tolerance, .interpolation = tolerance, .least_area = 1e-6}, silent, never);
+    }
+
+    NodalField gathered() const {
+        NodalField E(sites);
+        refiner.make_links().gather(b, E);
+        E.push();
+        return E;
+    }
+    /// RMS over the surfaces of E - expected(x).
+    template <class Light>
+    double error(const Light& expected) const {
+        const NodalField E = gathered();
+        double sum = 0;
+        for (ElementId e : tree.leaves())
+            for (std::size_t k = 0; k < sites.nodes(); ++k) {
+                const double d = E.node(e, k)[0] - expected(e, sites.node(e, k));
+                sum += tree.area(e) * sites.weight(e, k) * d * d;
+            }
+        return std::sqrt(sum / stage.area);
+    }
+    /// What the links say of themselves, as a mean over the surfaces of reflectance `rho`.
+    double estimate(double rho) const { return refiner.error() / std::sqrt(stage.area) / rho; }
+};
+
+TEST(Links, OfAClosedBoxOfEvenLightBringOneEverywhere) {
+    const Scene box = box_scene(1, 2, 3, 0.8, 1);
+    for (const HierarchyBasis kind : all_kinds) {
+        const Linked linked(box, kind, 0.01, [](const Point&) { return 1.0; });
+        const double error = linked.error([](ElementId, const Point&) { return 1.0; });
+        // The parts cancel in the whole: only the estimate's order is to be right, and from above.
+        EXPECT_LT(error, 1.5 * linked.estimate(0.8) + 1e-7) << basis_name(kind);  // blocks are floats
+        EXPECT_LT(error, kind == HierarchyBasis::haar ? 0.03 : 0.01) << basis_name(kind);
+        EXPECT_EQ(linked.refiner.open_share(), 1) << basis_name(kind);
+    }
+}
+
+/// Light that falls off along a tube, against all leaves one by one.
+TEST(Links, AgreeWithTheSumOverAllLeavesWithinTheirEstimate) {
+    const Scene box = box_scene(1, 1, 4, 0.8, 1);
+    const auto light = [](const Point& x) { return std::exp(-x.z); };
+    for (const HierarchyBasis kind : {HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3}) {
+        for (const double tolerance : {0.003, 0.0006}) {
+            const Linked linked(box, kind, tolerance, light);
+            NearRow row(linked.sites);
+            const auto exact = [&](ElementId e, const Point& x) {
+                double sum = 0;
+                for (ElementId q : linked.tree.leaves()) {
+                    if (linked.tree.region(q) == linked.tree.region(e)) continue;
+                    std::array<double, 9> share;
+                    row.set_source(q);
+                    row(x, linked.sites.normal(e), share.data());
+                    for (std::size_t l = 0; l < linked.sites.nodes(); ++l) sum += share[l] * linked.b.node(q, l)[0];
+                }
+                return sum;
+            };
+            EXPECT_LT(linked.error(exact), 2 * linked.estimate(0.8)) << basis_name(kind) << " " << tolerance;
+        }
+    }
+}
+
+TEST(Links, HigherOrdersNeedFewerOfThem) {
+    const Scene box = box_scene(1, 1, 4, 0.8, 1);
+    const auto light = [](const Point& x) { return std::exp(-x.z); };
+    std::array<std::size_t, 3> count{};
+    std::size_t i = 0;
+    for (const HierarchyBasis kind :
+         {HierarchyBasis::haar, HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3})
+        count[i++] = Linked(box, kind, 0.002, light).refiner.size();
+    EXPECT_LT(count[1], count[0] / 5);
+    EXPECT_LT(count[2], count[1]);
+}
+
+TEST(Links, AreTheSameOnAnyNumberOfThreads) {
+    const Scene scene = built_scene("cornell");
+    std::vector<double> before;
+    for (const int count : {1, 2}) {
+        set_threads(count);
+        const Linked linked(scene, HierarchyBasis::multiwavelet2, 0.003, [](const Point& x) { return 1 + x.z; });
+        const NodalField E = linked.gathered();
+        std::vector<double> now{static_cast<double>(linked.refiner.size()), static_cast<double>(linked.tree.size())};
+        for (ElementId e : linked.tree.leaves())
+            for (std::size_t k = 0; k < linked.sites.nodes(); ++k) now.push_back(E.node(e, k)[0]);
+        if (count > 1) {
+            EXPECT_EQ(now, before);
+        }
+        before = now;
+    }
+    set_threads(0);
+}
+
+TEST(Links, DoNotLeakThroughAThinWall) {
+    // Two rooms side by side, 1 mm of wall between them; light in one of them only.
+    SceneDescription d;
+    d.file = "rooms.obj";
+    d.materials = {{"wall", Spectrum(0.8), Spectrum()}, {"lamp", Spectrum(0.8), Spectrum(1.0)}};
+    d.groups = {"rooms"};
+    for (const double y : {0.0, 2.001}) {
+        const auto first = static_cast<std::uint32_t>(d.points.size());
+        for (const double z : {0.0, 2.0})
+            d.points.insert(d.points.end(), {{0, y, z}, {2, y, z}, {2, y + 2, z}, {0, y + 2, z}});
+        const std::vector<std::vector<std::uint32_t>> faces = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
+                                                               {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            std::vector<std::uint32_t> corners = faces[i];
+            for (std::uint32_t& c : corners) c += first;
+            d.faces.push_back({corners, y == 0 && i == 1 ? 1u : 0u, 0, static_cast<int>(i + 1)});
+        }
+    }
+    CheckedScene checked = make_scene(std::move(d));
+    ASSERT_TRUE(checked.scene);
+    for (const HierarchyBasis kind : {HierarchyBasis::haar, HierarchyBasis::multiwavelet2}) {
+        const Linked linked(*checked.scene, kind, 0.01, [](const Point& x) { return x.y < 2.0005 ? 1.0 : 0.0; });
+        const NodalField E = linked.gathered();
+        for (ElementId e : linked.tree.leaves())
+            for (std::size_t k = 0; k < linked.sites.nodes(); ++k)
+                if (linked.sites.node(e, k).y > 2.0005) {
+                    EXPECT_LT(E.node(e, k)[0], 1e-6) << basis_name(kind);
+                }
+    }
+}
+
+}  // namespace
+}  // namespace exitance
