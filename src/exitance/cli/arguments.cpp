@@ -173,6 +173,12 @@ constexpr std::array<std::pair<Component, std::string_view>, 3> component_names{
     {Component::indirect, "indirect"},
 }};
 
+bool read_switch(const char* option, const std::string& word) {
+    if (word != "on" && word != "off")
+        throw CLI::ValidationError(option, fmt::format("must be on or off, not '{}'", word));
+    return word == "on";
+}
+
 void declare_common(CLI::App& app, CommonArguments& arguments) {
     app.add_flag("-q,--quiet", arguments.quiet, "Nothing but errors on the error stream");
     app.add_flag("-v,--verbose", arguments.verbose, "Say more on the error stream");
@@ -193,7 +199,15 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
     app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
     add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
-    add_choice(app, "--basis", basis_names, o.basis, "Of method matrix");
+    add_choice(app, "--basis", basis_names, o.basis, "Of matrix: constant, linear; of wavelet: the others");
+    app.callback([&o] {
+        if (o.basis && !fits(*o.basis, o.method))
+            throw CLI::ValidationError("--basis",
+                                       fmt::format("method {} has no basis {}", name_in(method_names, o.method),
+                                                   name_in(basis_names, *o.basis)));
+    });
+    add_positive(app, "--epsilon", o.epsilon, "R", "Error of all links of a hierarchy together, relative RMS")
+        ->group("Accuracy");
     app.add_option_function<std::string>(
            "--bounces", [&o](const std::string& w) { o.bounces = read_bounces(w); },
            "0: direct light alone; default all")
@@ -209,6 +223,11 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     app.add_flag("--overshooting", o.overshooting, "Shoot ahead what will come back")->group("Method");
     add_choice(app, "--visibility", visibility_names, o.visibility, "Default auto")->group("Method");
     add_count(app, "--visibility-samples", o.visibility_samples, 1, "Rays a pair of elements")->group("Method");
+    app.add_option_function<std::string>(
+           "--triage", [&o](const std::string& w) { o.triage = read_switch("--triage", w); },
+           "Links look for certain visibility before they cast rays; default on")
+        ->type_name("on|off")
+        ->group("Method");
     add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
         ->group("Method");
     add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");

@@ -83,6 +83,8 @@ std::string options_json(const SolveOptions& o) {
     const Json json{
         {"method", name_in(method_names, o.method)},
         {"basis", name_or_null(basis_names, o.basis)},
+        {"epsilon", value_or_null(o.epsilon)},
+        {"triage", o.triage},
         {"bounces", o.bounces == all_bounces ? Json("all") : Json(o.bounces)},
         {"error", value_or_null(o.error_demand())},
         {"mesh_size", value_or_null(o.mesh_size)},

@@ -8,6 +8,7 @@ namespace {
 
 void apply_user_knobs(Knobs& knobs, const SolveOptions& options) {
     if (options.mesh_size) knobs.solve_mesh.edge = *options.mesh_size;
+    if (options.epsilon) knobs.link_error = *options.epsilon;
     if (options.residual) knobs.residual = *options.residual;
     if (options.max_iterations) knobs.max_iterations = *options.max_iterations;
 }
@@ -24,6 +25,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // What is projected is only gathered from, and its means are right; unless it is what is delivered.
     knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
     knobs.residual = 0.05 * error;
+    knobs.link_error = 0.45 * error;
     // Two strips more where the light is delivered than its mean square needs: at an edge, too, it is to be right.
     knobs.gather_mesh = {edge_for_elements(pieces, count(5)), strips + (error < 0.01 ? 2 : 0)};
     const double rays = 0.55 * std::pow(0.5 / error, 4.0 / 3);
@@ -51,6 +53,7 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
         out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, 1024.0);
         out.knobs.direct_tolerance *= factor;
         out.knobs.residual *= factor;
+        out.knobs.link_error *= factor;
         method *= factor;
         out.work = 1 / factor;
     }

@@ -39,8 +39,9 @@ Forecast forecast_solve(const Scene& scene, const SolveOptions& options) {
     const Stage stage(scene);
     const Knobs knobs = knobs_for_error(options.error_target(), stage.pieces, options);
 
-    Forecast out{
-        .surfaces = scene.surfaces().size(), .regions = scene.regions().size(), .emitters = scene.emitters().size() + scene.lights().size()};
+    Forecast out{.surfaces = scene.surfaces().size(),
+                 .regions = scene.regions().size(),
+                 .emitters = scene.emitters().size() + scene.lights().size()};
     out.solve_elements = count_elements(stage, knobs.solve_mesh);
     out.gather_elements = count_elements(stage, knobs.gather_mesh);
 

@@ -37,6 +37,19 @@ ElementFunction constant_on_leaves(const GlobalLight& light) {
     return out;
 }
 
+ElementFunction polynomials_on_leaves(const GlobalLight& light) {
+    ElementFunction out;
+    out.tree = light.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        for (int corner = 0; corner < out.tree.patch(e).corner_count(); ++corner)
+            out.add_value(light.indirect_corners[i][static_cast<std::size_t>(corner)]);
+    }
+    return out;
+}
+
 ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                                const Spectrum& c) {
     ElementFunction out;
@@ -48,7 +61,9 @@ ElementFunction gathered_light(const Scene& scene, const DirectProjection& direc
         out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
         const Spectrum mean = light.direct_share * light.direct[i];
         for (std::size_t k = 0; k < 4; ++k) {
-            const Spectrum& E_dir = light.on_projection ? direct.fit[e].corners[k] : light.direct[i];
+            const Spectrum& E_dir = light.on_projection            ? direct.fit[e].corners[k]
+                                    : light.direct_corners.empty() ? light.direct[i]
+                                                                   : light.direct_corners[i][k];
             const Spectrum& E_ind = light.indirect_corners.empty() ? light.indirect[i] : light.indirect_corners[i][k];
             out.add_value(material.reflectance * (E_dir - light.direct_share * E_dir + mean + E_ind) +
                           c * material.exitance);

@@ -14,6 +14,9 @@ ElementFunction dark(const Stage& stage);
 /// Light as a method left it on its elements: constant on every leaf.
 ElementFunction constant_on_leaves(const GlobalLight& light);
 
+/// Light as a method's polynomials have it.
+ElementFunction polynomials_on_leaves(const GlobalLight& light);
+
 /// What rays read in the local pass, b + c M: on every leaf the direct light that was projected there, and the indirect
 /// light that the method found, times the reflectance, and the share c of what it emits (`find_direct_share`). Where
 /// the method's own elements agree with that share, E_dir + E_ind is alike all over a leaf but for (1 - c) E_dir.

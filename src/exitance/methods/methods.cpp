@@ -14,6 +14,8 @@ std::span<const MethodEntry> method_table() {
         {Method::matrix, solve_matrix, "constant"},
         {Method::progressive, solve_progressive, "constant"},
         {Method::substructuring, solve_substructuring, "constant"},
+        {Method::hierarchical, solve_hierarchical, "haar"},
+        {Method::wavelet, solve_wavelet, "multiwavelet2"},
         {Method::monte_carlo, solve_monte_carlo, "constant"},
     };
     return table;

@@ -39,5 +39,7 @@ GlobalLight solve_matrix(const MethodInput& input);
 GlobalLight solve_progressive(const MethodInput& input);
 GlobalLight solve_substructuring(const MethodInput& input);
 GlobalLight solve_monte_carlo(const MethodInput& input);
+GlobalLight solve_hierarchical(const MethodInput& input);
+GlobalLight solve_wavelet(const MethodInput& input);
 
 }  // namespace exitance

@@ -11,22 +11,29 @@
 
 namespace exitance {
 
-enum class Method { automatic, matrix, progressive, substructuring, monte_carlo };
-enum class BasisKind { constant, linear };
+enum class Method { automatic, matrix, progressive, substructuring, hierarchical, wavelet, monte_carlo };
+enum class BasisKind { constant, linear, haar, flatlet2, flatlet3, multiwavelet2, multiwavelet3 };
 enum class VisibilityKind { automatic, fractional, exact };
 enum class FormFactorKind { analytic, ray_cast };
 
 /// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
-inline constexpr std::array<std::pair<Method, std::string_view>, 5> method_names{{
+inline constexpr std::array<std::pair<Method, std::string_view>, 7> method_names{{
     {Method::automatic, "auto"},
     {Method::matrix, "matrix"},
     {Method::progressive, "progressive"},
     {Method::substructuring, "substructuring"},
+    {Method::hierarchical, "hierarchical"},
+    {Method::wavelet, "wavelet"},
     {Method::monte_carlo, "monte-carlo"},
 }};
-inline constexpr std::array<std::pair<BasisKind, std::string_view>, 2> basis_names{{
+inline constexpr std::array<std::pair<BasisKind, std::string_view>, 7> basis_names{{
     {BasisKind::constant, "constant"},
     {BasisKind::linear, "linear"},
+    {BasisKind::haar, "haar"},
+    {BasisKind::flatlet2, "flatlet2"},
+    {BasisKind::flatlet3, "flatlet3"},
+    {BasisKind::multiwavelet2, "multiwavelet2"},
+    {BasisKind::multiwavelet3, "multiwavelet3"},
 }};
 inline constexpr std::array<std::pair<Relaxation, std::string_view>, 5> relaxation_names{{
     {Relaxation::jacobi, "jacobi"},
@@ -44,6 +51,14 @@ inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 2> form
     {FormFactorKind::analytic, "analytic"},
     {FormFactorKind::ray_cast, "ray-cast"},
 }};
+
+/// Can the elements of a method hold this basis?
+constexpr bool fits(BasisKind basis, Method method) {
+    const bool of_matrix = basis == BasisKind::constant || basis == BasisKind::linear;
+    if (method == Method::automatic || method == Method::matrix) return of_matrix;
+    if (method == Method::wavelet) return !of_matrix;
+    return basis == (method == Method::hierarchical ? BasisKind::haar : BasisKind::constant);
+}
 
 /// The name of a choice in its table.
 template <class Choice, std::size_t N>
@@ -65,6 +80,7 @@ struct SolveOptions {
 
     std::optional<double> error = {};  ///< Relative RMS error of what `probe` evaluates; empty: see error_demand().
 
+    std::optional<double> epsilon = {};              ///< Error of all links together, relative RMS.
     std::optional<double> mesh_size = {};            ///< Longest edge of an element, metres.
     std::optional<double> residual = {};             ///< Of the discrete system, relative to its right-hand side.
     std::optional<std::size_t> max_iterations = {};  ///< Sweeps, Krylov steps or shots.
@@ -74,6 +90,7 @@ struct SolveOptions {
 
     VisibilityKind visibility = VisibilityKind::automatic;
     std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
+    bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
     std::optional<FormFactorKind> form_factors = {};
 
     int threads = 0;  ///< 0: all cores. Results do not depend on it.
@@ -81,7 +98,9 @@ struct SolveOptions {
     std::optional<std::size_t> memory_limit_bytes = {};  ///< Of the whole process.
 
     /// Has any of the knobs been set that the error asked for would otherwise decide?
-    bool has_knobs() const { return mesh_size || residual || max_iterations || min_area || visibility_samples; }
+    bool has_knobs() const {
+        return epsilon || mesh_size || residual || max_iterations || min_area || visibility_samples;
+    }
     /// The error to be reached: as asked for; `default_error` when nothing was said; none when knobs were set by hand.
     std::optional<double> error_demand() const {
         if (error) return error;

@@ -37,8 +37,10 @@ class Solver {
                              name_in(method_names, options.method)));
         solution_.bounces = options.bounces;
         statistics().method = name_in(method_names, method.id);
-        const bool linear = method.id == Method::matrix && options.basis == BasisKind::linear && options.bounces < 0;
-        statistics().basis = linear ? "linear" : method.basis;
+        const bool chosen =
+            (method.id == Method::matrix && options.basis == BasisKind::linear && options.bounces < 0) ||
+            (method.id == Method::wavelet && options.basis);
+        statistics().basis = chosen ? name_in(basis_names, *options.basis) : method.basis;
         statistics().threads = threads();
         statistics().schedule = "stealing";
         statistics().surfaces = scene.surfaces().size();
@@ -136,10 +138,13 @@ class Solver {
             record_method();
         }
         statistics().seconds["solve"] += watch.restart();
+        const bool gathers = !light_->holds_direct && !light_->delivers;
         const Spectrum share = fresh ? direct_share() : solution_.direct_share;
         const QuickFunction b(gathered_light(stage_.scene, direct_, *light_, share), stage_.scene.regions().size());
         gathered_ = {};
-        ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_) : gather(b, fresh);
+        ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_)
+                                   : light_->delivers   ? polynomials_on_leaves(*light_)
+                                                        : gather(b, fresh);
         statistics().seconds["reconstruct"] += watch.restart();
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
@@ -154,7 +159,7 @@ class Solver {
         solution_.direct_share = share;
         solution_.direct_in_elements = light_->holds_direct;
         progress_.phase("certify");
-        if (light_->holds_direct)
+        if (!gathers)
             certify_solution({.error = options_.error_target()});
         else
             certify_solution({.error = options_.error_target(), .leaves = &gathered_.leaves, .gathered = &b});
@@ -162,7 +167,7 @@ class Solver {
     }
 
     Spectrum direct_share() const {
-        if (light_->holds_direct || options_.bounces >= 0) return {};
+        if (light_->holds_direct || light_->delivers || options_.bounces >= 0) return {};
         const ElementLocator locator(light_->tree, stage_.scene.regions().size());
         return find_direct_share(stage_, *light_, locator, options_.seed);
     }
@@ -192,7 +197,7 @@ class Solver {
 
     /// What the estimate is made of, relative to the mean reflected light.
     ErrorParts error_parts() const {
-        if (light_->holds_direct) return {.method = certificate_.estimate};
+        if (light_->holds_direct || light_->delivers) return {.method = certificate_.estimate};
         const double noise = gathered_.noise / certificate_.mean_reflected;
         const double misfit = std::sqrt(std::max(0.0, certificate_.local * certificate_.local - noise * noise));
         return {.method = certificate_.method,

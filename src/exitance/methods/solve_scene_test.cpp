@@ -29,7 +29,7 @@ std::vector<double> bits(const Solution& s) {
 class EveryMethod : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                          testing::Values(Method::matrix, Method::progressive, Method::substructuring,
-                                         Method::monte_carlo));
+                                         Method::monte_carlo, Method::hierarchical, Method::wavelet));
 
 TEST_P(EveryMethod, AFurnaceGlowsEverywhereAlike) {
     const double rho = 0.6;

@@ -82,11 +82,26 @@ constexpr std::size_t batches = 32;  ///< Of samples, for the spread of their me
 constexpr std::size_t sample_count = 40 * batches;
 constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
 
+/// The mean of batches, and how uncertain it is.
+struct BatchMean {
+    double mean = 0, standard_error = 0;
+
+    explicit BatchMean(const std::array<double, batches>& values) {
+        for (double v : values) mean += v / batches;
+        double spread = 0;
+        for (double v : values) spread += (v - mean) * (v - mean) / (batches * (batches - 1.0));
+        standard_error = std::sqrt(spread);
+    }
+};
+
 /// The residual at stratified points, twice each.
 std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& light, const ElementLocator& coarse,
-                                      const ElementFunction& indirect, const ReflectedLight& b,
+                                      const ElementFunction& indirect, const ReflectedLight& b, double constant,
                                       const CertificateOptions& options) {
-    const double wanted = 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(sample_count)));
+    // Where light is reflected often, a small mean of the residual makes a large error, and has to be told from noise.
+    const double often = std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, 8.0);
+    const double wanted =
+        often * 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(sample_count)));
     const auto rays_at = [&](ElementId leaf) {
         const double known = options.leaves ? 0.05 * (*options.leaves)[leaf].rays : wanted;
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
@@ -153,37 +168,36 @@ Certificate certify(const Stage& stage, const GlobalLight& light, const ElementF
     if (out.mean_reflected <= 0) return out;
 
     const ElementLocator coarse(light.tree, stage.scene.regions().size());
-    const std::vector<Sample> samples = measure_residuals(stage, light, coarse, indirect, b, options);
     const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, light.tree, light.numbering);
     const std::vector<double> area = leaf_areas(light.tree, light.numbering);
     const RayRows H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64},
                     options.seed + 1);
+    out.constant = error_constant(H, rho, area);
+    const std::vector<Sample> samples = measure_residuals(stage, light, coarse, indirect, b, out.constant, options);
     const std::vector<Spectrum> response = late_response(stage, light, samples, H, rho, area);
 
-    std::array<double, batches> residual_squared{};
-    double error_squared = 0, local_squared = 0, method_squared = 0;
+    std::array<double, batches> residual_squared{}, error_squared{};
+    double local_squared = 0, method_squared = 0;
     out.points = samples.size();
     out.rays = H.rays();
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
         const Spectrum& late = response[s.leaf];
         residual_squared[k % batches] += s.weight * batches * mean(s.r1 * s.r2);
-        error_squared += s.weight * mean((s.r1 + late) * (s.r2 + late));
+        error_squared[k % batches] += s.weight * batches * mean((s.r1 + late) * (s.r2 + late));
         local_squared += s.weight * mean(s.local1 * s.local2);
         method_squared += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
         out.rays += s.rays;
     }
-    double mean_square = 0, spread = 0;
-    for (double v : residual_squared) mean_square += v / batches;
-    for (double v : residual_squared) spread += (v - mean_square) * (v - mean_square) / (batches * (batches - 1.0));
-    const double upper = std::max(0.0, mean_square) + student_95 * std::sqrt(spread);
-    out.constant = error_constant(H, rho, area);
-    out.residual = std::sqrt(std::max(0.0, mean_square)) / out.mean_reflected;
+    const BatchMean residual(residual_squared), error(error_squared);
+    const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
+    out.residual = std::sqrt(std::max(0.0, residual.mean)) / out.mean_reflected;
     if (options.gathered) {
         out.local = std::sqrt(std::max(0.0, local_squared)) / out.mean_reflected;
         out.method = std::sqrt(std::max(0.0, method_squared)) / out.mean_reflected;
     }
-    out.estimate = std::sqrt(std::max(0.0, error_squared)) / out.mean_reflected;
+    // Less than its own uncertainty cannot be claimed.
+    out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / out.mean_reflected;
     out.bound = std::max(out.estimate, out.constant * std::sqrt(upper) / out.mean_reflected);
     return out;
 }

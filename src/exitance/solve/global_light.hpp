@@ -16,6 +16,10 @@ struct GlobalLight {
     std::vector<Spectrum> direct = {}, indirect = {};
     /// By leaf number, where the method holds polynomials: `indirect` at the corners of the leaf's patch, W/m^2.
     std::vector<std::array<Spectrum, 4>> indirect_corners = {};
+    /// By leaf number, where the method's leaves are not those of the projection: the projected direct light likewise.
+    std::vector<std::array<Spectrum, 4>> direct_corners = {};
+    /// Are the polynomials of `indirect_corners` as good as what is asked for, so that nothing has to gather again?
+    bool delivers = false;
     /// By leaf number, W/m^2: b = rho (E_dir + E_ind), reflected radiosity.
     std::vector<Spectrum> reflected = {};
     /// Is `tree` the mesh of the direct projection, leaf for leaf?

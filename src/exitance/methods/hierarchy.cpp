@@ -1,0 +1,246 @@
+#include "exitance/methods/hierarchy.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exitance/basis/element_fit.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/transport/link_refiner.hpp"
+
+namespace exitance {
+namespace {
+
+class Hierarchy {
+  public:
+    Hierarchy(const MethodInput& input, HierarchyBasis kind)
+        : input_(input),
+          basis_(kind),
+          light_{.tree = input.direct.tree},
+          sites_(input.stage, light_.tree, basis_),
+          direct_(sites_),
+          first_(sites_),
+          b_(sites_),
+          refiner_(light_.tree, sites_) {}
+
+    GlobalLight solve() {
+        project_direct();
+        b_ = first_;
+        // By the light that is reflected once, at first; then by all of it.
+        constexpr double coarse = 8, links_in_a_sum = 300;
+        double demand = input_.knobs.link_error * light_norm();
+        const double first = coarse * demand / std::sqrt(links_in_a_sum);
+        LinkTolerance tolerance{.error = first,
+                                .interpolation = first,
+                                .systematic = systematic(),
+                                .least_area = input_.options.min_area.value_or(1e-7 * input_.stage.area),
+                                .fractional = input_.options.visibility == VisibilityKind::fractional,
+                                .triage = input_.options.triage,
+                                .seed = input_.options.seed};
+        constexpr int most_rounds = 8;
+        for (int round = 0; round < most_rounds; ++round) {
+            input_.progress.phase("link");
+            NodalField* const also[] = {&direct_, &first_};
+            refiner_.refine(b_, also, tolerance, input_.progress, input_.stop);
+            relax();
+            light_.delivers = is_polynomial() && refiner_.open_share() > mostly_open;
+            demand = input_.knobs.link_error * (light_.delivers ? 1 : gathers_forgive) * light_norm();
+            input_.progress.note(fmt::format(
+                "{} links ({:.0f}% of their light in the open), {} elements, {} rays; their error {:.3f}% of {:.3f}%",
+                refiner_.size(), 100 * refiner_.open_share(), light_.tree.size(), refiner_.rays(),
+                100 * refiner_.error() / light_norm(), 100 * demand / light_norm()));
+            if (input_.stop.requested() || refiner_.error() <= demand) break;
+            const double factor = std::clamp(0.8 * demand / refiner_.error(), 0.1, 0.8);
+            tolerance.error *= factor, tolerance.interpolation *= factor;
+        }
+        hand_over();
+        return std::move(light_);
+    }
+
+  private:
+    /// Where most light passes in the open, links give it as exactly as it is asked for. Elsewhere they only find what
+    /// the elements reflect, and rays gather that: from a place that sees many things in part, rays over the hemisphere
+    /// say more than as many between pairs.
+    static constexpr double mostly_open = 0.9;
+    /// How much larger the error of light may be that is gathered once more.
+    static constexpr double gathers_forgive = 4;
+    bool is_polynomial() const { return basis_.order() > 1 && !basis_.is_flat(); }
+
+    const Material& material(ElementId e) const { return input_.stage.scene.material(light_.tree.region(e)); }
+
+    /// An error that is alike all over the receivers comes back from every reflection.
+    double systematic() const {
+        constexpr double within_a_sum = 2;
+        double reflected = 0;
+        for (ElementId e : light_.tree.roots()) reflected += light_.tree.area(e) * mean(material(e).reflectance);
+        return within_a_sum * std::min(10.0, 1 / (1 - reflected / input_.stage.area));
+    }
+
+    /// Exact direct light as it was projected, at the nodes of leaves.
+    void project_direct() {
+        for (ElementId e : light_.tree.leaves()) {
+            const Patch& patch = light_.tree.patch(e);
+            for (std::size_t k = 0; k < sites_.nodes(); ++k) {
+                const Spectrum E = sites_.nodes() == 1 ? input_.direct.fit[e].mean
+                                                       : input_.direct.at({e, patch.coordinates(sites_.node(e, k))});
+                direct_.set_node(e, k, E);
+                first_.set_node(e, k, material(e).reflectance * E);
+            }
+        }
+        direct_.pull();
+        first_.pull();
+    }
+
+    /// Mean over the surfaces of the light that elements reflect, times the root of their area, W/m^2 m: what the
+    /// errors of links are relative to.
+    double light_norm() const {
+        double sum = 0;
+        for (ElementId e : light_.tree.roots())
+            for (std::size_t k = 0; k < sites_.nodes(); ++k)
+                sum += light_.tree.area(e) * sites_.weight(e, k) * mean(b_.node(e, k));
+        return sum / std::sqrt(input_.stage.area);
+    }
+
+    /// b = first + rho F b, from the b that there is.
+    void relax() {
+        input_.progress.phase("solve");
+        light_.numbering = LeafNumbering(light_.tree);
+        links_.emplace(refiner_.make_links());
+        const LinkOperator F(sites_, *links_, light_.numbering);
+        const std::size_t n = sites_.nodes();
+        std::vector<Spectrum> rho, first, b;
+        std::vector<double> area;
+        for (ElementId e : light_.numbering.leaves)
+            for (std::size_t k = 0; k < n; ++k) {
+                rho.push_back(material(e).reflectance);
+                first.push_back(first_.node(e, k));
+                b.push_back(b_.node(e, k));
+                area.push_back(light_.tree.area(e) * sites_.weight(e, k));
+            }
+        const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
+        // Links are gathered all at once, and higher orders are not symmetric.
+        const Relaxation method = asked == Relaxation::jacobi ? asked : Relaxation::gmres;
+        const std::size_t before = light_.report.iterations;
+        light_.report = solve_radiosity({F, rho, first, area}, method, b,
+                                        {.residual = 0.1 * input_.knobs.residual,
+                                         .max_iterations = input_.knobs.max_iterations,
+                                         .request = &input_.stop});
+        light_.report.iterations += before;
+        for (std::size_t i = 0; i < light_.numbering.leaves.size(); ++i)
+            for (std::size_t k = 0; k < n; ++k) b_.set_node(light_.numbering.leaves[i], k, b[i * n + k]);
+        b_.pull();
+    }
+
+    /// The leaf of the direct projection that `e` is part of, or is.
+    ElementId projected(ElementId e) const {
+        while (e.value >= input_.direct.tree.size()) e = light_.tree.parent(e);
+        return e;
+    }
+
+    /// The polynomial of an element as files and rays hold it: linear or bilinear, nearest in the mean square.
+    ElementFit fit(ElementId e, const NodalField& E) const {
+        const Patch& patch = light_.tree.patch(e);
+        std::vector<WeightedPlace> places;
+        std::vector<Spectrum> values;
+        for (std::size_t k = 0; k < sites_.nodes(); ++k) {
+            if (sites_.weight(e, k) == 0) continue;
+            places.push_back({patch.coordinates(sites_.node(e, k)), sites_.weight(e, k)});
+            values.push_back(E.node(e, k));
+        }
+        return ElementFit(light_.tree, e, places, values);
+    }
+
+    /// Cuts leaves, for the sake of what is handed on, until linear functions hold what quadratic ones have found.
+    void cut_for_delivery(NodalField& E) {
+        const double allowed = 0.3 * input_.knobs.link_error * light_norm() / std::sqrt(input_.stage.area);
+        std::vector<ElementId> active = light_.tree.leaves();
+        constexpr int most_levels = 3;
+        for (int level = 0; level < most_levels && !active.empty(); ++level) {
+            std::vector<ElementId> rough;
+            for (ElementId e : active) {
+                const ElementFit bilinear = fit(e, E);
+                double sum = 0;
+                for (std::size_t k = 0; k < sites_.nodes(); ++k) {
+                    const Spectrum off =
+                        E.node(e, k) - bilinear.at(light_.tree.patch(e).coordinates(sites_.node(e, k)));
+                    sum += sites_.weight(e, k) * squared(light_weight(material(e)) * off) / static_cast<double>(bands);
+                }
+                if (sum > allowed * allowed) rough.push_back(e);
+            }
+            NodalField* const also[] = {&b_, &direct_, &first_};
+            refiner_.cut_elements(rough, E, also);
+            active.clear();
+            for (ElementId e : rough)
+                for (ElementId child : light_.tree.children(e)) active.push_back(child);
+        }
+        light_.numbering = LeafNumbering(light_.tree);
+    }
+
+    void hand_over() {
+        NodalField E(sites_);
+        links_->gather(b_, E);
+        E.push();
+        if (basis_.order() > 2) cut_for_delivery(E);
+        for (ElementId e : light_.numbering.leaves) {
+            Spectrum direct, indirect;
+            for (std::size_t k = 0; k < sites_.nodes(); ++k) {
+                direct += sites_.weight(e, k) * direct_.node(e, k);
+                indirect += sites_.weight(e, k) * E.node(e, k);
+            }
+            light_.direct.push_back(direct);
+            light_.indirect.push_back(indirect);
+            light_.reflected.push_back(material(e).reflectance * (direct + indirect));
+            const ElementFit polynomial = fit(e, E);
+            std::array<Spectrum, 4>& indirect_corners = light_.indirect_corners.emplace_back();
+            for (int i = 0; i < light_.tree.patch(e).corner_count(); ++i)
+                indirect_corners[static_cast<std::size_t>(i)] = polynomial.corner(i);
+            const ElementId own = projected(e);
+            const Patch& patch = light_.tree.patch(e);
+            std::array<Spectrum, 4>& corners = light_.direct_corners.emplace_back();
+            for (int i = 0; i < patch.corner_count(); ++i)
+                corners[static_cast<std::size_t>(i)] =
+                    input_.direct.at({own, input_.direct.tree.patch(own).coordinates(patch.corner(i))});
+        }
+        light_.links = links_->size();
+        light_.link_memory_bytes = links_->memory_bytes();
+        light_.rays = refiner_.rays();
+        light_.form_factors = refiner_.form_factors();
+    }
+
+    const MethodInput& input_;
+    NodalBasis basis_;
+    GlobalLight light_;
+    LinkSites sites_;
+    NodalField direct_, first_, b_;  ///< E_dir, rho E_dir, and all reflected light.
+    LinkRefiner refiner_;
+    std::optional<Links> links_;
+};
+
+}  // namespace
+
+GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind) {
+    return Hierarchy(input, kind).solve();
+}
+
+/// Hierarchical radiosity [Hanrahan91]: constant elements, links between levels.
+GlobalLight solve_hierarchical(const MethodInput& input) {
+    return solve_hierarchy(input, HierarchyBasis::haar);
+}
+
+/// Wavelet radiosity [Gortler93]: the same with the basis asked for, multiwavelets of order 2 when none is.
+GlobalLight solve_wavelet(const MethodInput& input) {
+    switch (input.options.basis.value_or(BasisKind::multiwavelet2)) {
+        case BasisKind::haar:
+            return solve_hierarchy(input, HierarchyBasis::haar);
+        case BasisKind::flatlet2:
+            return solve_hierarchy(input, HierarchyBasis::flatlet2);
+        case BasisKind::flatlet3:
+            return solve_hierarchy(input, HierarchyBasis::flatlet3);
+        case BasisKind::multiwavelet3:
+            return solve_hierarchy(input, HierarchyBasis::multiwavelet3);
+        default:
+            return solve_hierarchy(input, HierarchyBasis::multiwavelet2);
+    }
+}
+
+}  // namespace exitance
