@@ -18,9 +18,10 @@ Vec3 y_up(const Vec3& v) {
 
 /// A node's matrix, column by column: what looks along -z goes along `ahead` (Z up, as are `up` and `at`).
 std::string matrix(const Vec3& ahead, const Vec3& up, const Point& at) {
-    const Vec3 z = -normalized(y_up(ahead));
-    const Vec3 x = norm(cross(y_up(up), z)) > 1e-6 ? normalized(cross(y_up(up), z)) : Frame(z).u;
-    const Vec3 y = cross(z, x), o = y_up(at);
+    const Vec3 none;  // added, it turns -0 into 0
+    const Vec3 z = none - normalized(y_up(ahead));
+    const Vec3 x = none + (norm(cross(y_up(up), z)) > 1e-6 ? normalized(cross(y_up(up), z)) : Frame(z).u);
+    const Vec3 y = none + cross(z, x), o = none + y_up(at);
     return fmt::format("[{},{},{},0,{},{},{},0,{},{},{},0,{},{},{},1]", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z,
                        o.x, o.y, o.z);
 }
@@ -86,7 +87,9 @@ GlbNodes make_light_and_camera_nodes(const Scene& scene) {
     GlbNodes out;
     const auto add = [&](std::string& to, const std::string& item) { to += (to.empty() ? "" : ",") + item; };
     const auto add_node = [&](const std::string& name, const std::string& what, const std::string& place) {
-        add(out.nodes, fmt::format("{{\"name\":{},{},\"matrix\":{}}}", json_text(name), what, place));
+        const bool stays = place == "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]";  // the default is not to be written
+        const std::string matrix_entry = stays ? "" : ",\"matrix\":" + place;
+        add(out.nodes, fmt::format("{{\"name\":{},{}{}}}", json_text(name), what, matrix_entry));
         ++out.count;
     };
     for (std::size_t i = 0; i < scene.lights().size(); ++i) {

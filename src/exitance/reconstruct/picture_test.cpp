@@ -194,5 +194,22 @@ TEST(AutomaticCamera, StandsInsideAClosedRoomAndOutsideAnOpenScene) {
     EXPECT_FALSE(is_inside(open));
 }
 
+TEST(AutomaticCamera, LooksIntoARoomThroughItsOpenSide) {
+    SceneDescription d;
+    for (const double z : {0.0, 1.0}) d.points.insert(d.points.end(), {{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}});
+    d.materials = {{"wall", Spectrum(0.5), Spectrum()}, {"ceiling", Spectrum(0.5), Spectrum(1)}};
+    d.groups = {"box"};  // without the wall at y = 0
+    const std::vector<std::vector<std::uint32_t>> faces = {
+        {0, 1, 2, 3}, {4, 7, 6, 5}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+    for (std::size_t i = 0; i < faces.size(); ++i) d.faces.push_back({faces[i], i == 1 ? 1u : 0u, 0, 1});
+    Solution s;
+    s.scene = *make_scene(d).scene;
+    s.indirect = s.interpolant = sample_function(s.scene, 1, 40);
+    const Camera camera = automatic_camera(s, RayTracer(s.scene), Projection::perspective, {64, 64});
+    EXPECT_LT(camera.eye.y, 0);
+    EXPECT_NEAR(camera.eye.x, 0.5, 1e-12);
+    EXPECT_GT(camera.target.y, camera.eye.y);
+}
+
 }  // namespace
 }  // namespace exitance
