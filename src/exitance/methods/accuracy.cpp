@@ -30,8 +30,10 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     knobs.gather_mesh = {edge_for_elements(pieces, count(5)), strips + (error < 0.01 ? 2 : 0)};
     const double rays = 0.55 * std::pow(0.5 / error, 4.0 / 3);
     knobs.gather_rays = {
-        .average = rays, .least = static_cast<unsigned>(std::max(16.0, rays / (error < 0.01 ? 1 : 4))), .most = 16384};
-    knobs.gather_noise = 0.5 * error;
+        .average = rays, .least = static_cast<unsigned>(std::max(16.0, rays / (error < 0.01 ? 2 : 4))), .most = 16384};
+    knobs.gather_noise = 0.58 * error;
+    // In corners, too, where elements are small and count little.
+    if (error < 0.01) knobs.gather_relative_noise = 0.45 * error;
     knobs.gather_tolerance = 0.4 * error;
     apply_user_knobs(knobs, options);
     return knobs;
@@ -63,6 +65,7 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
         constexpr double small = 0.5;
         if (parts.noise > small * allowed) {
             out.knobs.gather_noise = factor * std::min(knobs.gather_noise, parts.noise);
+            out.knobs.gather_relative_noise *= factor;
             out.knobs.gather_rays.average *= std::pow(factor, -4.0 / 3);
         }
         if (parts.interpolation > small * allowed) out.knobs.gather_tolerance *= factor;

@@ -13,11 +13,12 @@ struct Knobs {
     double direct_tolerance = 0.1;  ///< Misfit of the projected direct light, relative to its mean.
     double residual = 1e-3;         ///< Of the discrete system.
     std::size_t max_iterations = 1000;
-    double link_error = 0;        ///< Of all links together, relative to the mean reflected radiosity.
-    MeshSize gather_mesh;         ///< Of the elements that indirect light is gathered on, to begin with.
-    RayBudget gather_rays;        ///< Rays of a node.
-    double gather_tolerance = 0;  ///< Error of interpolation, relative to the mean reflected radiosity.
-    double gather_noise = 0;      ///< Error of the rays, likewise.
+    double link_error = 0;             ///< Of all links together, relative to the mean reflected radiosity.
+    MeshSize gather_mesh;              ///< Of the elements that indirect light is gathered on, to begin with.
+    RayBudget gather_rays;             ///< Rays of a node.
+    double gather_tolerance = 0;       ///< Error of interpolation, relative to the mean reflected radiosity.
+    double gather_noise = 0;           ///< Error of the rays, likewise,
+    double gather_relative_noise = 0;  ///< and of the light on small elements; 0: any.
 };
 
 /// Knobs for a relative error, where the pieces of the scene are these. Rules of thumb that the certificate checks:

@@ -179,6 +179,7 @@ class Solver {
         return local_pass_->gather(b, fresh,
                                    {.rays = knobs_.gather_rays,
                                     .noise = knobs_.gather_noise * scale,
+                                    .relative_noise = knobs_.gather_relative_noise,
                                     .tolerance = knobs_.gather_tolerance * scale},
                                    gathered_, progress_, stop_);
     }

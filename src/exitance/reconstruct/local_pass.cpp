@@ -13,14 +13,18 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
     mean_area_ = stage.area / static_cast<double>(tree_.leaves().size());
 }
 
-/// An even share for every element of the first mesh if the error falls with the root of the rays.
-double LocalPass::allowed_noise(ElementId e, const LocalPassDemand& demand) const {
-    return demand.noise * std::pow(mean_area_ / tree_.area(e), 0.25);
+/// An even share for every element of the first mesh if the error falls with the root of the rays. Small elements stand
+/// in corners, which are dark and count little; where light is to be right there, too, it is judged by what there is.
+double LocalPass::allowed_noise(ElementId e, double light, const LocalPassDemand& demand) const {
+    const double share = demand.noise * std::pow(mean_area_ / tree_.area(e), 0.25);
+    constexpr double small = 0.125, least = 0.2;
+    if (demand.relative_noise == 0 || tree_.area(e) > small * mean_area_) return share;
+    return std::min(share, std::max(demand.relative_noise * light, least * demand.noise));
 }
 
 bool LocalPass::is_too_noisy(ElementId e, const LocalPassDemand& demand) const {
     constexpr double tolerated = 1.5;  // the noise is itself an estimate
-    return std::sqrt(sampled_[e].noise_squared) > tolerated * allowed_noise(e, demand);
+    return std::sqrt(sampled_[e].noise_squared) > tolerated * allowed_noise(e, sampled_[e].light, demand);
 }
 
 /// Gathers with the rays that the element's area suggests, or that it or its parent took before, and once more with as
@@ -31,9 +35,11 @@ LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, const
     const unsigned inherited = parent.is_none() ? 0 : sampled_[parent].place_rays / 2;
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays : inherited;
     unsigned rays = std::max({4u, demand.rays.rays(tree_.area(e), mean_area_), before});
-    const double allowed = allowed_noise(e, demand);
+    const auto excess_of = [&](const Sampled& s) {
+        return std::sqrt(s.noise_squared) / allowed_noise(e, s.light, demand);
+    };
     const auto more = [&](const Sampled& s) {
-        const double excess = std::sqrt(s.noise_squared) / allowed;
+        const double excess = excess_of(s);
         const double factor = std::clamp(std::pow(excess, 4.0 / 3), 1.0, 64.0);
         return std::min(demand.rays.most, std::bit_ceil(static_cast<unsigned>(rays * factor)));
     };
@@ -41,7 +47,7 @@ LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, const
     if (sampled_[e].place_rays > 0) rays = more(sampled_[e]);
     Sampled out = sample(e, b, rays, workspace);
     constexpr double tolerated = 1.5;
-    if (std::sqrt(out.noise_squared) > tolerated * allowed && more(out) > rays) {
+    if (excess_of(out) > tolerated && more(out) > rays) {
         spent = out.rays;
         out = sample(e, b, more(out), workspace);
     }
@@ -64,7 +70,9 @@ LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, unsig
         const Gathered g = gather_reflected(stage_, patch.at(places[i].uv), n, region, rays, key, b, workspace);
         value[i] = g.irradiance;
         noise += places[i].weight * mean(rho * rho * g.variance);
+        out.light += places[i].weight * squared(rho * g.irradiance) / static_cast<double>(bands);
     }
+    out.light = std::sqrt(out.light);
     const ElementFit fit(tree_, e, places, value);
     for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = fit.corner(i);
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -127,12 +135,13 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
     }
     for (int depth = 0; !active.empty(); ++depth) {
         sampled_.resize(tree_.size());
-        // In slices, so that progress can be told and a request to stop is heard.
-        const std::size_t slice = std::max<std::size_t>(64, active.size() / 32 + 1);
+        // In slices, so that progress can be told; few, since threads wait for one another at the end of each. A
+        // request to stop is heard at every element: what it leaves out is not used.
+        const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
         for (std::size_t first = 0; first < active.size() && !stop.requested(); first += slice) {
             parallel_ranges(std::min(slice, active.size() - first), 1, [&](std::size_t begin, std::size_t end) {
                 GatherWorkspace workspace;
-                for (std::size_t i = first + begin; i < first + end; ++i)
+                for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
                     sampled_[active[i]] = sample(active[i], b, demand, workspace);
             });
             // The first round is about half of the work, every further one half of what is left.

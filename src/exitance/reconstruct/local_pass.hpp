@@ -9,10 +9,11 @@ namespace exitance {
 
 /// How finely indirect light is gathered.
 struct LocalPassDemand {
-    RayBudget rays;        ///< Of one node, to begin with; more where they turn out too noisy.
-    double noise = 0;      ///< RMS error of rho E_ind that the rays may leave, W/m^2.
-    double tolerance = 0;  ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
-    int max_depth = 8;     ///< Rounds of cutting.
+    RayBudget rays;             ///< Of one node, to begin with; more where they turn out too noisy.
+    double noise = 0;           ///< RMS error of rho E_ind that the rays may leave, W/m^2.
+    double relative_noise = 0;  ///< As much of the light there as the rays may leave on small elements; 0: any.
+    double tolerance = 0;       ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
+    int max_depth = 8;          ///< Rounds of cutting.
 };
 
 struct LocalPassReport {
@@ -50,6 +51,7 @@ class LocalPass {
     /// What one element's gathers say.
     struct Sampled {
         std::array<Spectrum, 4> corners;
+        double light = 0;            ///< RMS of rho E over places and bands, W/m^2.
         double noise_squared = 0;    ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
         double misfit_squared = 0;   ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
         double noise_in_misfit = 0;  ///< How much of that the rays' noise makes, on average.
@@ -60,7 +62,7 @@ class LocalPass {
     Sampled sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand,
                    GatherWorkspace& workspace) const;
     Sampled sample(ElementId e, const ReflectedLight& b, unsigned rays, GatherWorkspace& workspace) const;
-    double allowed_noise(ElementId e, const LocalPassDemand& demand) const;
+    double allowed_noise(ElementId e, double light, const LocalPassDemand& demand) const;
     bool is_too_noisy(ElementId e, const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);
     ElementFunction finished(LocalPassReport& report) const;
