@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "exitance/basis/element_fit.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/core/memory.hpp"
 #include "exitance/transport/link_refiner.hpp"
 
 namespace exitance {
@@ -33,6 +33,7 @@ class Hierarchy {
         LinkTolerance tolerance{.error = first,
                                 .interpolation = first,
                                 .systematic = systematic(),
+                                .most_links = most_links(),
                                 .least_area = input_.options.min_area.value_or(1e-7 * input_.stage.area),
                                 .fractional = input_.options.visibility == VisibilityKind::fractional,
                                 .triage = input_.options.triage,
@@ -49,7 +50,8 @@ class Hierarchy {
                 "{} links ({:.0f}% of their light in the open), {} elements, {} rays; their error {:.3f}% of {:.3f}%",
                 refiner_.size(), 100 * refiner_.open_share(), light_.tree.size(), refiner_.rays(),
                 100 * refiner_.error() / light_norm(), 100 * demand / light_norm()));
-            if (input_.stop.requested() || refiner_.error() <= demand) break;
+            light_.limited_by_memory = refiner_.is_limited();
+            if (input_.stop.requested() || light_.limited_by_memory || refiner_.error() <= demand) break;
             const double factor = std::clamp(0.8 * demand / refiner_.error(), 0.1, 0.8);
             tolerance.error *= factor, tolerance.interpolation *= factor;
         }
@@ -67,6 +69,15 @@ class Hierarchy {
     bool is_polynomial() const { return basis_.order() > 1 && !basis_.is_flat(); }
 
     const Material& material(ElementId e) const { return input_.stage.scene.material(light_.tree.region(e)); }
+
+    /// As many as there is room for.
+    std::size_t most_links() const {
+        constexpr std::size_t unasked = 8'000'000'000;  // bytes
+        const std::size_t used = peak_memory_bytes(),
+                          limit = input_.options.memory_limit_bytes.value_or(used + unasked);
+        constexpr std::size_t others_share = 2;  // meshes, gathers, files
+        return (limit - std::min(limit, used)) / (others_share * LinkRefiner::bytes_a_link);
+    }
 
     /// An error that is alike all over the receivers comes back from every reflection.
     double systematic() const {

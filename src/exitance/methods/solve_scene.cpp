@@ -64,6 +64,10 @@ class Solver {
             solve_indirect_light();
         else
             project_direct();
+        // What only attempts need makes room for the mesh that is written.
+        light_.reset();
+        local_pass_.reset();
+        gathered_ = {};
         make_output_mesh();
         return std::move(solution_);
     }
@@ -96,6 +100,7 @@ class Solver {
                     statistics().converged = true, statistics().stopped_by.clear();
                 return;
             }
+            if (light_->limited_by_memory) stop_early("memory limit");
             if (statistics().stopped_by == "memory limit") return;
             if (count == most_attempts) return stop_early("iterations");
             constexpr double aim = 0.7;

@@ -34,6 +34,9 @@ struct GlobalLight {
     /// arrives, and `direct` is zero.
     bool holds_direct = false;
 
+    /// Did the method stop refining for want of memory?
+    bool limited_by_memory = false;
+
     SolveReport report = {};
     std::size_t rays = 0, form_factors = 0, links = 0, link_memory_bytes = 0;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct LinkTolerance {
     /// How much an error that is alike all over a receiver counts: it adds up from link to link and from reflection to
     /// reflection, where others cancel.
     double systematic = 1;
+    /// When there are more links, sources and receivers are left as they are.
+    std::size_t most_links = std::numeric_limits<std::size_t>::max();
     double least_area = 0;    ///< No element is cut below this, m^2.
     bool fractional = false;  ///< The share of rays that get through, for all nodes of a link; else each its own.
     bool triage = true;       ///< Look for certain visibility before rays are cast.

@@ -74,7 +74,8 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
         std::vector<Block> blocks((pairs.size() + block_size - 1) / block_size);
         // Once a stop is asked for, what is left is linked as it is.
         LinkTolerance now = tolerance;
-        if (stop.requested()) now.error = HUGE_VAL;
+        limited_ |= links_.size() + pairs.size() > tolerance.most_links;
+        if (stop.requested() || limited_) now.error = HUGE_VAL;
         parallel_for(blocks.size(), 1, [&](std::size_t i) {
             LinkJudge judge(sites_, b, roughness_, now);
             Block& block = blocks[i];
@@ -213,7 +214,7 @@ void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const
         blocks_.clear();
     for (int round = 0; !pairs.empty(); ++round) {
         judge(std::move(pairs), b, tolerance, stop);
-        if (stop.requested()) return;
+        if (stop.requested() || limited_) return;
         pairs = cut_receivers(b, also, tolerance);
         progress.advance(1 - std::ldexp(1.0, -round));
     }

@@ -27,6 +27,10 @@ class LinkRefiner {
 
     /// Root of areas times squared errors, of rules and visibility by link and of interpolation by receiver, W/m^2 m.
     double error() const;
+    /// Did the number of links end the refinement?
+    bool is_limited() const { return limited_; }
+    /// Bytes that a link takes while links are refined, with its block.
+    static constexpr std::size_t bytes_a_link = 400;
     /// How much of the light that links carry meets nothing on its way, certainly.
     double open_share() const;
     std::size_t size() const { return links_.size(); }
@@ -62,7 +66,7 @@ class LinkRefiner {
     std::vector<float> blocks_;
     double interpolation_ = 0;  ///< Squared, as in error().
     std::size_t rays_ = 0, form_factors_ = 0;
-    bool begun_ = false;
+    bool begun_ = false, limited_ = false;
 };
 
 }  // namespace exitance
