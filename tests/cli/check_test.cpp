@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/small_scene.hpp"
@@ -48,6 +50,33 @@ TEST(ProgramCheck, ABrokenSceneIsBadInputWithFileAndLine) {
     EXPECT_EQ(keys(json["errors"][0]), (std::vector<std::string>{"file", "line", "message"}));
     EXPECT_EQ(json["errors"][0]["line"], 9);
     EXPECT_EQ(json["errors"][0]["file"], scene);
+}
+
+TEST(ProgramCheck, MarksWhatItFindsInAPictureEvenOfABrokenScene) {
+    const TemporaryFolder folder;
+    for (const bool broken : {false, true}) {
+        const std::string scene = broken ? write_broken_scene(folder) : write_small_room(folder);
+        const std::string picture = folder / (broken ? "broken.png" : "sound.png");
+        const Finished run = run_program({"check", scene, "--picture", picture});
+        EXPECT_EQ(run.status, broken ? 3 : 0);
+        std::ifstream in(picture, std::ios::binary);
+        std::string magic(4, ' ');
+        in.read(magic.data(), 4);
+        EXPECT_EQ(magic, "\x89PNG");
+    }
+    EXPECT_EQ(run_program({"check", folder / "room.obj", "--picture", folder / "p.jpg"}).status, 2);
+}
+
+TEST(ProgramCheck, AFaceThatLooksTheWrongWayIsNamed) {
+    const TemporaryFolder folder;
+    write_text(folder / "box.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nKe 1 1 1\n");
+    write_text(folder / "box.obj",
+               "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+               "usemtl grey\ng crate\nf 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 1 5 8 4\n");
+    const Json json = Json::parse(run_program({"check", "--json", folder / "box.obj"}).out);
+    ASSERT_EQ(json["warnings"].size(), 1u);
+    EXPECT_EQ(json["warnings"][0]["line"], 17);
+    EXPECT_NE(json["warnings"][0]["message"].get<std::string>().find("'crate'"), std::string::npos);
 }
 
 TEST(ProgramCheck, AMissingFileIsBadInput) {

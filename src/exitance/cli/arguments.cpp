@@ -318,6 +318,8 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 
 void declare(CLI::App& app, CheckArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
+    app.add_option("--picture", arguments.picture, "Picture of the scene that marks what was found (.png)")
+        ->type_name("FILE");
     declare_json(app, arguments);
 }
 

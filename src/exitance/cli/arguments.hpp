@@ -73,7 +73,7 @@ struct RenderArguments : CommonArguments {
 };
 
 struct CheckArguments : CommonArguments {
-    std::string scene;
+    std::string scene, picture;
 };
 
 struct GenerateArguments : CommonArguments {

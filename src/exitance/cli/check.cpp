@@ -2,7 +2,11 @@
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/io/check_picture.hpp"
 #include "exitance/io/scene_file.hpp"
+#include "exitance/io/whole_file.hpp"
+#include "exitance/scene/findings.hpp"
+#include "exitance/scene/shell.hpp"
 
 namespace exitance {
 namespace {
@@ -25,7 +29,7 @@ std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std:
     return count == 0 ? "" : fmt::format("{} {}\n{}", count, count == 1 ? singular : plural, lines);
 }
 
-std::string report(const CheckedScene& checked) {
+std::string report(const CheckedScene& checked, const Shell& shell) {
     using Kind = Finding::Kind;
     std::string text = group(checked.findings, Kind::error, "error", "errors") +
                        group(checked.findings, Kind::warning, "warning", "warnings") +
@@ -35,6 +39,10 @@ std::string report(const CheckedScene& checked) {
     double area = 0;
     for (const Surface& surface : scene.surfaces()) area += surface.area;
     const Vec3 size = scene.box().size();
+    if (shell.open_edges > 0)
+        text += fmt::format(
+            "{} edges of {:.4g} m have a face on one side only: what is meant to be closed is open there.\n",
+            shell.open_edges, shell.open_length);
     return text + fmt::format(
                       "The scene can be used: {} surfaces of {:.4g} m^2 ({} after joining coplanar neighbours), "
                       "{} emitters, {}{} materials, {:.4g} x {:.4g} x {:.4g} m.\n",
@@ -45,9 +53,25 @@ std::string report(const CheckedScene& checked) {
 
 }  // namespace
 
+/// exitance check SCENE
 ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
-    const CheckedScene checked = load_scene(arguments.scene);
-    terminal.print(arguments.json ? check_json(checked) : report(checked));
+    if (!arguments.picture.empty() && ending(arguments.picture) != ".png")
+        return terminal.fail(
+            {ErrorCode::usage, "the picture is written as .png", arguments.picture, "name it something.png"});
+    CheckedScene checked = load_scene(arguments.scene);
+    Shell shell;
+    if (checked.scene) {
+        shell = inspect_shell(*checked.scene);
+        for (Finding& finding : findings_of(shell, *checked.scene)) checked.findings.push_back(std::move(finding));
+        sort_findings(checked.findings);
+        checked.marks.insert(checked.marks.end(), shell.marks.begin(), shell.marks.end());
+    }
+    terminal.print(arguments.json ? check_json(checked) : report(checked, shell));
+    if (!arguments.picture.empty()) {
+        const Image image = check_picture(read_description(arguments.scene), checked.marks, 1280, 720);
+        const Result<void> written = write_png(arguments.picture, image, {{"Software", "exitance"}});
+        if (!written) return terminal.fail(written.error());
+    }
     return checked.scene ? ExitCode::done : terminal.fail(checked);
 }
 

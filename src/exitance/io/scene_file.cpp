@@ -40,18 +40,30 @@ bool looks_like_gltf(const std::string& path) {
     return std::string_view(magic, sizeof magic) == "glTF";
 }
 
+using Reader = ReadScene (*)(const std::string& path);
+
+Reader reader_of(const std::string& path) {
+    const std::string end = ending(path);
+    if (end == ".obj") return read_obj;
+    if (end == ".rad") return read_radiance;
+    if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf;
+    return nullptr;
+}
+
 }  // namespace
 
 CheckedScene load_scene(const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
         return refused(ErrorCode::cannot_read, path, "there is no such file", "");
-    const std::string end = ending(path);
-    if (end == ".obj") return checked(read_obj(path));
-    if (end == ".rad") return checked(read_radiance(path));
-    if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return checked(read_gltf(path));
+    if (const Reader read = reader_of(path)) return checked(read(path));
     return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
                    "known endings: .obj, .gltf, .glb, .rad");
+}
+
+SceneDescription read_description(const std::string& path) {
+    const Reader read = reader_of(path);
+    return read ? read(path).description : SceneDescription();
 }
 
 }  // namespace exitance

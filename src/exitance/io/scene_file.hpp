@@ -6,8 +6,11 @@
 
 namespace exitance {
 
-/// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb, .rad). Every error of the file is among the findings.
-/// An unreadable file has the code cannot_read, everything else that is wrong bad_input.
+/// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb, .rad). Every error of the file is
+/// among the findings. An unreadable file has the code cannot_read, everything else that is wrong bad_input.
 CheckedScene load_scene(const std::string& path);
+
+/// What a scene file says, not yet checked; nothing, where it is of no known kind or cannot be read.
+SceneDescription read_description(const std::string& path);
 
 }  // namespace exitance

@@ -69,6 +69,13 @@ struct Finding {
     std::string hint;     ///< What to do next, or empty.
 };
 
+/// Where something was found, for pictures.
+struct Mark {
+    enum class Kind { broken, left_out, covering, turned, open };
+    Kind kind = Kind::broken;
+    std::vector<Point> outline;  ///< Of the face, or the two ends of an edge; metres.
+};
+
 /// Polygons as a file gives them, not yet looked at.
 struct SceneDescription {
     struct Face {
@@ -133,6 +140,7 @@ class Scene {
 struct CheckedScene {
     Result<Scene> scene;
     std::vector<Finding> findings;  ///< Errors first, then in the order of the file.
+    std::vector<Mark> marks = {};   ///< Of all faces that findings are about, those too that are only counted.
 };
 
 /// Checks every face and material, repairs what has a safe repair (and says so), joins coplanar neighbours to regions.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "exitance/core/random.hpp"
 #include "exitance/scene/border.hpp"
@@ -52,6 +54,15 @@ class SceneBuilder {
     void error(int line, std::string message, std::string hint = "") {
         find(Finding::Kind::error, line, std::move(message), std::move(hint));
     }
+    /// About a face, which is named by its line or, where files have none, by its group; marked as `mark`. Of repairs
+    /// and warnings of one kind only the first are listed; `rest` says what the others are ("faces without area").
+    void find(Finding::Kind kind, const SceneDescription::Face& face, Mark::Kind mark, std::string message,
+              std::string hint = "", const char* rest = nullptr);
+    void error(const SceneDescription::Face& face, std::string message, std::string hint = "") {
+        find(Finding::Kind::error, face, Mark::Kind::broken, std::move(message), std::move(hint));
+    }
+    void report_unlisted();
+    std::string name_of(const SceneDescription::Face& face) const;
     bool has_errors() const { return exitance::has_errors(findings_); }
 
     SceneDescription in_;
@@ -64,7 +75,43 @@ class SceneBuilder {
     std::size_t flattened_ = 0;  // faces out of plane by more than rounding, within the tolerance
     double farthest_ = 0;
     int first_flattened_ = 0;
+    std::vector<Mark> marks_;
+    struct Listed {
+        Finding::Kind kind;
+        std::size_t count;
+        int first_unlisted;
+    };
+    std::map<std::string, Listed> listed_;  ///< What `rest` says -> how many there were.
 };
+
+constexpr std::size_t most_listed = 20;
+
+std::string SceneBuilder::name_of(const SceneDescription::Face& face) const {
+    if (face.line > 0 || face.group >= in_.groups.size()) return fmt::format("the face of line {}", face.line);
+    return fmt::format("a face of '{}'", in_.groups[face.group]);
+}
+
+void SceneBuilder::find(Finding::Kind kind, const SceneDescription::Face& face, Mark::Kind mark, std::string message,
+                        std::string hint, const char* rest) {
+    Mark& marked = marks_.emplace_back(mark, std::vector<Point>());
+    for (std::uint32_t c : face.corners)
+        if (c < in_.points.size() && is_finite(in_.points[c])) marked.outline.push_back(in_.points[c]);
+    if (rest) {
+        Listed& listed = listed_.try_emplace(rest, Listed{kind, 0, face.line}).first->second;
+        if (++listed.count == most_listed + 1) listed.first_unlisted = face.line;
+        if (listed.count > most_listed) return;
+    }
+    if (face.line == 0 && face.group < in_.groups.size())
+        message = fmt::format("in '{}': {}", in_.groups[face.group], message);
+    find(kind, face.line, std::move(message), std::move(hint));
+}
+
+void SceneBuilder::report_unlisted() {
+    for (const auto& [rest, listed] : listed_)
+        if (listed.count > most_listed)
+            find(listed.kind, listed.first_unlisted, fmt::format("{} more {}", listed.count - most_listed, rest));
+    listed_.clear();
+}
 
 void SceneBuilder::check_materials() {
     static constexpr const char* rgb[3] = {"R", "G", "B"};
@@ -135,25 +182,25 @@ void SceneBuilder::check_faces() {
 /// Appends the face to the mesh if it can be used; reports why not otherwise.
 bool SceneBuilder::check_face(const SceneDescription::Face& face) {
     if (face.material >= in_.materials.size() || face.group >= in_.groups.size())
-        return error(face.line, "face has no material or no group"), false;
+        return error(face, "face has no material or no group"), false;
     std::vector<std::uint32_t> outline = face.corners;
     for (std::uint32_t& c : outline) {
         if (c >= in_.points.size())
-            return error(face.line, fmt::format("face names corner {} of {} points", c + 1, in_.points.size())), false;
-        if (!is_finite(in_.points[c])) return error(face.line, "a corner of the face is not a finite point"), false;
+            return error(face, fmt::format("face names corner {} of {} points", c + 1, in_.points.size())), false;
+        if (!is_finite(in_.points[c])) return error(face, "a corner of the face is not a finite point"), false;
         c = place_[c];
     }
     const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);
     if (outline.size() < 3) {
-        find(Finding::Kind::repair, face.line,
+        find(Finding::Kind::repair, face, Mark::Kind::left_out,
              fmt::format("face of {} corners goes to and fro and has no area: it is left out", given),
-             "remove it, or give it three corners that are not in line");
+             "remove it, or give it three corners that are not in line", "faces without area are left out");
         return false;
     }
     if (dropped > 0)
-        find(
-            Finding::Kind::repair, face.line,
-            fmt::format("{} of the face's {} corners stand where a neighbour stands: they are merged", dropped, given));
+        find(Finding::Kind::repair, face, Mark::Kind::left_out,
+             fmt::format("{} of the face's {} corners stand where a neighbour stands: they are merged", dropped, given),
+             "", "faces have corners that stand where a neighbour stands");
     if (!check_shape(face, outline)) return false;
     mesh_.corners.insert(mesh_.corners.end(), outline.begin(), outline.end());
     return true;
@@ -167,31 +214,32 @@ bool SceneBuilder::check_shape(const SceneDescription::Face& face, std::span<con
     for (const Point& p : corners) box.add(p);
     if (norm(area) <= tol_.place * box.diagonal()) {
         if (is_collinear(corners, 2 * tol_.place))
-            find(Finding::Kind::repair, face.line,
-                 fmt::format("face of {} corners has no area, they are in line: it is left out", face.corners.size()));
+            find(Finding::Kind::repair, face, Mark::Kind::left_out,
+                 fmt::format("face of {} corners has no area, they are in line: it is left out", face.corners.size()),
+                 "", "faces without area are left out");
         else
-            error(face.line, "face crosses itself: its parts cancel out", "order its corners counter-clockwise");
+            error(face, "face crosses itself: its parts cancel out", "order its corners counter-clockwise");
         return false;
     }
     const Normal n = normalized(area);
     const double off = out_of_plane(corners, n);
     // A face may be bent by as much as its neighbours may be tilted.
     if (off > std::max(tol_.place, std::min(tol_.plane, tol_.tilt * box.diagonal()))) {
-        error(face.line, fmt::format("face of {} corners is {:.3g} m out of plane", corners.size(), off),
+        error(face, fmt::format("face of {} corners is {:.3g} m out of plane", corners.size(), off),
               "split it into triangles");
         return false;
     }
     EdgePair where{};
     if (crosses_itself(corners, n, tol_.place, where)) {
         const std::size_t m = corners.size();
-        error(face.line,
+        error(face,
               fmt::format("face crosses itself: the edge from corner {} to {} meets the edge from corner {} to {}",
                           where.first + 1, (where.first + 1) % m + 1, where.second + 1, (where.second + 1) % m + 1),
               "order its corners counter-clockwise, or split it");
         return false;
     }
     if (!is_one_polygon(outline, area)) {
-        error(face.line, "face crosses itself in a corner: a part of it is turned over", "split it there");
+        error(face, "face crosses itself in a corner: a part of it is turned over", "split it there");
         return false;
     }
     if (off > tol_.place) {
@@ -233,9 +281,9 @@ void SceneBuilder::drop_duplicates() {
         }
         chains.add(key);
         if (same) {
-            find(Finding::Kind::repair, in_.faces[origin_[f]].line,
-                 fmt::format("face repeats the face of line {} corner by corner: it is left out", same->line),
-                 "remove one of the two");
+            find(Finding::Kind::repair, in_.faces[origin_[f]], Mark::Kind::left_out,
+                 fmt::format("face repeats {} corner by corner: it is left out", name_of(*same)),
+                 "remove one of the two", "faces repeat an earlier one and are left out");
             continue;
         }
         left_origin.push_back(origin_[f]);
@@ -258,22 +306,17 @@ void SceneBuilder::check_light() {
              "nothing emits light: all results are 0", "give a material an emission (in MTL: Ke r g b)");
 }
 
-/// Warns of faces that cover each other, in the order of the file; beyond the first ones only how many there are.
+/// Warns of faces that cover each other, in the order of the file.
 void SceneBuilder::check_overlaps(const Scene& scene) {
-    constexpr std::size_t most_listed = 20;
     // Rays that start this near a face cannot tell the two apart.
-    const std::vector<Overlap> overlaps = find_overlaps(scene, 100 * tol_.place);
-    const auto line = [&](SurfaceId s) { return scene.surfaces()[s].line; };
-    for (std::size_t i = 0; i < std::min(overlaps.size(), most_listed); ++i)
-        find(
-            Finding::Kind::warning, line(overlaps[i].second),
-            fmt::format("face covers {:.3g} m^2 of the face of line {}, in the same plane: which of the two is seen is "
-                        "left to chance",
-                        overlaps[i].area, line(overlaps[i].first)),
-            "cut the one from the other, or move it a little off");
-    if (overlaps.size() > most_listed)
-        find(Finding::Kind::warning, line(overlaps[most_listed].second),
-             fmt::format("{} more pairs of faces cover each other", overlaps.size() - most_listed));
+    for (const Overlap& overlap : find_overlaps(scene, 100 * tol_.place)) {
+        const SceneDescription::Face &first = in_.faces[origin_[overlap.first.value]],
+                                     &second = in_.faces[origin_[overlap.second.value]];
+        find(Finding::Kind::warning, second, Mark::Kind::covering,
+             fmt::format("face covers {:.3g} m^2 of {}, in the same plane: which of the two is seen is left to chance",
+                         overlap.area, name_of(first)),
+             "cut the one from the other, or move it a little off", "pairs of faces cover each other");
+    }
 }
 
 /// An outline that comes back to a corner bounds one polygon with holes, not lobes of opposite sense.
@@ -360,7 +403,7 @@ Scene SceneBuilder::make() {
     }
     add_regions(scene, join_coplanar(mesh_, tol_));
     for (Material& m : in_.materials) scene.materials_.add(std::move(m));
-    for (std::string& g : in_.groups) scene.groups_.add(std::move(g));
+    for (const std::string& g : in_.groups) scene.groups_.add(g);
     for (PunctualLight& light : in_.lights)
         if (max(light.intensity) > 0) scene.lights_.push_back(std::move(light));
     scene.cameras_ = std::move(in_.cameras);
@@ -372,19 +415,22 @@ CheckedScene SceneBuilder::build() {
     check_lights();
     place_corners();
     check_faces();
+    report_unlisted();
     if (!has_errors()) {
         drop_duplicates();
         check_light();
+        report_unlisted();
     }
     sort_findings(findings_);
     if (has_errors()) {
         Error first = error_of(findings_);
-        return {std::move(first), std::move(findings_)};
+        return {std::move(first), std::move(findings_), std::move(marks_)};
     }
     Scene scene = make();
     check_overlaps(scene);
+    report_unlisted();
     sort_findings(findings_);
-    return {std::move(scene), std::move(findings_)};
+    return {std::move(scene), std::move(findings_), std::move(marks_)};
 }
 
 CheckedScene make_scene(SceneDescription description) {

@@ -1,0 +1,187 @@
+#include "exitance/scene/shell.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "exitance/core/random.hpp"
+#include "exitance/geometry/bvh.hpp"
+#include "exitance/scene/hash_chains.hpp"
+#include "exitance/scene/weld.hpp"
+
+namespace exitance {
+namespace {
+
+struct Edge {
+    std::uint32_t from, to;
+    SurfaceId face;
+    std::uint32_t first = 0;  ///< The first edge between the same two points, in either direction.
+};
+
+/// The edges between two points: how many, and the first two.
+struct Meeting {
+    std::uint32_t count = 0, one = 0, other = 0;
+};
+
+class Inspector {
+  public:
+    explicit Inspector(const Scene& scene) : scene_(scene), tolerance_(1e-8 * scene.size()) {
+        std::vector<Point> corners;
+        for (SurfaceId s : scene.surfaces().ids())
+            corners.insert(corners.end(), scene.outline(s).begin(), scene.outline(s).end());
+        const std::vector<std::uint32_t> place = weld(corners, tolerance_);
+        points_ = std::move(corners);
+        std::uint32_t first = 0;
+        for (SurfaceId s : scene.surfaces().ids()) {
+            const auto n = static_cast<std::uint32_t>(scene.outline(s).size());
+            for (std::uint32_t k = 0; k < n; ++k) {
+                const std::uint32_t from = place[first + k], to = place[first + (k + 1) % n];
+                if (from != to) edges_.push_back({from, to, s});
+            }
+            first += n;
+        }
+        meet();
+    }
+
+    Shell run() {
+        find_open_edges();
+        find_turned_faces();
+        return std::move(out_);
+    }
+
+  private:
+    void meet();
+    void find_open_edges();
+    void find_turned_faces();
+
+    const Scene& scene_;
+    double tolerance_;
+    std::vector<Point> points_;
+    std::vector<Edge> edges_;
+    std::vector<Meeting> meetings_;  ///< By first edge.
+    Shell out_;
+};
+
+void Inspector::meet() {
+    HashChains chains(edges_.size());
+    meetings_.resize(edges_.size());
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+        const auto ends = std::minmax(edges_[e].from, edges_[e].to);
+        const std::uint64_t key = hash(ends.first, ends.second);
+        edges_[e].first = e;
+        for (std::uint32_t o = chains.first(key); o != HashChains::end; o = chains.next(o))
+            if (std::minmax(edges_[o].from, edges_[o].to) == ends) edges_[e].first = edges_[o].first;
+        chains.add(key);
+        Meeting& meeting = meetings_[edges_[e].first];
+        (meeting.count == 0 ? meeting.one : meeting.other) = e;
+        ++meeting.count;
+    }
+}
+
+void Inspector::find_open_edges() {
+    std::vector<std::uint32_t> lone;
+    std::vector<Box> boxes;
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+        if (edges_[e].first != e || meetings_[e].count != 1) continue;
+        lone.push_back(e);
+        boxes.emplace_back();
+        boxes.back().add(points_[edges_[e].from]), boxes.back().add(points_[edges_[e].to]);
+    }
+    const Bvh tree(boxes);
+    const Vec3 around{tolerance_, tolerance_, tolerance_};
+    /// Lone edges, other than the one asked for, that hold p inside.
+    const auto holders = [&](const Point& p, std::uint32_t own, const auto& take) {
+        Box box;
+        box.add(p - around), box.add(p + around);
+        tree.visit_box(box, [&](std::uint32_t i) {
+            const Point &a = points_[edges_[lone[i]].from], &b = points_[edges_[lone[i]].to];
+            const double length = norm(b - a), along = dot(p - a, b - a) / length;
+            if (lone[i] != own && along > tolerance_ && along < length - tolerance_ &&
+                norm(cross(p - a, b - a)) <= tolerance_ * length)
+                take(i);
+        });
+    };
+    std::vector<bool> joined(lone.size());
+    std::vector<std::uint32_t> ends;
+    for (const std::uint32_t e : lone) ends.insert(ends.end(), {edges_[e].from, edges_[e].to});
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    for (const std::uint32_t p : ends) {
+        bool is_joint = false;
+        holders(points_[p], HashChains::end, [&](std::uint32_t i) { joined[i] = is_joint = true; });
+        out_.t_joints += is_joint;
+    }
+    for (std::size_t k = 0; k < lone.size(); ++k) {
+        const Point &a = points_[edges_[lone[k]].from], &b = points_[edges_[lone[k]].to];
+        bool within = joined[k];
+        if (!within) holders(0.5 * (a + b), lone[k], [&](std::uint32_t) { within = true; });
+        if (within) continue;
+        ++out_.open_edges;
+        out_.open_length += norm(b - a);
+        out_.marks.push_back({Mark::Kind::open, {a, b}});
+    }
+}
+
+/// Faces that hang together over edges of two are given a side each: equal across an edge that they run along in
+/// opposite directions.
+void Inspector::find_turned_faces() {
+    const std::size_t n = scene_.surfaces().size();
+    std::vector<std::vector<std::uint32_t>> of_face(n);
+    for (std::uint32_t e = 0; e < edges_.size(); ++e)
+        if (meetings_[edges_[e].first].count == 2) of_face[edges_[e].face.value].push_back(e);
+    enum : char { unseen, same, opposite };
+    std::vector<char> side(n, unseen);
+    for (std::uint32_t start = 0; start < n; ++start) {
+        if (side[start] != unseen) continue;
+        std::vector<std::uint32_t> together = {start};
+        side[start] = same;
+        bool is_orientable = true;
+        for (std::size_t i = 0; i < together.size(); ++i)
+            for (const std::uint32_t e : of_face[together[i]]) {
+                const Meeting& meeting = meetings_[edges_[e].first];
+                const Edge& across = edges_[meeting.one == e ? meeting.other : meeting.one];
+                const bool turns = across.from == edges_[e].from;
+                const char expected = (side[together[i]] == same) != turns ? same : opposite;
+                char& there = side[across.face.value];
+                if (there == unseen)
+                    there = expected, together.push_back(across.face.value);
+                else
+                    is_orientable &= there == expected;
+            }
+        const auto count = static_cast<std::size_t>(
+            std::count_if(together.begin(), together.end(), [&](std::uint32_t f) { return side[f] == opposite; }));
+        const std::size_t fewer = std::min(count, together.size() - count);
+        if (!is_orientable || fewer == 0 || 3 * fewer > together.size()) continue;
+        const char wrong = count == fewer ? opposite : same;
+        for (const std::uint32_t f : together)
+            if (side[f] == wrong) out_.turned.push_back(SurfaceId(f));
+    }
+    std::sort(out_.turned.begin(), out_.turned.end());
+    for (const SurfaceId s : out_.turned)
+        out_.marks.push_back({Mark::Kind::turned, {scene_.outline(s).begin(), scene_.outline(s).end()}});
+}
+
+}  // namespace
+
+Shell inspect_shell(const Scene& scene) {
+    return Inspector(scene).run();
+}
+
+std::vector<Finding> findings_of(const Shell& shell, const Scene& scene) {
+    std::map<GroupId, std::pair<SurfaceId, std::size_t>> groups;
+    for (const SurfaceId s : shell.turned)
+        ++groups.try_emplace(scene.surfaces()[s].group, s, std::size_t(0)).first->second.second;
+    std::vector<Finding> out;
+    for (const auto& [group, turned] : groups)
+        out.push_back(
+            {Finding::Kind::warning, scene.file(), scene.surfaces()[turned.first].line,
+             fmt::format("{} of '{}' {} the other way than the faces around: {} front is where those have "
+                         "their backs",
+                         turned.second == 1 ? "a face" : fmt::format("{} faces", turned.second), scene.groups()[group],
+                         turned.second == 1 ? "looks" : "look", turned.second == 1 ? "its" : "their"),
+             "turn the order of corners round"});
+    return out;
+}
+
+}  // namespace exitance
