@@ -33,7 +33,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
         .average = rays, .least = static_cast<unsigned>(std::max(16.0, rays / (error < 0.01 ? 2 : 4))), .most = 16384};
     knobs.gather_noise = 0.58 * error;
     // In corners, too, where elements are small and count little.
-    if (error < 0.01) knobs.gather_relative_noise = 0.45 * error;
+    if (error < 0.01) knobs.gather_relative_noise = 0.6 * error;
     knobs.gather_tolerance = 0.4 * error;
     apply_user_knobs(knobs, options);
     return knobs;
