@@ -19,7 +19,7 @@ Error cannot_write(const std::string& path, int error) {
     if (error == ENOENT) hint = "make the folder first";
     if (error == EISDIR) hint = "name a file in it";
     if (error == ENOSPC) hint = "free some space, or write to another disk";
-    return {ErrorCode::cannot_write, "cannot write " + path + ": " + std::strerror(error), path, hint};
+    return {ErrorCode::cannot_write, std::string("cannot be written: ") + std::strerror(error), path, hint};
 }
 
 /// The place behind symbolic links, so that renaming replaces the file and not the link.

@@ -69,7 +69,7 @@ TEST_F(AtomicFiles, SayWhyTheyCannotBeWritten) {
     const Result<void> written = write_file(missing, "x");
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::cannot_write);
-    EXPECT_NE(written.error().message.find(missing), std::string::npos);
+    EXPECT_NE(written.error().where.find(missing), std::string::npos);
     EXPECT_NE(written.error().message.find("No such file"), std::string::npos);
     EXPECT_EQ(write_file(folder.string(), "x").error().code, ErrorCode::cannot_write);
     EXPECT_EQ(write_file("", "x").error().code, ErrorCode::cannot_write);

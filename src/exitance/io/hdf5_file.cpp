@@ -264,7 +264,7 @@ Result<void> Hdf5Writer::write_file(const std::string& path) {
         if (size <= 0 || H5Fget_file_image(file_, image.data(), image.size()) != size) fail("the file");
         mend_superblock(image);
     }
-    if (!failure_.empty()) return Error{ErrorCode::cannot_write, "cannot write " + path + ": " + failure_, path, ""};
+    if (!failure_.empty()) return Error{ErrorCode::cannot_write, "cannot be written: " + failure_, path, ""};
     return exitance::write_file(path, image);
 }
 
@@ -272,8 +272,8 @@ Result<Hdf5Reader> Hdf5Reader::open(const std::string& path) {
     quieten_library();
     struct stat present;
     if (::stat(path.c_str(), &present) != 0)
-        return Error{ErrorCode::cannot_read, "cannot read " + path + ": " + std::strerror(errno), path, ""};
-    if (S_ISDIR(present.st_mode)) return Error{ErrorCode::cannot_read, path + " is a folder", path, ""};
+        return Error{ErrorCode::cannot_read, std::string("cannot be read: ") + std::strerror(errno), path, ""};
+    if (S_ISDIR(present.st_mode)) return Error{ErrorCode::cannot_read, "is a folder", path, ""};
     const Handle access(H5Pcreate(H5P_FILE_ACCESS));
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
     Hdf5Reader out;
@@ -281,7 +281,7 @@ Result<Hdf5Reader> Hdf5Reader::open(const std::string& path) {
     out.bytes_ = static_cast<std::uint64_t>(present.st_size);
     out.file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
     if (out.file_ < 0)
-        return Error{ErrorCode::bad_input, path + " is not an HDF5 file, or a damaged one" + library_says(), path,
+        return Error{ErrorCode::bad_input, "is not an HDF5 file, or a damaged one" + library_says(), path,
                      "solutions are the .h5 files that `exitance solve` writes"};
     return out;
 }
@@ -292,7 +292,7 @@ Hdf5Reader::~Hdf5Reader() {
 }
 
 void Hdf5Reader::fail(const std::string& name, const std::string& what) {
-    if (!error_) error_ = Error{ErrorCode::bad_input, path_ + ": data set " + name + " " + what, path_, ""};
+    if (!error_) error_ = Error{ErrorCode::bad_input, "data set " + name + " " + what, path_, ""};
 }
 
 bool Hdf5Reader::has(const std::string& name) const {

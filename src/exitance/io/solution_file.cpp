@@ -35,7 +35,7 @@ Result<Solution> load_solution(const std::string& path) {
     if (!opened) return opened.error();
     Hdf5Reader& file = *opened;
     const auto wrong = [&](const std::string& what) {
-        return Error{ErrorCode::bad_input, path + " " + what, path, "solve the scene again with this program"};
+        return Error{ErrorCode::bad_input, what, path, "solve the scene again with this program"};
     };
     const auto found = file.integer_attribute("exitance", "format");
     if (!found) return wrong("is an HDF5 file, but no solution of exitance");

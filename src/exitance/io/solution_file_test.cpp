@@ -163,7 +163,7 @@ TEST_F(SolutionFiles, ThatAreNoneAreErrors) {
         const Result<Solution> s = load_solution(path(name));
         ASSERT_FALSE(s);
         EXPECT_EQ(s.error().code, ErrorCode::bad_input);
-        EXPECT_NE(s.error().message.find(name), std::string::npos);
+        EXPECT_NE(s.error().where.find(name), std::string::npos);
     }
 }
 

@@ -77,7 +77,7 @@ LineReader::~LineReader() {
 }
 
 Error LineReader::read_error() const {
-    return {ErrorCode::cannot_read, "cannot read " + name_ + ": " + std::strerror(error_), name_, ""};
+    return {ErrorCode::cannot_read, std::string("cannot be read: ") + std::strerror(error_), name_, ""};
 }
 
 Error LineReader::error(std::string message, std::string hint) const {
