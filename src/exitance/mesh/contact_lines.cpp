@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "exitance/mesh/adaptive.hpp"
+
 namespace exitance {
 namespace {
 
@@ -111,7 +113,14 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
     while (!open.empty()) {
         const ElementId e = open.back();
         open.pop_back();
-        for (const auto& [a, b] : contacts.within(tree, e)) {
+        const std::vector<std::pair<Vec2, Vec2>> lines = contacts.within(tree, e);
+        // Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at.
+        constexpr std::size_t many = 24;
+        if (lines.size() > many) {
+            for (ElementId child : refine_element(tree, e)) open.push_back(child);
+            if (!tree.is_leaf(e)) continue;
+        }
+        for (const auto& [a, b] : lines) {
             const Vec2 d = b - a;
             const double length = std::hypot(d.x, d.y);
             const Vec2 normal = {-d.y / length, d.x / length};
