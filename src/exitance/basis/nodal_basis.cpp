@@ -14,22 +14,6 @@ const Patch& reference(Patch::Shape shape) {
 
 }  // namespace
 
-std::string_view basis_name(HierarchyBasis kind) {
-    switch (kind) {
-        case HierarchyBasis::haar:
-            return "haar";
-        case HierarchyBasis::flatlet2:
-            return "flatlet2";
-        case HierarchyBasis::flatlet3:
-            return "flatlet3";
-        case HierarchyBasis::multiwavelet2:
-            return "multiwavelet2";
-        case HierarchyBasis::multiwavelet3:
-            break;
-    }
-    return "multiwavelet3";
-}
-
 NodalBasis::NodalBasis(HierarchyBasis kind)
     : kind_(kind),
       order_(kind == HierarchyBasis::haar                                                ? 1
@@ -70,16 +54,24 @@ std::vector<Patch> NodalBasis::boxes(const Patch& p) const {
     return out;
 }
 
-void NodalBasis::functional(Shape shape, std::size_t k, const Patch& piece, std::span<double> out) const {
+std::vector<double> NodalBasis::functionals(Shape shape, std::span<const PlanarNode> nodes, const Patch& piece) const {
+    const std::size_t n = count(), m = monomial_count(shape);
     const auto in_parent = [](const Point& p) { return Vec2{p.x, p.y}; };
-    if (!flat_) return monomials(shape, in_parent(piece.at(of(piece.shape).nodes[k].at)), out);
-    const Patch box = boxes(piece)[k];
-    std::vector<double> term(out.size());
-    std::fill(out.begin(), out.end(), 0.0);
-    for (const PlanarNode& node : box.is_triangle() ? triangle_rule(4) : square_rule(3)) {
-        monomials(shape, in_parent(box.at(node.at)), term);
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] += node.weight * term[i];
+    std::vector<double> out(n * m, 0.0), term(m);
+    const std::vector<Patch> parts = flat_ ? boxes(piece) : std::vector<Patch>();
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto row = std::span(out).subspan(k * m, m);
+        if (nodes[k].weight == 0) continue;
+        if (!flat_) {
+            monomials(shape, in_parent(piece.at(nodes[k].at)), row);
+            continue;
+        }
+        for (const PlanarNode& node : parts[k].is_triangle() ? triangle_rule(4) : square_rule(3)) {
+            monomials(shape, in_parent(parts[k].at(node.at)), term);
+            for (std::size_t i = 0; i < m; ++i) row[i] += node.weight * term[i];
+        }
     }
+    return out;
 }
 
 NodalBasis::OfShape NodalBasis::make(Shape shape) const {
@@ -97,20 +89,7 @@ NodalBasis::OfShape NodalBasis::make(Shape shape) const {
         out.nodes.resize(n, {{1.0 / 3, 1.0 / 3}, 0});
     }
     // The polynomial whose weighted distance to the numbers is least: (V^T W V) c = V^T W numbers.
-    const auto matrix = [&](const Patch& piece, const OfShape& of_piece) {
-        std::vector<double> V(n * m, 0.0);
-        for (std::size_t k = 0; k < n; ++k) {
-            if (of_piece.nodes[k].weight == 0) continue;
-            if (flat_) {
-                functional(shape, k, piece, std::span(V).subspan(k * m, m));
-            } else {
-                const Point p = piece.at(of_piece.nodes[k].at);
-                monomials(shape, {p.x, p.y}, std::span(V).subspan(k * m, m));
-            }
-        }
-        return V;
-    };
-    const std::vector<double> V = matrix(reference(shape), out);
+    const std::vector<double> V = functionals(shape, out.nodes, reference(shape));
     std::vector<double> normal(m * m, 0.0);
     out.fit.assign(m * n, 0.0);
     for (std::size_t k = 0; k < n; ++k) {
@@ -124,7 +103,7 @@ NodalBasis::OfShape NodalBasis::make(Shape shape) const {
         if (triangle && way != Cut::both) continue;
         const std::vector<Patch> pieces = cut(reference(shape), way);
         for (std::size_t c = 0; c < pieces.size(); ++c) {
-            const std::vector<double> child = matrix(pieces[c], out);
+            const std::vector<double> child = functionals(shape, out.nodes, pieces[c]);
             std::vector<double>& push = out.push[static_cast<std::size_t>(way) - 1][c];
             std::vector<double>& pull = out.pull[static_cast<std::size_t>(way) - 1][c];
             push.assign(n * n, 0.0);

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "exitance/geometry/quadrature.hpp"
@@ -67,9 +66,9 @@ class NodalBasis {
     };
     const OfShape& of(Shape shape) const { return shape == Shape::triangle ? triangle_ : square_; }
     OfShape make(Shape shape) const;
-    /// Mean of each monomial over what number k stands for, on the piece of the shape that `piece` (a patch in the
-    /// plane z = 0) cuts out.
-    void functional(Shape shape, std::size_t k, const Patch& piece, std::span<double> out) const;
+    /// Each monomial of the shape (columns) as each number (rows) of a piece of it sees it: at the piece's node, or in
+    /// the mean over its box. The piece is a patch in the plane z = 0.
+    std::vector<double> functionals(Shape shape, std::span<const PlanarNode> nodes, const Patch& piece) const;
     std::vector<Patch> boxes(const Patch& piece) const;
 
     HierarchyBasis kind_;
@@ -77,7 +76,5 @@ class NodalBasis {
     bool flat_;
     OfShape square_, triangle_;
 };
-
-std::string_view basis_name(HierarchyBasis kind);
 
 }  // namespace exitance

@@ -262,8 +262,9 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
 /// What the rays have shown becomes bits where it is yes or no, and part of the block where it is in between.
 void LinkJudge::hand_over(bool open, Result& out) {
     if (n_ == 1) {
-        out.link.factor = static_cast<float>(form_factor_ * (open ? 1 : visible_[0]));
-        out.departure[0] *= open ? 1 : visible_[0];
+        const double share = open ? 1 : visible_[0];
+        out.link.factor = static_cast<float>(form_factor_ * share);
+        for (double& d : out.departure) d *= share;
         return;
     }
     double share = 1;

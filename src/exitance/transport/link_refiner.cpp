@@ -8,11 +8,7 @@
 namespace exitance {
 
 struct LinkRefiner::Block {
-    std::vector<Link> links;
-    std::vector<bool> open;
-    std::vector<Departure> departure;
-    std::vector<Shadowed> shadowed;
-    std::vector<double> squared_error, light;
+    std::vector<Found> links;
     std::vector<float> blocks;
     std::vector<LinkPair> cut;        ///< Their sources are to be cut.
     std::vector<PieceId> candidates;  ///< Of those.
@@ -22,6 +18,36 @@ struct LinkRefiner::Block {
 namespace {
 
 constexpr std::size_t block_size = 128;
+
+double mean_square(const LinkJudge::Departure& d) {
+    double sum = 0;
+    for (double v : d) sum += v * v;
+    return sum / static_cast<double>(d.size());
+}
+
+/// What all links of a receiver bring to it.
+struct ReceivedLight {
+    LinkJudge::Departure departure{};
+    std::array<double, 9> shadowed{}, variance{};
+
+    void add(const LinkJudge::Result& link) {
+        for (std::size_t c = 0; c < departure.size(); ++c) departure[c] += link.departure[c];
+        for (std::size_t k = 0; k < shadowed.size(); ++k)
+            shadowed[k] += link.shadowed[k], variance[k] += link.variance[k];
+    }
+
+    /// Of interpolation, mean square: the departure from a polynomial, and where shadowed light varies over the
+    /// receiver by more than the rays' errors, a part of that, (W/m^2)^2.
+    double squared_error(const LinkSites& sites, ElementId e) const {
+        double mean = 0, square = 0, noise = 0;
+        for (std::size_t k = 0; k < sites.nodes(); ++k) {
+            const double w = sites.weight(e, k);
+            mean += w * shadowed[k], square += w * shadowed[k] * shadowed[k], noise += w * variance[k];
+        }
+        constexpr double share = 0.5;
+        return mean_square(departure) + share * share * std::max(0.0, square - mean * mean - noise);
+    }
+};
 
 /// An element takes its parent's function.
 void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalField& field) {
@@ -37,11 +63,14 @@ void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalFie
 
 }  // namespace
 
+LinkPair LinkRefiner::pair_of(const Found& found) {
+    return {found.result.link.receiver, found.result.link.source, found.open ? View::open : View::mixed};
+}
+
 std::vector<LinkPair> LinkRefiner::pairs_to_begin_with() const {
     std::vector<LinkPair> out;
     if (begun_) {
-        for (std::size_t i = 0; i < links_.size(); ++i)
-            out.push_back({links_[i].receiver, links_[i].source, open_[i] ? View::open : View::mixed});
+        for (const Found& found : links_) out.push_back(pair_of(found));
         return out;
     }
     const Scene& scene = sites_.stage().scene;
@@ -95,29 +124,18 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
                     result.link.block = static_cast<std::uint32_t>(block.blocks.size());
                     block.blocks.insert(block.blocks.end(), judge.block().begin(), judge.block().end());
                 }
-                block.links.push_back(result.link);
-                block.open.push_back(pair.view == View::open);
-                block.departure.push_back(result.departure);
-                block.shadowed.push_back({result.shadowed, result.variance});
-                block.squared_error.push_back(result.squared_error);
-                block.light.push_back(result.light);
+                block.links.push_back({result, pair.view == View::open});
             }
             block.rays = judge.rays(), block.form_factors = judge.form_factors();
         });
         pairs.clear();
         std::vector<PieceId> next_pool;
         for (Block& block : blocks) {
-            for (Link& link : block.links) {
-                if (sites_.nodes() > 1 && link.block != Link::far)
-                    link.block += static_cast<std::uint32_t>(blocks_.size());
-                links_.push_back(link);
+            for (Found& found : block.links) {
+                if (found.result.near) found.result.link.block += static_cast<std::uint32_t>(blocks_.size());
+                links_.push_back(found);
             }
             blocks_.insert(blocks_.end(), block.blocks.begin(), block.blocks.end());
-            open_.insert(open_.end(), block.open.begin(), block.open.end());
-            departure_.insert(departure_.end(), block.departure.begin(), block.departure.end());
-            shadowed_.insert(shadowed_.end(), block.shadowed.begin(), block.shadowed.end());
-            light_.insert(light_.end(), block.light.begin(), block.light.end());
-            squared_error_.insert(squared_error_.end(), block.squared_error.begin(), block.squared_error.end());
             rays_ += block.rays, form_factors_ += block.form_factors;
             for (LinkPair pair : block.cut) {
                 pair.first += static_cast<std::uint32_t>(next_pool.size());
@@ -132,76 +150,35 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
     }
 }
 
-void LinkRefiner::remove(const std::vector<bool>& gone) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-        if (gone[i]) continue;
-        links_[kept] = links_[i], open_[kept] = open_[i];
-        departure_[kept] = departure_[i], shadowed_[kept] = shadowed_[i];
-        squared_error_[kept] = squared_error_[i], light_[kept] = light_[i];
-        ++kept;
-    }
-    links_.resize(kept), open_.resize(kept), departure_.resize(kept), shadowed_.resize(kept);
-    squared_error_.resize(kept), light_.resize(kept);
-}
-
 std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalField* const> also,
                                                  const LinkTolerance& tolerance) {
-    const auto squared = [](const Departure& d) {
-        double sum = 0;
-        for (double v : d) sum += v * v;
-        return sum / static_cast<double>(d.size());
-    };
-    Field<ElementId, Departure> all(tree_.size());
-    Field<ElementId, Shadowed> shadowed(tree_.size());
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-        const ElementId p = links_[i].receiver;
-        for (std::size_t c = 0; c < departure_[i].size(); ++c) all[p][c] += departure_[i][c];
-        for (std::size_t k = 0; k < sites_.nodes(); ++k) {
-            shadowed[p].light[k] += shadowed_[i].light[k];
-            shadowed[p].variance[k] += shadowed_[i].variance[k];
-        }
-    }
-    // Where shadowed light varies over a receiver by more than the rays' errors, a part of that is no polynomial.
-    const auto unevenness = [&](ElementId e) {
-        double mean = 0, square = 0, noise = 0;
-        for (std::size_t k = 0; k < sites_.nodes(); ++k) {
-            const double w = sites_.weight(e, k), v = shadowed[e].light[k];
-            mean += w * v, square += w * v * v, noise += w * shadowed[e].variance[k];
-        }
-        constexpr double share = 0.5;
-        return share * share * std::max(0.0, square - mean * mean - noise);
-    };
+    Field<ElementId, ReceivedLight> received(tree_.size());
+    for (const Found& found : links_) received[found.result.link.receiver].add(found.result);
     std::vector<ElementId> leaves;
     Field<ElementId, std::uint8_t> too_much(tree_.size(), 0);
     interpolation_ = 0;
-    for (ElementId e : all.ids()) {
-        const double error = tree_.area(e) * (squared(all[e]) + unevenness(e));
+    for (ElementId e : received.ids()) {
+        const double error = tree_.area(e) * received[e].squared_error(sites_, e);
         interpolation_ += error;
-        too_much[e] = error > tolerance.interpolation * tolerance.interpolation;
-        if (!too_much[e] || !tree_.is_leaf(e)) continue;
-        if (tree_.area(e) > 2 * tolerance.least_area)
-            leaves.push_back(e);
-        else
-            too_much[e] = 0;
-    }
-    std::vector<bool> gone(links_.size());
-    std::vector<LinkPair> pairs;
-    // A link that hardly departs stays where it is; all such ones of a receiver together are a share of what is
-    // allowed.
-    const double negligible = 0.03 * tolerance.interpolation;
-    std::vector<std::size_t> inherited;
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-        const ElementId p = links_[i].receiver;
-        if (!too_much[p] || (open_[i] && tree_.area(p) * squared(departure_[i]) < negligible * negligible)) continue;
-        gone[i] = true;
-        inherited.push_back(i);
+        if (error <= tolerance.interpolation * tolerance.interpolation) continue;
+        if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
+        too_much[e] = 1;
+        if (tree_.is_leaf(e)) leaves.push_back(e);
     }
     cut_elements(leaves, b, also);
-    for (std::size_t i : inherited)
-        for (ElementId child : tree_.children(links_[i].receiver))
-            pairs.push_back({child, links_[i].source, open_[i] ? View::open : View::mixed});
-    remove(gone);
+    // A link that hardly departs stays; all such ones of a receiver together are a share of what is allowed.
+    const double negligible = 0.03 * tolerance.interpolation;
+    std::vector<LinkPair> pairs;
+    std::erase_if(links_, [&](const Found& found) {
+        const ElementId p = found.result.link.receiver;
+        const double error = tree_.area(p) * mean_square(found.result.departure);
+        if (!too_much[p] || (found.open && error < negligible * negligible)) return false;
+        for (ElementId child : tree_.children(p)) {
+            pairs.push_back(pair_of(found));
+            pairs.back().receiver = child;
+        }
+        return true;
+    });
     return pairs;
 }
 
@@ -210,8 +187,7 @@ void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const
     roughness_ = b.roughness();
     std::vector<LinkPair> pairs = pairs_to_begin_with();
     begun_ = true;
-    links_.clear(), open_.clear(), departure_.clear(), shadowed_.clear(), squared_error_.clear(), light_.clear(),
-        blocks_.clear();
+    links_.clear(), blocks_.clear();
     for (int round = 0; !pairs.empty(); ++round) {
         judge(std::move(pairs), b, tolerance, stop);
         if (stop.requested() || limited_) return;
@@ -222,18 +198,29 @@ void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const
 
 double LinkRefiner::error() const {
     double sum = interpolation_;
-    for (double e : squared_error_) sum += e;
+    for (const Found& found : links_) sum += found.result.squared_error;
     return std::sqrt(sum);
 }
 
 double LinkRefiner::open_share() const {
     double open = 0, all = 0;
-    for (std::size_t i = 0; i < links_.size(); ++i) all += light_[i], open += open_[i] ? light_[i] : 0;
+    for (const Found& found : links_) all += found.result.light, open += found.open ? found.result.light : 0;
     return all > 0 ? open / all : 1;
 }
 
 Links LinkRefiner::make_links() const {
-    return Links(sites_, links_, blocks_);
+    const std::size_t size = sites_.nodes() * sites_.nodes();
+    std::vector<Link> links;
+    std::vector<float> blocks;  // those of links that are still there
+    links.reserve(links_.size());
+    for (const Found& found : links_) {
+        links.push_back(found.result.link);
+        if (!found.result.near) continue;
+        const auto block = blocks_.begin() + found.result.link.block;
+        links.back().block = static_cast<std::uint32_t>(blocks.size());
+        blocks.insert(blocks.end(), block, block + static_cast<long>(size));
+    }
+    return Links(sites_, std::move(links), std::move(blocks));
 }
 
 }  // namespace exitance

@@ -40,29 +40,25 @@ class LinkRefiner {
     std::size_t form_factors() const { return form_factors_; }
 
   private:
-    using Departure = LinkJudge::Departure;
+    /// A link, and what refining needs to know of it.
+    struct Found {
+        LinkJudge::Result result;
+        bool open = false;  ///< Is its view certain?
+    };
     /// What a block of pairs came to.
     struct Block;
+    static LinkPair pair_of(const Found& found);
     std::vector<LinkPair> pairs_to_begin_with() const;
     void judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                const StopRequest& stop);
     /// Cuts receivers whose light departs too much from a polynomial; returns the pairs that their parts inherit.
     std::vector<LinkPair> cut_receivers(NodalField& b, std::span<NodalField* const> also,
                                         const LinkTolerance& tolerance);
-    void remove(const std::vector<bool>& links);
 
     ElementTree& tree_;
     LinkSites& sites_;
     Field<ElementId, double> roughness_;
-    std::vector<Link> links_;
-    std::vector<bool> open_;  ///< By link: is its view certain?
-    std::vector<Departure> departure_;
-    /// Of a receiver, all its links together: see LinkJudge::Result.
-    struct Shadowed {
-        std::array<double, 9> light{}, variance{};
-    };
-    std::vector<Shadowed> shadowed_;             ///< By link.
-    std::vector<double> squared_error_, light_;  ///< By link; light: before anything blocks it, w E A.
+    std::vector<Found> links_;
     std::vector<float> blocks_;
     double interpolation_ = 0;  ///< Squared, as in error().
     std::size_t rays_ = 0, form_factors_ = 0;

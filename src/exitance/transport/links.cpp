@@ -1,6 +1,7 @@
 #include "exitance/transport/links.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/transport/link_kernel.hpp"
@@ -72,17 +73,20 @@ void Links::gather_kernels(std::size_t row, const NodalField& b, NodalField& E) 
     const std::size_t count = sites_->nodes();
     for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
         const ElementId q = source_[i];
-        const bool far = block_[i] == Link::far;
-        const float* const block = far ? nullptr : &blocks_[block_[i]];
-        const SourceNodes<groups> source(*sites_, q);
+        std::optional<SourceNodes<groups>> source;
+        const float* block = nullptr;
+        if (block_[i] == Link::far)
+            source.emplace(*sites_, q);
+        else
+            block = &blocks_[block_[i]];
         four::Real light[bands][groups];
         for (std::size_t band = 0; band < bands; ++band)
             for (std::size_t g = 0; g < groups; ++g) light[band][g] = four::load(b.at(q, band) + 4 * g);
         const std::uint32_t* const visible = &visible_[i * words_];
         for (std::size_t k = 0; k < count; ++k) {
             four::Real K[groups]{};
-            if (far)
-                source.kernel(sites_->node(p, k), n, K);
+            if (source)
+                source->kernel(sites_->node(p, k), n, K);
             else
                 for (std::size_t l = 0; l < 4 * groups; ++l)
                     K[l / 4][l % 4] = l < count ? static_cast<double>(block[k * count + l]) : 0.0;
