@@ -243,6 +243,10 @@ void declare(CLI::App& app, SolveArguments& arguments) {
         ->group("Limits");
     declare_json(app, arguments);
     declare_work(app, arguments, o.threads);
+    add_choice(app, "--schedule", schedule_names, o.schedule,
+               "How work comes to threads; default stealing. The result does not depend on it");
+    app.add_option("--trace", arguments.trace, "Write every task's time, thread and data (Chrome trace format, .json)")
+        ->type_name("FILE");
 }
 
 void declare(CLI::App& app, ProbeArguments& arguments) {

@@ -29,6 +29,7 @@ struct SolveArguments : CommonArguments {
     std::string scene, output;
     SolveOptions options;
     std::optional<double> time_limit;  ///< Of the whole run, seconds.
+    std::string trace;                 ///< Where to write what parallel loops did; empty: nowhere.
     bool dry_run = false;
 };
 

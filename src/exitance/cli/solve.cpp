@@ -12,6 +12,7 @@
 #include "exitance/io/atomic_file.hpp"
 #include "exitance/io/scene_file.hpp"
 #include "exitance/io/solution_file.hpp"
+#include "exitance/io/trace_file.hpp"
 #include "exitance/methods/forecast.hpp"
 #include "exitance/methods/solve_scene.hpp"
 
@@ -47,6 +48,34 @@ ExitCode show_forecast(const SolveArguments& arguments, const Scene& scene, Term
     return ExitCode::done;
 }
 
+/// The trace of a run, where one is asked for: recorded while it lives.
+class Tracing {
+  public:
+    Tracing(const std::string& path, Progress& inner) : path_(path), inner_(inner) {
+        if (path.empty()) return;
+        trace_.emplace();
+        progress_.emplace(inner, *trace_);
+        set_task_trace(&*trace_);
+    }
+    ~Tracing() { set_task_trace(nullptr); }
+    Tracing(const Tracing&) = delete;
+    Tracing& operator=(const Tracing&) = delete;
+
+    Progress& progress() { return progress_ ? *progress_ : inner_; }
+    Result<void> write() {
+        if (!trace_) return {};
+        set_task_trace(nullptr);
+        trace_->finish();
+        return write_trace(*trace_, path_);
+    }
+
+  private:
+    std::string path_;
+    Progress& inner_;
+    std::optional<TaskTrace> trace_;
+    std::optional<TracedProgress> progress_;
+};
+
 ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) {
     if (const std::optional<ExitCode> signal = signals.received()) return *signal;
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
@@ -61,8 +90,12 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
     const SignalGuard signals(stop);
     if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit));
     set_threads(arguments.options.threads);
+    set_schedule(arguments.options.schedule);
     if (const Result<void> output = check_output(arguments.output); !arguments.dry_run && !output)
         return terminal.fail(output.error());
+    if (!arguments.trace.empty())
+        if (const Result<void> output = check_output(arguments.trace); !output) return terminal.fail(output.error());
+    Tracing tracing(arguments.trace, terminal.progress());
 
     Stopwatch reading;
     const CheckedScene checked = load_scene(arguments.scene);
@@ -71,7 +104,7 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
     const double read_seconds = reading.seconds();
     if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
 
-    Result<Solution> solution = solve_scene(*checked.scene, arguments.options, terminal.progress(), stop);
+    Result<Solution> solution = solve_scene(*checked.scene, arguments.options, tracing.progress(), stop);
     if (!solution && signals.received()) return *signals.received();
     if (!solution) return terminal.fail(solution.error());
 
@@ -82,7 +115,7 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
 
-    terminal.progress().phase("write");
+    tracing.progress().phase("write");
     Stopwatch writing;
     if (const Result<void> written = write_solution(arguments.output, *solution); !written)
         return terminal.fail(written.error());
@@ -90,6 +123,7 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
     terminal.progress().finish();
+    if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
 
     if (arguments.json) {
         terminal.print(statistics_json(statistics));

@@ -6,12 +6,82 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <memory>
+
+#include "exitance/core/trace.hpp"
 
 namespace exitance {
 namespace {
+
 std::unique_ptr<tbb::global_control> control;
-}
+Schedule schedule_in_force = Schedule::stealing;
+
+/// The ranges of one loop.
+class Loop {
+  public:
+    Loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
+         const Work& work)
+        : count_(count), grain_(grain), body_(body), work_(work) {}
+
+    void run() {
+        // What loops within tasks do is a part of those tasks.
+        TaskTrace* const trace = detail::traced_task ? nullptr : task_trace();
+        if (!trace) return run_workers();
+        TaskTrace::Loop record = trace->begin_loop(work_.name, count_, grain_, tasks());
+        records_.resize(workers());
+        trace_ = trace;
+        run_workers();
+        for (std::vector<TaskTrace::Task>& tasks : records_)
+            record.tasks.insert(record.tasks.end(), tasks.begin(), tasks.end());
+        trace->end_loop(std::move(record));
+    }
+
+  private:
+    std::size_t tasks() const { return (count_ + grain_ - 1) / grain_; }
+    std::size_t workers() const { return std::min(tasks(), static_cast<std::size_t>(threads())); }
+
+    void run_workers() {
+        if (workers() == 1) {
+            for (std::size_t task = 0; task < tasks(); ++task) run_task(task, 0);
+            return;
+        }
+        std::vector<std::uint32_t> homes;
+        if (work_.by_polygon && schedule_in_force != Schedule::dynamic) {
+            homes.resize(tasks());
+            for (std::size_t t = 0; t < homes.size(); ++t)
+                homes[t] = static_cast<std::uint32_t>(work_.polygon_of(t * grain_));
+        }
+        TaskQueues queues(schedule_in_force, tasks(), workers(), homes);
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, workers()),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t worker = range.begin(); worker < range.end(); ++worker)
+                    for (std::size_t task; (task = queues.next(worker)) != TaskQueues::none;) run_task(task, worker);
+            },
+            tbb::simple_partitioner());
+    }
+
+    void run_task(std::size_t task, std::size_t worker) {
+        const std::size_t first = task * grain_, last = std::min(count_, first + grain_);
+        if (!trace_) return body_(first, last);
+        TaskTrace::Task record{.index = task, .worker = worker, .begin = trace_->now()};
+        if (work_.polygon_of) record.polygon = work_.polygon_of(first);
+        TaskTrace::Task* const outer = std::exchange(detail::traced_task, &record);
+        body_(first, last);
+        detail::traced_task = outer;
+        record.end = trace_->now();
+        records_[worker].push_back(record);
+    }
+
+    std::size_t count_, grain_;
+    const std::function<void(std::size_t, std::size_t)>& body_;
+    const Work& work_;
+    TaskTrace* trace_ = nullptr;
+    std::vector<std::vector<TaskTrace::Task>> records_;  ///< By worker.
+};
+
+}  // namespace
 
 void set_threads(int count) {
     control.reset();
@@ -24,12 +94,17 @@ int threads() {
     return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
-void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
-    if (count == 0) return;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, count, grain),
-        [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
-        tbb::simple_partitioner());
+void set_schedule(Schedule schedule) {
+    schedule_in_force = schedule;
+}
+
+Schedule schedule() {
+    return schedule_in_force;
+}
+
+void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
+                     const Work& work) {
+    if (count > 0) Loop(count, grain, body, work).run();
 }
 
 void run_alone(const std::function<void()>& body) {

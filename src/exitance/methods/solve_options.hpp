@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "exitance/core/schedule.hpp"
 #include "exitance/solve/relaxation.hpp"
 
 namespace exitance {
@@ -93,7 +94,8 @@ struct SolveOptions {
     bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
     std::optional<FormFactorKind> form_factors = {};
 
-    int threads = 0;  ///< 0: all cores. Results do not depend on it.
+    int threads = 0;                         ///< 0: all cores. Results do not depend on it.
+    Schedule schedule = Schedule::stealing;  ///< How work comes to threads. Likewise.
     std::uint64_t seed = 1;
     std::optional<std::size_t> memory_limit_bytes = {};  ///< Of the whole process.
 

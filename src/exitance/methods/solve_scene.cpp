@@ -42,7 +42,7 @@ class Solver {
             (method.id == Method::wavelet && options.basis);
         statistics().basis = chosen ? name_in(basis_names, *options.basis) : method.basis;
         statistics().threads = threads();
-        statistics().schedule = "stealing";
+        statistics().schedule = name_in(schedule_names, schedule());
         statistics().surfaces = scene.surfaces().size();
         statistics().converged = true;
         solution_.indirect = dark(stage_);
@@ -285,6 +285,7 @@ class Solver {
 Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
                              const StopRequest& stop) {
     if (options.threads > 0) set_threads(options.threads);
+    set_schedule(options.schedule);
     const Stopwatch watch;
     Result<Solution> solution = Solver(scene, options, progress, stop).run();
     if (!solution) return solution;

@@ -25,11 +25,14 @@ class Interpolation {
         std::vector<ElementId> active = out_.tree.leaves();
         for (int round = 0;; ++round) {
             fitted_.resize(out_.tree.size());
-            parallel_ranges(active.size(), 8, [&](std::size_t begin, std::size_t end) {
-                DirectLight::Workspace workspace;
-                ReceiverLight light;
-                for (std::size_t i = begin; i < end; ++i) fitted_[active[i]] = fit(active[i], light, workspace);
-            });
+            parallel_ranges(active.size(), 8,
+                            [&](std::size_t begin, std::size_t end) {
+                                DirectLight::Workspace workspace;
+                                ReceiverLight light;
+                                for (std::size_t i = begin; i < end; ++i)
+                                    fitted_[active[i]] = fit(active[i], light, workspace);
+                            },
+                            {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
             report.error = error();
             report.interrupted = stop.requested();
             if (report.error <= options_.tolerance || round == options_.max_depth || report.interrupted ||

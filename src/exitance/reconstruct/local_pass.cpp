@@ -4,6 +4,7 @@
 
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/trace.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -139,11 +140,14 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         // request to stop is heard at every element: what it leaves out is not used.
         const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
         for (std::size_t first = 0; first < active.size() && !stop.requested(); first += slice) {
-            parallel_ranges(std::min(slice, active.size() - first), 1, [&](std::size_t begin, std::size_t end) {
-                GatherWorkspace workspace;
-                for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
-                    sampled_[active[i]] = sample(active[i], b, demand, workspace);
-            });
+            parallel_ranges(std::min(slice, active.size() - first), 1,
+                            [&](std::size_t begin, std::size_t end) {
+                                GatherWorkspace workspace;
+                                for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
+                                    sampled_[active[i]] = sample(active[i], b, demand, workspace),
+                                    note_touched("rays", sampled_[active[i]].rays);
+                            },
+                            {"gather", [&](std::size_t i) { return tree_.region(active[first + i]).value; }});
             // The first round is about half of the work, every further one half of what is left.
             const double done = static_cast<double>(first) / static_cast<double>(active.size());
             progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));

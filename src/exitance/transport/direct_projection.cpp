@@ -51,13 +51,15 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
     double share = 0;  // of the squared error that one element may have
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
-        parallel_ranges(active.size(), 8, [&](std::size_t begin, std::size_t end) {
-            if (options.may_give_up && stop.requested()) return;
-            DirectLight::Workspace workspace;
-            ReceiverLight light;
-            for (std::size_t i = begin; i < end; ++i)
-                out.fit[active[i]] = fit_direct_light(stage, out.tree, active[i], light, workspace);
-        });
+        parallel_ranges(active.size(), 8,
+                        [&](std::size_t begin, std::size_t end) {
+                            if (options.may_give_up && stop.requested()) return;
+                            DirectLight::Workspace workspace;
+                            ReceiverLight light;
+                            for (std::size_t i = begin; i < end; ++i)
+                                out.fit[active[i]] = fit_direct_light(stage, out.tree, active[i], light, workspace);
+                        },
+                        {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
         if (options.may_give_up && stop.requested()) return {};
         if (depth == 0) {
             double flux = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/trace.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -13,6 +14,10 @@ struct LinkRefiner::Block {
     std::vector<LinkPair> cut;        ///< Their sources are to be cut.
     std::vector<PieceId> candidates;  ///< Of those.
     std::size_t rays = 0, form_factors = 0;
+
+    std::size_t bytes() const {
+        return links.size() * sizeof(Found) + blocks.size() * 4 + cut.size() * sizeof(LinkPair) + candidates.size() * 4;
+    }
 };
 
 namespace {
@@ -105,29 +110,36 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
         LinkTolerance now = tolerance;
         limited_ |= links_.size() + pairs.size() > tolerance.most_links;
         if (stop.requested() || limited_) now.error = HUGE_VAL;
-        parallel_for(blocks.size(), 1, [&](std::size_t i) {
-            LinkJudge judge(sites_, b, roughness_, now);
-            Block& block = blocks[i];
-            for (std::size_t k = i * block_size; k < std::min(pairs.size(), (i + 1) * block_size); ++k) {
-                LinkPair pair = pairs[k];
-                LinkJudge::Result result = judge.judge(pair, pool);
-                if (result.verdict == LinkJudge::Verdict::drop) continue;
-                if (result.verdict == LinkJudge::Verdict::cut_source) {
-                    const auto candidates = pair.view == View::mixed ? judge.candidates() : std::span<const PieceId>();
-                    pair.first = static_cast<std::uint32_t>(block.candidates.size());
-                    pair.count = static_cast<std::uint32_t>(candidates.size());
-                    block.candidates.insert(block.candidates.end(), candidates.begin(), candidates.end());
-                    block.cut.push_back(pair);
-                    continue;
+        parallel_for(
+            blocks.size(), 1,
+            [&](std::size_t i) {
+                LinkJudge judge(sites_, b, roughness_, now);
+                Block& block = blocks[i];
+                for (std::size_t k = i * block_size; k < std::min(pairs.size(), (i + 1) * block_size); ++k) {
+                    LinkPair pair = pairs[k];
+                    note_source(tree_.region(pair.source).value);
+                    LinkJudge::Result result = judge.judge(pair, pool);
+                    if (result.verdict == LinkJudge::Verdict::drop) continue;
+                    if (result.verdict == LinkJudge::Verdict::cut_source) {
+                        const auto candidates =
+                            pair.view == View::mixed ? judge.candidates() : std::span<const PieceId>();
+                        pair.first = static_cast<std::uint32_t>(block.candidates.size());
+                        pair.count = static_cast<std::uint32_t>(candidates.size());
+                        block.candidates.insert(block.candidates.end(), candidates.begin(), candidates.end());
+                        block.cut.push_back(pair);
+                        continue;
+                    }
+                    if (result.near) {
+                        result.link.block = static_cast<std::uint32_t>(block.blocks.size());
+                        block.blocks.insert(block.blocks.end(), judge.block().begin(), judge.block().end());
+                    }
+                    block.links.push_back({result, pair.view == View::open});
                 }
-                if (result.near) {
-                    result.link.block = static_cast<std::uint32_t>(block.blocks.size());
-                    block.blocks.insert(block.blocks.end(), judge.block().begin(), judge.block().end());
-                }
-                block.links.push_back({result, pair.view == View::open});
-            }
-            block.rays = judge.rays(), block.form_factors = judge.form_factors();
-        });
+                block.rays = judge.rays(), block.form_factors = judge.form_factors();
+                note_touched("rays", block.rays), note_touched("links", block.links.size());
+                note_touched("bytes", block.bytes());
+            },
+            {"judge links", [&](std::size_t i) { return tree_.region(pairs[i * block_size].receiver).value; }, true});
         pairs.clear();
         std::vector<PieceId> next_pool;
         for (Block& block : blocks) {

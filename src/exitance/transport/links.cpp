@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/trace.hpp"
 #include "exitance/transport/link_kernel.hpp"
 
 namespace exitance {
@@ -103,14 +104,17 @@ void Links::gather_kernels(std::size_t row, const NodalField& b, NodalField& E) 
 
 void Links::gather(const NodalField& b, NodalField& E) const {
     E.clear();
-    parallel_for(receiver_.size(), grain, [&](std::size_t row) {
-        if (sites_->nodes() == 1)
-            gather_constants(row, b, E);
-        else if (sites_->nodes() == 4)
-            gather_kernels<1>(row, b, E);
-        else
-            gather_kernels<3>(row, b, E);
-    });
+    parallel_for(receiver_.size(), grain,
+                 [&](std::size_t row) {
+                     if (sites_->nodes() == 1)
+                         gather_constants(row, b, E);
+                     else if (sites_->nodes() == 4)
+                         gather_kernels<1>(row, b, E);
+                     else
+                         gather_kernels<3>(row, b, E);
+                     note_touched("links", first_[row + 1] - first_[row]);
+                 },
+                 {"gather links", [&](std::size_t row) { return sites_->tree().region(receiver_[row]).value; }, true});
 }
 
 LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const LeafNumbering& numbering)

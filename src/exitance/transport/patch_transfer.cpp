@@ -1,6 +1,7 @@
 #include "exitance/transport/patch_transfer.hpp"
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/trace.hpp"
 #include "exitance/transport/form_factor.hpp"
 #include "exitance/transport/hemisphere.hpp"
 
@@ -100,12 +101,15 @@ double PatchTransfer::form_factor(ElementId receiver, ElementId source, Workspac
 
 void PatchTransfer::column(std::span<const ElementId> receivers, ElementId source, std::span<float> out) const {
     const std::vector<Point> outline = tree_.outline(source);
-    parallel_ranges(receivers.size(), 64, [&](std::size_t begin, std::size_t end) {
-        Workspace workspace;
-        for (std::size_t i = begin; i < end; ++i)
-            out[i] = static_cast<float>(form_factor(receivers[i], source, outline, workspace));
-        count(workspace);
-    });
+    parallel_ranges(receivers.size(), 64,
+                    [&](std::size_t begin, std::size_t end) {
+                        Workspace workspace;
+                        for (std::size_t i = begin; i < end; ++i)
+                            out[i] = static_cast<float>(form_factor(receivers[i], source, outline, workspace));
+                        count(workspace);
+                        note_source(tree_.region(source).value);
+                    },
+                    {"column", [&](std::size_t i) { return tree_.region(receivers[i]).value; }});
 }
 
 DenseTransport::DenseTransport(const PatchTransfer& transfer, const LeafNumbering& numbering, const PatchLevel& level,
