@@ -239,6 +239,10 @@ void declare(CLI::App& app, SolveArguments& arguments) {
            "Such as 4G")
         ->type_name("SIZE")
         ->group("Limits");
+    add_positive(app, "--checkpoint-every", arguments.checkpoint_every, "SECONDS",
+                 "Keep the state in FILE.checkpoint beside the output")
+        ->group("Limits");
+    app.add_flag("--resume", arguments.resume, "Go on from that state, if there is one")->group("Limits");
     app.add_flag("--dry-run", arguments.dry_run, "Counts and a forecast; nothing is solved or written")
         ->group("Limits");
     declare_json(app, arguments);

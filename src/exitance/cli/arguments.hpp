@@ -28,8 +28,10 @@ struct CommonArguments {
 struct SolveArguments : CommonArguments {
     std::string scene, output;
     SolveOptions options;
-    std::optional<double> time_limit;  ///< Of the whole run, seconds.
-    std::string trace;                 ///< Where to write what parallel loops did; empty: nowhere.
+    std::optional<double> time_limit;        ///< Of the whole run, seconds.
+    std::string trace;                       ///< Where to write what parallel loops did; empty: nowhere.
+    std::optional<double> checkpoint_every;  ///< Seconds.
+    bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
 };
 

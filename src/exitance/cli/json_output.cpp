@@ -101,6 +101,14 @@ std::string options_json(const SolveOptions& o) {
     return dump(json, -1);
 }
 
+std::vector<std::pair<std::string, std::string>> option_facts(const SolveOptions& options) {
+    std::vector<std::pair<std::string, std::string>> facts;
+    const Json json = Json::parse(options_json(options));
+    for (const auto& [name, value] : json.items()) facts.emplace_back(name, dump(value, -1));
+    facts.emplace_back("memory_limit", dump(value_or_null(options.memory_limit_bytes), -1));
+    return facts;
+}
+
 std::string check_json(const CheckedScene& checked) {
     const std::size_t surfaces = checked.scene ? checked.scene->surfaces().size() : 0;
     Json errors = to_json(checked.findings, Finding::Kind::error);

@@ -24,6 +24,9 @@ std::string forecast_json(const Forecast& forecast);
 /// The options in force, as the solution records them: what the light depends on, and hence neither threads nor limits.
 std::string options_json(const SolveOptions& options);
 
+/// The same one by one, with the memory limit: what a checkpoint is of. Values as JSON.
+std::vector<std::pair<std::string, std::string>> option_facts(const SolveOptions& options);
+
 /// `check --json`.
 std::string check_json(const CheckedScene& checked);
 

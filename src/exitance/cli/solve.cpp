@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/signals.hpp"
@@ -10,6 +11,7 @@
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/atomic_file.hpp"
+#include "exitance/io/checkpoint_file.hpp"
 #include "exitance/io/scene_file.hpp"
 #include "exitance/io/solution_file.hpp"
 #include "exitance/io/trace_file.hpp"
@@ -76,6 +78,36 @@ class Tracing {
     std::optional<TracedProgress> progress_;
 };
 
+/// What a solution depends on.
+CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
+    CheckpointFacts facts{{"bands", std::to_string(bands)}, {"the scene", scene_fingerprint(scene)}};
+    for (auto& [name, value] : option_facts(arguments.options)) facts.emplace_back("--" + name, value);
+    for (auto& fact : facts) std::replace(fact.first.begin(), fact.first.end(), '_', '-');
+    return facts;
+}
+
+/// The checkpoint beside the output, where it is to be written or read; empty otherwise.
+Result<std::optional<CheckpointFile>> open_checkpoint(const SolveArguments& arguments, const Scene& scene,
+                                                      Terminal& terminal) {
+    std::optional<CheckpointFile> file;
+    if (!arguments.checkpoint_every && !arguments.resume) return file;
+    const std::string path = arguments.output + ".checkpoint";
+    file.emplace(path, facts_of(arguments, scene),
+                 arguments.checkpoint_every.value_or(std::numeric_limits<double>::infinity()));
+    if (!arguments.resume) return file;
+    const Result<bool> loaded = file->load();
+    if (!loaded) return loaded.error();
+    terminal.note(*loaded ? "going on from " + path : "there is no " + path + ": beginning at the beginning");
+    return file;
+}
+
+/// Once a solve has come to its own end, the checkpoint goes.
+void close_checkpoint(const std::optional<CheckpointFile>& file, bool stopped, Terminal& terminal) {
+    if (!file) return;
+    if (!file->written()) terminal.note("no checkpoint: " + file->written().error().message);
+    if (!stopped) file->remove();
+}
+
 ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) {
     if (const std::optional<ExitCode> signal = signals.received()) return *signal;
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
@@ -104,7 +136,11 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
     const double read_seconds = reading.seconds();
     if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
 
-    Result<Solution> solution = solve_scene(*checked.scene, arguments.options, tracing.progress(), stop);
+    Result<std::optional<CheckpointFile>> checkpoint = open_checkpoint(arguments, *checked.scene, terminal);
+    if (!checkpoint) return terminal.fail(checkpoint.error());
+    Result<Solution> solution =
+        solve_scene(*checked.scene, arguments.options, tracing.progress(), stop, *checkpoint ? &**checkpoint : nullptr);
+    const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
     if (!solution && signals.received()) return *signals.received();
     if (!solution) return terminal.fail(solution.error());
 
@@ -123,6 +159,7 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
     terminal.progress().finish();
+    close_checkpoint(*checkpoint, stopped, terminal);
     if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
 
     if (arguments.json) {

@@ -9,6 +9,7 @@
 #include "exitance/methods/light_functions.hpp"
 #include "exitance/methods/memory_plan.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/solve_archive.hpp"
 #include "exitance/reconstruct/certificate.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/interpolant.hpp"
@@ -29,8 +30,14 @@ const MethodEntry& find_method(const SolveOptions& options) {
 
 class Solver {
   public:
-    Solver(const Scene& scene, const SolveOptions& options, Progress& progress, const StopRequest& stop)
-        : options_(options), progress_(progress), stop_(stop), solution_{.scene = scene}, stage_(scene) {
+    Solver(const Scene& scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
+           CheckpointStore* checkpoints)
+        : options_(options),
+          progress_(progress),
+          stop_(stop),
+          checkpoints_(checkpoints),
+          solution_{.scene = scene},
+          stage_(scene) {
         const MethodEntry& method = find_method(options);
         if (options.method != Method::automatic && options.method != method.id)
             warn(fmt::format("--bounces is counted by the method matrix, which solves in place of {}",
@@ -46,10 +53,11 @@ class Solver {
         statistics().surfaces = scene.surfaces().size();
         statistics().converged = true;
         solution_.indirect = dark(stage_);
-        // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out.
+        // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
+        // another run may go on: its light is not to depend on how long this one had.
         constexpr double coarse = 0.08;
         constexpr double near = 30;  // seconds
-        const bool deadline = stop.seconds_left() < near;
+        const bool deadline = stop.seconds_left() < near && !checkpoints_;
         knobs_ = knobs_for_error(deadline ? std::max(coarse, options.error_target()) : options.error_target(),
                                  stage_.pieces, options);
     }
@@ -60,10 +68,12 @@ class Solver {
             if (!fits) return fits.error();
             if (!*fits) stop_early("memory limit");
         }
-        if (options_.bounces != 0 && stage_.has_indirect_light())
+        if (options_.bounces != 0 && stage_.has_indirect_light()) {
+            resume();
             solve_indirect_light();
-        else
+        } else {
             project_direct();
+        }
         // What only attempts need makes room for the mesh that is written.
         light_.reset();
         local_pass_.reset();
@@ -73,7 +83,49 @@ class Solver {
     }
 
   private:
+    /// What comes next within an attempt.
+    enum class Step : std::uint8_t { project, solve, gather, certify, decide };
+
     SolveStatistics& statistics() { return solution_.statistics; }
+
+    /// All that the steps to come depend on; `phase` is the state within a step, or empty.
+    template <class Archive>
+    void archive_state(Archive& a, std::string& phase) {
+        a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, gathered_, certificate_, phase);
+        a(solution_.indirect, solution_.direct_share, solution_.direct_in_elements, solution_.statistics);
+        bool has_local_pass = local_pass_.has_value();
+        a(has_local_pass);
+        if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
+        if (has_local_pass) local_pass_->archive_state(a);
+    }
+
+    void resume() {
+        const std::string state = checkpoints_ ? checkpoints_->resumed() : std::string();
+        if (state.empty()) return;
+        const SolveStatistics own = solution_.statistics;
+        ArchiveReader reader(state);
+        archive_state(reader, resumed_phase_);
+        EXI_CHECK(reader.good() && reader.left() == 0);  // the store has checked every byte
+        statistics().threads = own.threads, statistics().schedule = own.schedule;
+    }
+
+    void keep(std::string phase) {
+        ArchiveWriter writer;
+        archive_state(writer, phase);
+        checkpoints_->keep(writer.take());
+    }
+
+    /// Everything before this step is done.
+    void reach(Step step) {
+        step_ = step;
+        if (checkpoints_ && !stop_.requested() && checkpoints_->is_due()) keep({});
+    }
+
+    /// For the step that is running.
+    SafePoints safe_points() {
+        return {checkpoints_, stop_, [this](std::string phase) { keep(std::move(phase)); },
+                std::exchange(resumed_phase_, {})};
+    }
 
     void warn(std::string message) {
         progress_.warn(message);
@@ -89,7 +141,7 @@ class Solver {
     void solve_indirect_light() {
         constexpr int most_attempts = 9;
         const std::optional<double> demand = options_.error_demand();
-        for (int count = 1;; ++count) {
+        for (;; ++attempt_, step_ = Step::project) {
             const Stopwatch watch;
             attempt();
             if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
@@ -102,7 +154,7 @@ class Solver {
             }
             if (light_->limited_by_memory) stop_early("memory limit");
             if (statistics().stopped_by == "memory limit") return;
-            if (count == most_attempts) return stop_early("iterations");
+            if (attempt_ == most_attempts) return stop_early("iterations");
             constexpr double aim = 0.7;
             const Tightened finer = tightened(knobs_, error_parts(), aim * *demand, options_);
             // One that cannot end in time would only be thrown away.
@@ -134,41 +186,63 @@ class Solver {
 
     /// One attempt: what the last one found is kept as far as it is good enough.
     void attempt() {
-        const bool fresh = !light_;
-        if (fresh) project_direct();
-        if (stop_.requested() && certificate_.points > 0) return;
+        if (step_ == Step::project) {
+            fresh_ = !light_;
+            if (fresh_) project_direct();
+            if (stop_.requested() && certificate_.points > 0) return;
+            reach(Step::solve);
+        }
+        if (step_ == Step::solve) {
+            find_light();
+            reach(Step::gather);
+        }
+        if (step_ == Step::decide) return;
         Stopwatch watch;
-        if (fresh) {
-            light_ = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
-            record_method();
+        const QuickFunction b(gathered_light(stage_.scene, direct_, *light_, share_), stage_.scene.regions().size());
+        if (step_ == Step::gather) {
+            const bool whole = deliver(b);
+            statistics().seconds["reconstruct"] += watch.restart();
+            if (!whole) return;
+            reach(Step::certify);
         }
-        statistics().seconds["solve"] += watch.restart();
-        const bool gathers = !light_->holds_direct && !light_->delivers;
-        const Spectrum share = fresh ? direct_share() : solution_.direct_share;
-        const QuickFunction b(gathered_light(stage_.scene, direct_, *light_, share), stage_.scene.regions().size());
-        gathered_ = {};
-        ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_)
-                                   : light_->delivers   ? polynomials_on_leaves(*light_)
-                                                        : gather(b, fresh);
-        statistics().seconds["reconstruct"] += watch.restart();
-        if (stop_.requested()) {
-            // Half a local pass is worth less than the last whole one, or than what the method has found.
-            if (certificate_.points > 0) return;
-            solution_.indirect = constant_on_leaves(*light_);
-            solution_.direct_in_elements = light_->holds_direct;
-            constexpr double roughly = 0.1;
-            certify_solution({.error = roughly});
-            return;
-        }
-        solution_.indirect = std::move(indirect);
-        solution_.direct_share = share;
-        solution_.direct_in_elements = light_->holds_direct;
         progress_.phase("certify");
-        if (!gathers)
+        if (light_->holds_direct || light_->delivers)
             certify_solution({.error = options_.error_target()});
         else
             certify_solution({.error = options_.error_target(), .leaves = &gathered_.leaves, .gathered = &b});
         statistics().seconds["certify"] += watch.restart();
+        reach(Step::decide);
+    }
+
+    void find_light() {
+        const Stopwatch watch;
+        if (fresh_) {
+            light_ = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
+            record_method();
+            share_ = direct_share();
+        }
+        statistics().seconds["solve"] += watch.seconds();
+    }
+
+    /// Light everywhere, from what the method found. False when a request to stop cut that short.
+    bool deliver(const QuickFunction& b) {
+        gathered_ = {};
+        ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_)
+                                   : light_->delivers   ? polynomials_on_leaves(*light_)
+                                                        : gather(b, fresh_);
+        if (stop_.requested()) {
+            // Half a local pass is worth less than the last whole one, or than what the method has found.
+            if (certificate_.points > 0) return false;
+            solution_.indirect = constant_on_leaves(*light_);
+            solution_.direct_in_elements = light_->holds_direct;
+            constexpr double roughly = 0.1;
+            certify_solution({.error = roughly});
+            return false;
+        }
+        solution_.indirect = std::move(indirect);
+        solution_.direct_share = share_;
+        solution_.direct_in_elements = light_->holds_direct;
+        return true;
     }
 
     Spectrum direct_share() const {
@@ -186,7 +260,7 @@ class Solver {
                                     .noise = knobs_.gather_noise * scale,
                                     .relative_noise = knobs_.gather_relative_noise,
                                     .tolerance = knobs_.gather_tolerance * scale},
-                                   gathered_, progress_, stop_);
+                                   gathered_, progress_, stop_, safe_points());
     }
 
     void certify_solution(CertificateOptions options) {
@@ -270,6 +344,7 @@ class Solver {
     const SolveOptions& options_;
     Progress& progress_;
     const StopRequest& stop_;
+    CheckpointStore* checkpoints_;
     Solution solution_;
     Stage stage_;
     Knobs knobs_;
@@ -278,16 +353,21 @@ class Solver {
     std::optional<LocalPass> local_pass_;
     LocalPassReport gathered_;
     Certificate certificate_;
+    int attempt_ = 1;
+    Step step_ = Step::project;
+    bool fresh_ = true;  ///< Does the method find new light in this attempt?
+    Spectrum share_;     ///< c of that light, see find_direct_share.
+    std::string resumed_phase_;
 };
 
 }  // namespace
 
 Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
-                             const StopRequest& stop) {
+                             const StopRequest& stop, CheckpointStore* checkpoints) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
     const Stopwatch watch;
-    Result<Solution> solution = Solver(scene, options, progress, stop).run();
+    Result<Solution> solution = Solver(scene, options, progress, stop, checkpoints).run();
     if (!solution) return solution;
     solution->statistics.seconds["total"] = watch.seconds();
     solution->statistics.peak_memory_bytes = peak_memory_bytes();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/progress.hpp"
+#include "exitance/core/checkpoint.hpp"
 #include "exitance/methods/solve_options.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
@@ -13,7 +13,11 @@ namespace exitance {
 /// the three run again. Direct light stands apart and is exact.
 /// Missing the error asked for is a finding in the statistics (`converged`, `stopped_by`), not an error; an Error means
 /// that there is no result at all.
+///
+/// With a store for checkpoints, the state is kept from time to time: between the steps of an attempt and between
+/// slices of the local pass. A solve that goes on from there gives the same bits, statistics aside, as one that never
+/// stopped.
 Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
-                             const StopRequest& stop);
+                             const StopRequest& stop, CheckpointStore* checkpoints = nullptr);
 
 }  // namespace exitance

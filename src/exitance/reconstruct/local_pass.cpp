@@ -123,23 +123,28 @@ ElementFunction LocalPass::finished(LocalPassReport& report) const {
 }
 
 ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand,
-                                  LocalPassReport& report, Progress& progress, const StopRequest& stop) {
+                                  LocalPassReport& report, Progress& progress, const StopRequest& stop,
+                                  SafePoints safe_points) {
     std::vector<ElementId> active = tree_.leaves();
+    int depth = 0;
+    std::size_t begun = 0;  // how many of `active` an earlier run has gathered
+    const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays); });
     const bool known = !fresh && sampled_.size() == tree_.size();
     std::vector<ElementId> kept;
-    if (known) {
+    if (known && !resumed) {
         const auto good = [&](ElementId e) { return sampled_[e].place_rays > 0 && !is_too_noisy(e, demand); };
         std::copy_if(active.begin(), active.end(), std::back_inserter(kept), good);
         std::erase_if(active, good);
         // Of what is quiet enough and to be cut, the pieces are all that has to be gathered.
         for (ElementId child : split_where_needed(kept, demand)) active.push_back(child);
     }
-    for (int depth = 0; !active.empty(); ++depth) {
+    for (; !active.empty(); ++depth) {
         sampled_.resize(tree_.size());
         // In slices, so that progress can be told; few, since threads wait for one another at the end of each. A
         // request to stop is heard at every element: what it leaves out is not used.
         const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
-        for (std::size_t first = 0; first < active.size() && !stop.requested(); first += slice) {
+        for (std::size_t first = std::exchange(begun, 0); first < active.size() && !stop.requested(); first += slice) {
+            safe_points.pass([&](auto& a) { a(active, depth, first, report.rays); });
             parallel_ranges(std::min(slice, active.size() - first), 1,
                             [&](std::size_t begin, std::size_t end) {
                                 GatherWorkspace workspace;

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "exitance/core/progress.hpp"
+#include "exitance/core/checkpoint.hpp"
+#include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/reconstruct/gather.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/transport/ray_rows.hpp"
@@ -43,9 +44,16 @@ class LocalPass {
     /// `mesh`: of the elements to begin with. The stage must outlive it.
     LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed);
 
-    /// Gathers b. `fresh`: b is not what was gathered last. `report.rays` counts those of this call.
+    /// Gathers b. `fresh`: b is not what was gathered last. `report.rays` counts those of this call. `safe_points`: its
+    /// state beyond archive_state() can be kept between slices of the work.
     ElementFunction gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand, LocalPassReport& report,
-                           Progress& progress, const StopRequest& stop);
+                           Progress& progress, const StopRequest& stop, SafePoints safe_points = {});
+
+    /// Mesh and gathers, for checkpoints.
+    template <class Archive>
+    void archive_state(Archive& a) {
+        a(tree_, sampled_, mean_area_);
+    }
 
   private:
     /// What one element's gathers say.

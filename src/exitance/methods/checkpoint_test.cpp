@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include "exitance/methods/solve_scene.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// Keeps every state that passes; begins with one if it is given.
+class AllStates final : public CheckpointStore {
+  public:
+    explicit AllStates(std::string begin = {}) : begin_(std::move(begin)) {}
+    bool is_due() const override { return true; }
+    void keep(std::string state) override { states.push_back(std::move(state)); }
+    std::string resumed() const override { return begin_; }
+
+    std::vector<std::string> states;
+
+  private:
+    std::string begin_;
+};
+
+void expect_same(const ElementFunction& a, const ElementFunction& b) {
+    ASSERT_EQ(a.tree.size(), b.tree.size());
+    EXPECT_EQ(a.values, b.values);
+    for (ElementId e : a.tree.ids()) {
+        ASSERT_EQ(a.tree.parent(e), b.tree.parent(e));
+        ASSERT_EQ(a.tree.area(e), b.tree.area(e));
+    }
+}
+
+void expect_same(const Solution& a, const Solution& b) {
+    expect_same(a.indirect, b.indirect);
+    expect_same(a.interpolant, b.interpolant);
+    for (std::size_t band = 0; band < bands; ++band) EXPECT_EQ(a.direct_share[band], b.direct_share[band]);
+    EXPECT_EQ(a.statistics.relative_error_estimate, b.statistics.relative_error_estimate);
+    EXPECT_EQ(a.statistics.rays, b.statistics.rays) << "nothing is counted twice";
+}
+
+Solution solved(const Scene& scene, const SolveOptions& options, CheckpointStore* store) {
+    Progress progress;
+    const StopRequest stop;
+    Result<Solution> solution = solve_scene(scene, options, progress, stop, store);
+    EXI_CHECK(static_cast<bool>(solution));
+    return std::move(*solution);
+}
+
+/// Asks for a stop when it has heard of `count` steps forward.
+class StopsAfter final : public Progress {
+  public:
+    StopsAfter(int count, StopRequest& stop) : left_(count), stop_(stop) {}
+    void phase(std::string_view) override { step(); }
+    void advance(double, std::string_view) override { step(); }
+
+  private:
+    void step() {
+        if (left_-- == 0) stop_.interrupt();
+    }
+    int left_;
+    StopRequest& stop_;
+};
+
+struct Case {
+    Method method;
+    double error;
+};
+class Checkpoints : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Checkpoints,
+                         testing::Values(Case{Method::matrix, 0.012}, Case{Method::progressive, 0.05},
+                                         Case{Method::substructuring, 0.05}, Case{Method::monte_carlo, 0.05},
+                                         Case{Method::hierarchical, 0.04}, Case{Method::wavelet, 0.04}));
+
+}  // namespace
+
+TEST_P(Checkpoints, AnyStateOnTheWayLeadsToTheSameBits) {
+    const Scene scene = built_scene("gcr2");
+    const SolveOptions options{.method = GetParam().method, .error = GetParam().error};
+    const Solution whole = solved(scene, options, nullptr);
+    AllStates on_the_way;
+    expect_same(solved(scene, options, &on_the_way), whole);
+    const std::size_t count = on_the_way.states.size();
+    ASSERT_GE(count, 4u);
+    for (std::size_t i = 0; i < 5; ++i) {
+        SCOPED_TRACE("state " + std::to_string(i * (count - 1) / 4) + " of " + std::to_string(count));
+        AllStates resumed(on_the_way.states[i * (count - 1) / 4]);
+        expect_same(solved(scene, options, &resumed), whole);
+    }
+}
+
+TEST(Checkpoint, WhatWasKeptBeforeAnInterruptLeadsToTheSameBits) {
+    const Scene scene = built_scene("gcr2");
+    const SolveOptions options{.method = Method::matrix, .error = 0.012};
+    const Solution whole = solved(scene, options, nullptr);
+    for (int steps : {2, 5, 8}) {
+        StopRequest stop;
+        StopsAfter progress(steps, stop);
+        AllStates kept;
+        const Result<Solution> half = solve_scene(scene, options, progress, stop, &kept);
+        ASSERT_TRUE(half);
+        AllStates resumed(kept.states.empty() ? std::string() : kept.states.back());
+        expect_same(solved(scene, options, &resumed), whole);
+    }
+}
+
+}  // namespace exitance

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "exitance/core/archive.hpp"
+#include "exitance/mesh/element_tree_archive.hpp"
+#include "exitance/reconstruct/local_pass.hpp"
+#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solve/global_light.hpp"
+#include "exitance/transport/direct_projection.hpp"
+
+namespace exitance {
+
+// What a solve holds between its phases, for checkpoints. Bindings name every member, so that a new one is not
+// forgotten.
+
+template <class Archive>
+void archive(Archive& a, LeafNumbering& numbering) {
+    a(numbering.leaves, numbering.number);
+}
+
+template <class Archive>
+void archive(Archive& a, ElementFunction& function) {
+    auto& [tree, first_value, values] = function;
+    a(tree, first_value, values);
+}
+
+template <class Archive>
+void archive(Archive& a, DirectProjection& projection) {
+    auto& [tree, fit] = projection;
+    a(tree, fit);
+}
+
+template <class Archive>
+void archive(Archive& a, GlobalLight& light) {
+    auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection,
+           standard_error, direct_share, holds_direct, limited_by_memory, report, rays, form_factors, links,
+           link_memory_bytes] = light;
+    a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection);
+    a(standard_error, direct_share, holds_direct, limited_by_memory, report, rays, form_factors, links);
+    a(link_memory_bytes);
+}
+
+template <class Archive>
+void archive(Archive& a, LocalPassReport& report) {
+    auto& [rays, noise, interpolation, leaves, interrupted] = report;
+    a(rays, noise, interpolation, leaves, interrupted);
+}
+
+template <class Archive>
+void archive(Archive& a, SolveStatistics& statistics) {
+    auto& [method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations,
+           converged, residual, estimate, bound, interpolant, energy, seconds, peak_memory_bytes, link_memory_bytes,
+           warnings, stopped_by] = statistics;
+    a(method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations);
+    a(converged, residual, estimate, bound, interpolant, energy, seconds, peak_memory_bytes, link_memory_bytes);
+    a(warnings, stopped_by);
+}
+
+}  // namespace exitance
