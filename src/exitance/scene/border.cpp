@@ -105,14 +105,14 @@ std::vector<Loop> walk(std::span<const Point> points, std::vector<BorderEdge>& e
     return loops;
 }
 
+}  // namespace
+
 void start_at_smallest(std::span<const Point> points, Loop& loop) {
     std::rotate(
         loop.begin(),
         std::min_element(loop.begin(), loop.end(), [&](auto a, auto b) { return before(points[a], points[b]); }),
         loop.end());
 }
-
-}  // namespace
 
 std::vector<Loop> border_loops(std::span<const Point> points, std::vector<BorderEdge> edges, const Vec3& area_vector,
                                double tolerance) {

@@ -17,6 +17,9 @@ struct BorderEdge {
 std::vector<std::vector<std::uint32_t>> border_loops(std::span<const Point> points, std::vector<BorderEdge> edges,
                                                      const Vec3& area_vector, double tolerance);
 
+/// Turns a loop until it starts at its lexicographically smallest corner.
+void start_at_smallest(std::span<const Point> points, std::vector<std::uint32_t>& loop);
+
 /// The loops of one face: one outline, or with holes that bridges connect, an outline and holes.
 std::vector<std::vector<std::uint32_t>> lone_face_loops(const FaceMesh& mesh, std::uint32_t face, double tolerance);
 

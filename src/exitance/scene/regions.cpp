@@ -1,9 +1,11 @@
 #include "exitance/scene/regions.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
+#include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/scene/border.hpp"
 #include "exitance/scene/cell_keys.hpp"
@@ -32,7 +34,7 @@ class UnionFind {
     std::vector<std::uint32_t> parent_;
 };
 
-/// An unpaired edge under one of the keys of its line.
+/// The first unpaired edge between two points under one of the keys of its line.
 struct LineEntry {
     std::uint64_t key;
     std::uint32_t edge;
@@ -47,7 +49,7 @@ class Joiner {
             const auto outline = mesh_.outline(faces_[f]);
             first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));
             for (std::size_t k = 0; k < outline.size(); ++k)
-                edges_.push_back({outline[k], outline[(k + 1) % outline.size()], f, none});
+                edges_.push_back({outline[k], outline[(k + 1) % outline.size()], f, none, none});
         }
         first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));
     }
@@ -62,6 +64,7 @@ class Joiner {
   private:
     struct Edge {
         std::uint32_t from, to, face, partner;
+        std::uint32_t twin;  ///< The edge before this one between the same two points, either way round, or none.
     };
     struct Split {
         std::uint32_t edge, point;
@@ -72,14 +75,22 @@ class Joiner {
     const Point& point(std::uint32_t i) const { return mesh_.points[i]; }
     std::uint32_t material(std::uint32_t f) const { return mesh_.material[faces_[f]]; }
     bool coplanar(std::uint32_t f, std::uint32_t g) const;
+    std::vector<LineEntry> line_entries() const;
     void add_line_keys(std::uint32_t edge, const Point& centre, double size, std::vector<LineEntry>& out) const;
-    void pair_on_line(std::span<const LineEntry> group);
+    void add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t>& out) const;
+    void pair_on_line(std::span<const std::uint32_t> group);
     void pair_parts(std::uint32_t e, std::uint32_t f);
     void split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length);
     std::vector<BorderEdge> border(std::span<const std::uint32_t> set) const;
     bool is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector) const;
     bool is_one_convex_loop(const std::vector<std::vector<std::uint32_t>>& loops, const Vec3& area_vector) const;
     std::vector<std::uint32_t> covering_faces(std::span<const std::uint32_t> set, const Normal& n) const;
+    struct Union {
+        JoinedFaces joined;
+        std::vector<std::uint32_t> covering;
+    };
+    bool is_plain_triangle(std::uint32_t f) const;
+    Union unite(std::span<const std::uint32_t> set) const;
 
     const FaceMesh& mesh_;
     const Tolerances& tol_;
@@ -106,11 +117,18 @@ bool Joiner::coplanar(std::uint32_t f, std::uint32_t g) const {
 
 void Joiner::pair_whole_edges() {
     HashChains chains(edges_.size());
-    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+    const auto key_of = [&](std::uint32_t e) {
         const auto [a, b] = std::minmax(edges_[e].from, edges_[e].to);
-        const std::uint64_t key = hash(a, b);
+        return hash(a, b);
+    };
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+        if (e + HashChains::ahead < edges_.size()) chains.prefetch(key_of(e + HashChains::ahead));
+        const std::uint64_t key = key_of(e);
         for (std::uint32_t o = chains.first(key); o != HashChains::end; o = chains.next(o)) {
-            if (edges_[o].from != edges_[e].to || edges_[o].to != edges_[e].from || edges_[o].partner != none) continue;
+            const bool against = edges_[o].from == edges_[e].to && edges_[o].to == edges_[e].from;
+            const bool along = edges_[o].from == edges_[e].from && edges_[o].to == edges_[e].to;
+            if ((against || along) && edges_[e].twin == none) edges_[e].twin = o;
+            if (!against || edges_[o].partner != none) continue;
             const std::uint32_t f = edges_[e].face, g = edges_[o].face;
             if (material(f) != material(g) || !coplanar(f, g)) continue;
             edges_[e].partner = o;
@@ -135,8 +153,7 @@ void Joiner::add_line_keys(std::uint32_t edge, const Point& centre, double size,
     const double foot_error = tol_.place + size * direction_error, foot_cell = std::max(1e-4 * size, 8 * foot_error);
     const auto direction = [&](double x) { return CellCoordinate{x, direction_cell, direction_error}; };
     const auto place = [&](double x) { return CellCoordinate{x, foot_cell, foot_error}; };
-    each_cell_key<6>(material(edges_[edge].face),
-                     {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)},
+    each_cell_key<6>(0, {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)},
                      [&](std::uint64_t key) {
                          out.push_back({key, edge});
                      });
@@ -168,27 +185,26 @@ void Joiner::pair_parts(std::uint32_t e, std::uint32_t f) {
 }
 
 /// Sweeps along a line over the edges on it (and a few that only share its cell).
-void Joiner::pair_on_line(std::span<const LineEntry> group) {
+void Joiner::pair_on_line(std::span<const std::uint32_t> group) {
     constexpr std::size_t few = 8;  // most lines carry the two edges of a box's corner: not worth sorting
     const auto pair = [&](std::uint32_t e, std::uint32_t f) {
         if (material(edges_[e].face) == material(edges_[f].face)) pair_parts(e, f);
     };
     if (group.size() <= few) {
         for (std::size_t i = 0; i < group.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j) pair(group[j].edge, group[i].edge);
+            for (std::size_t j = 0; j < i; ++j) pair(group[j], group[i]);
         return;
     }
-    const Point origin = point(edges_[group[0].edge].from);
-    const Vec3 d = normalized(point(edges_[group[0].edge].to) - origin);
+    const Point origin = point(edges_[group[0]].from);
+    const Vec3 d = normalized(point(edges_[group[0]].to) - origin);
     struct Interval {
         double lo, hi;
         std::uint32_t edge;
     };
     std::vector<Interval> intervals;
-    for (const LineEntry& entry : group) {
-        const double s = dot(point(edges_[entry.edge].from) - origin, d),
-                     t = dot(point(edges_[entry.edge].to) - origin, d);
-        intervals.push_back({std::min(s, t), std::max(s, t), entry.edge});
+    for (const std::uint32_t e : group) {
+        const double s = dot(point(edges_[e].from) - origin, d), t = dot(point(edges_[e].to) - origin, d);
+        intervals.push_back({std::min(s, t), std::max(s, t), e});
     }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });
@@ -200,17 +216,49 @@ void Joiner::pair_on_line(std::span<const LineEntry> group) {
     }
 }
 
-void Joiner::pair_parts_of_edges() {
+/// The unpaired edges between the two points of one, that one included.
+void Joiner::add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t>& out) const {
+    for (std::uint32_t e = edge; e != none; e = edges_[e].twin)
+        if (edges_[e].partner == none) out.push_back(e);
+}
+
+/// Unpaired edges by their lines; of those between the same two points, which pair_whole_edges has compared, the last
+/// stands for all. Edges with a line to themselves, as nearly all are that curved surfaces leave unpaired, are not
+/// among them: a table of counts tells, before anything is sorted.
+std::vector<LineEntry> Joiner::line_entries() const {
     Box box;
     for (const Edge& e : edges_) box.add(point(e.from));
+    std::vector<char> is_last(edges_.size(), true);
+    std::size_t count = 0;
+    std::vector<std::uint32_t> twins;
     std::vector<LineEntry> entries;
     for (std::uint32_t e = 0; e < edges_.size(); ++e)
-        if (edges_[e].partner == none) add_line_keys(e, box.centre(), box.diagonal(), entries);
+        if (edges_[e].twin != none) is_last[edges_[e].twin] = false;
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+        if (!is_last[e]) continue;
+        twins.clear();
+        add_unpaired_twins(e, twins);
+        if (!twins.empty()) add_line_keys(e, box.centre(), box.diagonal(), entries), ++count;
+    }
+    std::vector<std::uint8_t> held(std::bit_ceil(4 * count + 1));
+    const auto slot = [&](const LineEntry& entry) -> std::uint8_t& { return held[entry.key & (held.size() - 1)]; };
+    for (const LineEntry& entry : entries) slot(entry) = std::min(slot(entry) + 1, 2);
+    std::erase_if(entries, [&](const LineEntry& entry) { return slot(entry) < 2; });
+    return entries;
+}
+
+void Joiner::pair_parts_of_edges() {
+    std::vector<LineEntry> entries = line_entries();
     std::sort(entries.begin(), entries.end(),
               [](const LineEntry& a, const LineEntry& b) { return a.key != b.key ? a.key < b.key : a.edge < b.edge; });
+    std::vector<std::uint32_t> group;
     for (std::size_t i = 0, j; i < entries.size(); i = j) {
-        for (j = i + 1; j < entries.size() && entries[j].key == entries[i].key;) ++j;
-        if (j - i > 1) pair_on_line(std::span(entries).subspan(i, j - i));
+        group.clear();
+        for (j = i; j < entries.size() && entries[j].key == entries[i].key; ++j)
+            add_unpaired_twins(entries[j].edge, group);
+        if (j - i == 1) continue;
+        std::sort(group.begin(), group.end());
+        pair_on_line(group);
     }
     std::sort(splits_.begin(), splits_.end());
     splits_.erase(std::unique(splits_.begin(), splits_.end()), splits_.end());
@@ -276,33 +324,65 @@ bool Joiner::is_one_convex_loop(const std::vector<std::vector<std::uint32_t>>& l
     return is_convex(corners, normalized(area_vector));
 }
 
+/// Most faces of curved surfaces stay alone, and three corners that are not in line are their own border.
+bool Joiner::is_plain_triangle(std::uint32_t f) const {
+    if (first_edge_[f + 1] - first_edge_[f] != 3) return false;
+    double longest = 0;
+    for (std::uint32_t e = first_edge_[f]; e < first_edge_[f + 1]; ++e) {
+        const auto split = std::lower_bound(splits_.begin(), splits_.end(), e,
+                                            [](const Split& s, std::uint32_t edge) { return s.edge < edge; });
+        if (split != splits_.end() && split->edge == e) return false;
+        longest = std::max(longest, squared_norm(point(edges_[e].to) - point(edges_[e].from)));
+    }
+    return 0.5 * norm(mesh_.area_vector[faces_[f]]) > tol_.place * std::sqrt(longest);
+}
+
+/// The union of a set; no loops when it is no proper polygon, with the faces that cover earlier ones if that is why.
+Joiner::Union Joiner::unite(std::span<const std::uint32_t> set) const {
+    Union out;
+    for (std::uint32_t f : set) out.joined.faces.push_back(faces_[f]);
+    if (set.size() == 1 && is_plain_triangle(set[0])) {
+        const auto outline = mesh_.outline(faces_[set[0]]);
+        auto& loop = out.joined.loops.emplace_back(outline.begin(), outline.end());
+        return start_at_smallest(mesh_.points, loop), out;
+    }
+    Vec3 area_vector;
+    for (std::uint32_t f : set) area_vector += mesh_.area_vector[faces_[f]];
+    if (!is_flat(set, area_vector)) return out;
+    out.joined.loops = border_loops(mesh_.points, border(set), area_vector, tol_.place);
+    if (set.size() > 1 && !is_one_convex_loop(out.joined.loops, area_vector)) {
+        out.covering = covering_faces(set, normalized(area_vector));
+        if (!out.covering.empty()) out.joined.loops.clear();
+    }
+    return out;
+}
+
 void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& covering,
                      std::vector<std::uint32_t>& failed) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // set, face
-    for (std::uint32_t f = 0; f < faces_.size(); ++f) order.push_back({sets_.root(f), f});
-    std::sort(order.begin(), order.end());
-    for (std::size_t i = 0, j; i < order.size(); i = j) {
-        std::vector<std::uint32_t> set;
-        Vec3 area_vector;
-        for (j = i; j < order.size() && order[j].first == order[i].first; ++j) {
-            set.push_back(order[j].second);
-            area_vector += mesh_.area_vector[faces_[order[j].second]];
+    const auto n = static_cast<std::uint32_t>(faces_.size());
+    std::vector<std::uint32_t> members(n), first(n + 1, 0), roots;  // sets by their roots, their faces ascending
+    for (std::uint32_t f = 0; f < n; ++f) ++first[sets_.root(f) + 1];
+    for (std::uint32_t f = 0; f < n; ++f) {
+        if (first[f + 1] > 0) roots.push_back(f);
+        first[f + 1] += first[f];
+    }
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (std::uint32_t f = 0; f < n; ++f) members[next[sets_.root(f)]++] = f;
+    const auto set_of = [&](std::size_t i) {
+        return std::span(members).subspan(first[roots[i]], first[roots[i] + 1] - first[roots[i]]);
+    };
+    std::vector<Union> unions(roots.size());
+    parallel_for(roots.size(), 256, [&](std::size_t i) { unions[i] = unite(set_of(i)); });
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+        Union& u = unions[i];
+        if (!u.joined.loops.empty()) {
+            out.push_back(std::move(u.joined));
+            continue;
         }
-        std::vector<std::uint32_t> above;
-        JoinedFaces joined;
-        if (is_flat(set, area_vector)) {
-            joined.loops = border_loops(mesh_.points, border(set), area_vector, tol_.place);
-            if (set.size() > 1 && !is_one_convex_loop(joined.loops, area_vector)) {
-                above = covering_faces(set, normalized(area_vector));
-                if (!above.empty()) joined.loops.clear();
-            }
+        for (std::uint32_t f : set_of(i)) {
+            const bool covers = std::binary_search(u.covering.begin(), u.covering.end(), f);
+            (covers ? covering : failed).push_back(faces_[f]);
         }
-        const bool done = !joined.loops.empty();
-        for (std::uint32_t f : set) {
-            const bool covers = std::binary_search(above.begin(), above.end(), f);
-            (done ? joined.faces : covers ? covering : failed).push_back(faces_[f]);
-        }
-        if (done) out.push_back(std::move(joined));
     }
 }
 

@@ -61,6 +61,24 @@ TEST(Regions, FloorsCutWithTVerticesAreOnePolygon) {
     EXPECT_EQ(region(s, 0).loops, (std::vector<std::vector<Point>>{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}}));
 }
 
+TEST(Regions, AWallThatStandsOnTheJointDoesNotKeepFloorsApart) {
+    // The wall's lower edge runs between the same points as the first floor's, either way round: one line, three edges.
+    for (const bool turned : {false, true}) {
+        std::vector<Point> wall = {{1, 0, 0}, {1, 0, 1}, {1, 2, 1}, {1, 2, 0}};
+        if (turned) std::reverse(wall.begin(), wall.end());
+        for (const bool wall_first : {false, true}) {
+            Sketch sketch;
+            if (wall_first) sketch.add(wall);
+            sketch.rectangle(0, 0, 1, 2);
+            if (!wall_first) sketch.add(wall);
+            const auto s = sketch.rectangle(1, 0, 2, 1).rectangle(1, 1, 2, 2).light().make();
+            ASSERT_TRUE(s.scene);
+            ASSERT_EQ(s.scene->regions().size(), 3u);
+            EXPECT_EQ(region(s, wall_first ? 1 : 0).area, 4);
+        }
+    }
+}
+
 TEST(Regions, ATriangulatedCopyHasTheSameLoops) {
     const Point a{0, 0, 0}, b{3, 0, 0}, c{3, 3, 0}, d{1, 1, 0}, e{0, 3, 0};
     const auto whole = Sketch().add({a, b, c, d, e}).light().make();

@@ -66,13 +66,19 @@ class Inspector {
 void Inspector::meet() {
     HashChains chains(edges_.size());
     meetings_.resize(edges_.size());
+    const auto ends_of = [&](std::uint32_t e) {
+        return std::pair(std::min(edges_[e].from, edges_[e].to), std::max(edges_[e].from, edges_[e].to));
+    };
+    const auto key_of = [&](std::uint32_t e) { return hash(ends_of(e).first, ends_of(e).second); };
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-        const auto ends = std::minmax(edges_[e].from, edges_[e].to);
-        const std::uint64_t key = hash(ends.first, ends.second);
+        if (e + HashChains::ahead < edges_.size()) chains.prefetch(key_of(e + HashChains::ahead));
         edges_[e].first = e;
-        for (std::uint32_t o = chains.first(key); o != HashChains::end; o = chains.next(o))
-            if (std::minmax(edges_[o].from, edges_[o].to) == ends) edges_[e].first = edges_[o].first;
-        chains.add(key);
+        for (std::uint32_t o = chains.first(key_of(e)); o != HashChains::end; o = chains.next(o))
+            if (ends_of(o) == ends_of(e)) {
+                edges_[e].first = edges_[o].first;
+                break;
+            }
+        chains.add(key_of(e));
         Meeting& meeting = meetings_[edges_[e].first];
         (meeting.count == 0 ? meeting.one : meeting.other) = e;
         ++meeting.count;
@@ -127,19 +133,21 @@ void Inspector::find_open_edges() {
 /// opposite directions.
 void Inspector::find_turned_faces() {
     const std::size_t n = scene_.surfaces().size();
-    std::vector<std::vector<std::uint32_t>> of_face(n);
-    for (std::uint32_t e = 0; e < edges_.size(); ++e)
-        if (meetings_[edges_[e].first].count == 2) of_face[edges_[e].face.value].push_back(e);
+    std::vector<std::uint32_t> first(n + 1, 0);  // edge of every face; they come face by face
+    for (const Edge& e : edges_) ++first[e.face.value + 1];
+    for (std::size_t f = 0; f < n; ++f) first[f + 1] += first[f];
     enum : char { unseen, same, opposite };
     std::vector<char> side(n, unseen);
+    std::vector<std::uint32_t> together;
     for (std::uint32_t start = 0; start < n; ++start) {
         if (side[start] != unseen) continue;
-        std::vector<std::uint32_t> together = {start};
+        together.assign(1, start);
         side[start] = same;
         bool is_orientable = true;
         for (std::size_t i = 0; i < together.size(); ++i)
-            for (const std::uint32_t e : of_face[together[i]]) {
+            for (std::uint32_t e = first[together[i]]; e < first[together[i] + 1]; ++e) {
                 const Meeting& meeting = meetings_[edges_[e].first];
+                if (meeting.count != 2) continue;
                 const Edge& across = edges_[meeting.one == e ? meeting.other : meeting.one];
                 const bool turns = across.from == edges_[e].from;
                 const char expected = (side[together[i]] == same) != turns ? same : opposite;

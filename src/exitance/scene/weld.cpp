@@ -26,16 +26,23 @@ std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance)
     HashChains chains(points.size());
     std::vector<std::uint32_t> placed;  // entry of the chains -> point
     std::vector<std::uint32_t> out(points.size());
+    const double to_cell = 1 / cell, margin = tolerance * to_cell;
+    // Half a cell of room at the box's sides, since walls lie there.
+    const auto place = [&](const Point& p, std::size_t a) { return (p[a] - box.lo[a]) * to_cell + 0.5; };
+    const auto hash_of = [&](const Point& p) {
+        const auto number = [&](std::size_t a) { return static_cast<std::int64_t>(place(p, a)); };
+        return cell_hash(number(0), number(1), number(2));
+    };
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         out[i] = i;
+        const std::size_t soon = i + HashChains::ahead;
+        if (soon < points.size() && is_finite(points[soon])) chains.prefetch(hash_of(points[soon]));
         const Point& p = points[i];
         if (!is_finite(p)) continue;
-        std::int64_t lo[3], hi[3], own[3];
+        std::int64_t lo[3], hi[3];
         for (std::size_t a = 0; a < 3; ++a) {
-            const double x = (p[a] - box.lo[a]) / cell, margin = tolerance / cell;
-            lo[a] = static_cast<std::int64_t>(std::floor(x - margin));
-            hi[a] = static_cast<std::int64_t>(std::floor(x + margin));
-            own[a] = static_cast<std::int64_t>(std::floor(x));
+            lo[a] = static_cast<std::int64_t>(place(p, a) - margin);
+            hi[a] = static_cast<std::int64_t>(place(p, a) + margin);
         }
         std::uint32_t best = i;
         for (std::int64_t a = lo[0]; a <= hi[0]; ++a)
@@ -46,7 +53,7 @@ std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance)
                             best = placed[e];
         out[i] = best;
         if (best != i) continue;
-        chains.add(cell_hash(own[0], own[1], own[2]));
+        chains.add(hash_of(p));
         placed.push_back(i);
     }
     return out;
