@@ -1,11 +1,11 @@
 #include "fuzz/solution_target.hpp"
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
 
+#include "exitance/io/hdf5_checksum.hpp"
 #include "exitance/io/solution_file.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/reconstruct/surface_light.hpp"
@@ -19,32 +19,6 @@ std::uint64_t number_at(const std::string& bytes, std::size_t at, std::size_t le
     std::uint64_t value = 0;
     for (std::size_t k = 0; k < length; ++k) value |= std::uint64_t(static_cast<unsigned char>(bytes[at + k])) << 8 * k;
     return value;
-}
-
-/// Jenkins's lookup3, the checksum of HDF5's metadata.
-std::uint32_t lookup3(const std::string& bytes, std::size_t at, std::size_t length) {
-    std::uint32_t a = 0xdeadbeef + static_cast<std::uint32_t>(length), b = a, c = a;
-    const auto less = [](std::uint32_t& x, std::uint32_t y, std::uint32_t& z, int turn) {
-        x = (x - z) ^ std::rotl(z, turn);
-        z += y;
-    };
-    const auto last = [](std::uint32_t& x, std::uint32_t y, int turn) { x = (x ^ y) - std::rotl(y, turn); };
-    const auto add = [&](std::size_t count) {
-        const auto word = [&](std::size_t i) {
-            return i >= count
-                       ? 0u
-                       : static_cast<std::uint32_t>(number_at(bytes, at + i, std::min<std::size_t>(4, count - i)));
-        };
-        a += word(0), b += word(4), c += word(8);
-    };
-    for (; length > 12; length -= 12, at += 12) {
-        add(12);
-        less(a, b, c, 4), less(b, c, a, 6), less(c, a, b, 8), less(a, b, c, 16), less(b, c, a, 19), less(c, a, b, 4);
-    }
-    if (length == 0) return c;
-    add(length);
-    last(c, b, 14), last(a, c, 11), last(b, a, 25), last(c, b, 16), last(a, c, 4), last(b, a, 14), last(c, b, 24);
-    return c;
 }
 
 struct Range {
@@ -80,12 +54,8 @@ std::vector<Range> values_in(const std::string& bytes) {
 }
 
 void put_checksum(std::string& bytes, std::size_t from, std::size_t to) {
-    const std::uint32_t sum = lookup3(bytes, from, to - from);
+    const std::uint32_t sum = hdf5_checksum(std::string_view(bytes).substr(from, to - from));
     for (std::size_t k = 0; k < 4; ++k) bytes[to + k] = static_cast<char>(sum >> 8 * k & 0xff);
-}
-
-void mend_headers(std::string& bytes) {
-    for (const Range& header : headers_in(bytes)) put_checksum(bytes, header.begin, header.end);
 }
 
 }  // namespace
@@ -101,6 +71,10 @@ std::vector<std::string> solution_corpus() {
         out.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
     }
     return out;
+}
+
+void mend_solution(std::string& bytes) {
+    for (const Range& header : headers_in(bytes)) put_checksum(bytes, header.begin, header.end);
 }
 
 void read_solution_bytes(const std::string& bytes) {
@@ -135,7 +109,7 @@ void read_solution_with_values(const std::string& script) {
         const std::size_t aligned = kind & 1 ? at - (at - range.begin) % written.size() : at;
         for (std::size_t k = 0; k < written.size() && aligned + k < range.end; ++k) bytes[aligned + k] = written[k];
     }
-    mend_headers(bytes);
+    mend_solution(bytes);
     read_solution_bytes(bytes);
 }
 

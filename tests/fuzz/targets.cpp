@@ -99,7 +99,7 @@ std::span<const Target> targets() {
         Target{"csv", csv_corpus, read_csv_bytes},
         Target{"pts", pts_corpus, read_pts_bytes},
         Target{"reference", reference_corpus, read_reference_bytes},
-        Target{"solution", solution_corpus, read_solution_bytes},
+        Target{"solution", solution_corpus, read_solution_bytes, mend_solution},
         Target{"values", value_corpus, read_solution_with_values},
     };
     return all;

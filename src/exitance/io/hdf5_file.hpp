@@ -85,8 +85,9 @@ class Hdf5Writer {
 };
 
 /// An HDF5 file that is read, and not trusted: sizes are compared with what the file really holds before anything is
-/// allocated. A function that fails returns something empty and remembers the first failure, which names the file and
-/// the object; look at failed() before using what was read. One thread at a time.
+/// allocated, and the library reads everything once in a process of its own before it does here. A function that fails
+/// returns something empty and remembers the first failure, which names the file and the object; look at failed()
+/// before using what was read. One thread at a time.
 class Hdf5Reader {
   public:
     static Result<Hdf5Reader> open(const std::string& path);
@@ -131,7 +132,6 @@ class Hdf5Reader {
                                             std::optional<std::size_t> rows);
     void read_numbers(void* out, Hdf5Type type);
     std::optional<std::int64_t> open_set(const std::string& name);
-    bool holds_really(std::int64_t set, std::size_t item_bytes, std::size_t items);
 
     std::string path_;
     std::int64_t file_ = -1;

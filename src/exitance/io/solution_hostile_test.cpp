@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include "exitance/io/atomic_file.hpp"
 #include "exitance/io/export.hpp"
 #include "exitance/io/hdf5_file.hpp"
 #include "exitance/io/solution_file.hpp"
 #include "exitance/io/solution_groups.hpp"
+#include "fuzz/solution_target.hpp"
 #include "support/run.hpp"
 #include "support/sample_solution.hpp"
 
@@ -163,6 +165,23 @@ TEST(HostileSolutions, MayNotChangeTheKindOfASet) {
     EXPECT_EQ(wrong([](auto& in) { in.read_text("a"); }), "data set a is not one text of fixed length");
     EXPECT_EQ(wrong([](auto& in) { in.read_texts("c"); }), "data set c is not a row of texts of fixed length");
     EXPECT_TRUE(wrong([](auto& in) { in.template read<double>("g"); }).starts_with("data set g cannot be opened"));
+}
+
+TEST(HostileSolutions, WhoseMetadataCrashTheLibraryAreErrors) {
+    // The attributes of a data set are said to lie in a heap too, at an address where there is none: version 1.10.8 of
+    // the library crashes on it, others may not.
+    std::string bytes = fuzz::solution_corpus().at(0);
+    const std::string heap = std::string("\x15\x12\0\x04\0\0", 6) + std::string(16, '\xff');
+    const std::string first_attribute("\x0c\x1c\0\0\x03\0\x06\0\x08\0\x04\0\0units", 18);
+    const std::size_t at = bytes.find(heap + first_attribute);
+    ASSERT_NE(at, bytes.npos);
+    bytes[at + 6] = '\xf0';
+    fuzz::mend_solution(bytes);
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_file(folder / "s.h5", bytes));
+    const Result<Solution> back = load_solution(folder / "s.h5");
+    const std::string said = back ? "" : back.error().message;
+    EXPECT_TRUE(back || said.starts_with("is damaged")) << said;
 }
 
 TEST(Exports, ByUnknownEndingsAreErrors) {

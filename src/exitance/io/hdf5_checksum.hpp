@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace exitance {
+
+/// The checksum that HDF5's metadata carries: the hash lookup3. Source: [Jenkins06]. O(n).
+std::uint32_t hdf5_checksum(std::string_view bytes);
+
+}  // namespace exitance
