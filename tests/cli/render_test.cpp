@@ -15,6 +15,16 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(read_text(picture).starts_with("\x89PNG"));
     EXPECT_NE(read_text(picture).find("-1 stops"), std::string::npos);
+    const std::size_t told = run.err.find("--exposure ");
+    ASSERT_NE(told, std::string::npos) << "what would make the same picture is said";
+    const std::string factor = run.err.substr(told + 11, run.err.find('\n', told) - told - 11);
+    run = run_program({"render", solution, "-o", folder / "same.png", "--size", "40x25", "--samples", "1", "--exposure",
+                       factor, "--tone-map", "linear"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(read_text(folder / "same.png").find("radiosity in W/m^2 times " + factor.substr(0, 4)),
+              std::string::npos);
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--exposure", "0x"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--exposure", "brightx"}).status, 2);
     run = run_program({"render", solution, "-o", picture, "--size", "40x25", "--camera", "-1,1,1 2,2,1 60",
                        "--false-colour", "illuminance"});
     EXPECT_EQ(run.status, 0) << run.err;

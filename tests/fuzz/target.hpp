@@ -8,21 +8,24 @@
 
 namespace exitance::fuzz {
 
+/// The files of tests/fuzz/corpus/NAME, in the order of their names.
+std::vector<std::string> corpus_folder(std::string_view name);
+
 /// A reader under attack: files to begin with, and what is done with a damaged one.
 struct Target {
     std::string_view name;                   ///< As `exitance-fuzz NAME` takes it.
-    std::vector<std::string> (*corpus)();    ///< Good files that between them use all of the format.
     void (*read)(const std::string& bytes);  ///< Reads a file of these bytes; may find it bad, and nothing worse.
     /// Makes lengths and checksums fit again after a mutation, so that what stands behind them is reached; or null.
     void (*mend)(std::string& bytes) = nullptr;
+    /// Good files that between them use all of the format; null: those of tests/fuzz/corpus/NAME.
+    std::vector<std::string> (*make_corpus)() = nullptr;
+
+    std::vector<std::string> corpus() const { return make_corpus ? make_corpus() : corpus_folder(name); }
 };
 
 /// All of them; the one table, in targets.cpp.
 std::span<const Target> targets();
 const Target* find_target(std::string_view name);
-
-/// The files of tests/fuzz/corpus/NAME, in the order of their names.
-std::vector<std::string> corpus_folder(std::string_view name);
 
 /// A file that holds the bytes, for readers that take a path. The same path every time, in a folder of this process
 /// alone, which goes with it; `name` decides the ending.

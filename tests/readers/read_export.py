@@ -118,8 +118,8 @@ assert np.allclose(obj.GetBounds(), vtu.GetBounds(), atol=1e-6)
 
 with open(folder + "s.csv", newline="") as f:
     rows = list(csv.DictReader(f))
-assert np.isclose(sum(float(r["area"]) for r in rows), area, rtol=1e-6)
-table = [sum(float(r["area"]) * float(r["B_" + b]) for r in rows) for b in "rgb"]
+assert np.isclose(sum(float(r["area [m^2]"]) for r in rows), area, rtol=1e-6)
+table = [sum(float(r["area [m^2]"]) * float(r["B_" + b + " [W/m^2]"]) for r in rows) for b in "rgb"]
 # The table integrates bilinear elements exactly, triangles do not.
 assert np.allclose(table, flux, rtol=0.05), (table, flux)
 assert [int(r["line"]) for r in rows] == list(range(10, 21)) and rows[9]["material"] == "sign \u00e9"

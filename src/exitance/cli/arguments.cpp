@@ -306,14 +306,22 @@ void declare(CLI::App& app, RenderArguments& arguments) {
         ->check(CLI::Range(1, 1024));
     add_count(app, "--gather", arguments.gather, 4,
               "Final gather by so many rays at every sample, in place of the elements' indirect light; a power of two");
-    const auto read_stops = [&arguments](const std::string& word) {
+    const auto read_exposure = [&arguments](const std::string& word) {
+        if (word.ends_with('x')) {
+            arguments.exposure_scale = read_number("--exposure", word.substr(0, word.size() - 1));
+            if (!(*arguments.exposure_scale > 0))
+                throw CLI::ValidationError("--exposure", fmt::format("must multiply by more than 0, not {}", word));
+            return;
+        }
         arguments.exposure = word == "auto" ? 0 : read_number("--exposure", word);
         if (std::abs(arguments.exposure) > 60)
             throw CLI::ValidationError("--exposure", fmt::format("must be between -60 and 60 stops, not {}", word));
     };
-    app.add_option_function<std::string>("--exposure", read_stops,
-                                         "Stops above the automatic exposure: 1 is twice as bright; default auto")
-        ->type_name("STOPS|auto")
+    app.add_option_function<std::string>(
+           "--exposure", read_exposure,
+           "Stops above the automatic exposure: 1 is twice as bright; or 0.02x: radiosity "
+           "times 0.02, the same in every picture; default auto")
+        ->type_name("STOPS|FACTORx|auto")
         ->group("PNG");
     add_choice(app, "--tone-map", tone_names, arguments.tone_map, "Default filmic")->group("PNG");
     add_choice(app, "--false-colour", quantity_names, arguments.false_colour,

@@ -65,7 +65,8 @@ struct RenderArguments : CommonArguments {
     std::optional<double> fov;     ///< Where a camera was given with one.
     Projection projection = Projection::perspective;
     PictureSize size;
-    double exposure = 0;  ///< Stops above what is chosen automatically.
+    double exposure = 0;                   ///< Stops above what is chosen automatically.
+    std::optional<double> exposure_scale;  ///< Or what radiosity is multiplied by.
     ToneCurve tone_map = ToneCurve::filmic;
     std::optional<Quantity> false_colour;
     bool isolux = false;

@@ -83,24 +83,26 @@ Result<Camera> choose_camera(const RenderArguments& arguments, const RadiosityFu
 }
 
 /// The picture for people, and the words that go with it.
-Image develop(const RenderArguments& arguments, const Picture& picture, ImageTexts& texts) {
+Image develop(const RenderArguments& arguments, const Picture& picture, ImageTexts& texts, Terminal& terminal) {
     if (arguments.false_colour) {
         const ColourScale scale = make_colour_scale(picture, *arguments.false_colour);
         return false_colour_image(picture, *arguments.false_colour, scale);
     }
     ToneMap tones;
     tones.curve = arguments.tone_map;
-    tones.scale = automatic_exposure(picture) * std::exp2(arguments.exposure);
-    texts.emplace_back(
-        "Exposure", fmt::format("{:+.4g} stops; radiosity in W/m^2 times {:.6g}, then a {} curve", arguments.exposure,
-                                tones.scale, tones.curve == ToneCurve::filmic ? "filmic" : "linear"));
+    tones.scale = arguments.exposure_scale.value_or(automatic_exposure(picture) * std::exp2(arguments.exposure));
+    const std::string stops =
+        arguments.exposure_scale ? "" : fmt::format("{:+.4g} stops above automatic; ", arguments.exposure);
+    texts.emplace_back("Exposure", fmt::format("{}radiosity in W/m^2 times {:.6g}, then a {} curve", stops, tones.scale,
+                                               tones.curve == ToneCurve::filmic ? "filmic" : "linear"));
+    if (!arguments.exposure_scale) terminal.note(fmt::format("--exposure {:.4g}x", tones.scale));
     return display_image(picture, tones);
 }
 
 Result<void> write_display(const RenderArguments& arguments, const RadiosityFunction& light, const Camera& camera,
-                           const Picture& picture) {
+                           const Picture& picture, Terminal& terminal) {
     ImageTexts texts{{"Software", "exitance"}, {"Camera", describe(camera)}};
-    Image image = develop(arguments, picture, texts);
+    Image image = develop(arguments, picture, texts, terminal);
     if (arguments.mesh)
         draw_edges(image, element_edges(light.solution(), light.stage().tracer, camera, arguments.size));
     if (arguments.isolux) draw_isolux(image, picture, make_colour_scale(picture, Quantity::illuminance));
@@ -138,8 +140,9 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     const Picture picture = take_picture(light, options, terminal.progress(), stop);
     if (signals.received()) return *signals.received();
     terminal.progress().finish();
-    const Result<void> written = ending(arguments.output) == ".png" ? write_display(arguments, light, *camera, picture)
-                                                                    : write_linear(arguments, *camera, picture);
+    const Result<void> written = ending(arguments.output) == ".png"
+                                     ? write_display(arguments, light, *camera, picture, terminal)
+                                     : write_linear(arguments, *camera, picture);
     return written ? ExitCode::done : terminal.fail(written.error());
 }
 

@@ -25,9 +25,9 @@ Result<void> write_surface_table(const Solution& solution, const std::string& pa
     const Field<SurfaceId, SurfaceLight> light = mean_light(solution);
     Result<AtomicFile> file = AtomicFile::create(path);
     if (!file) return file.error();
-    std::string row = "surface,line,group,material,area";
+    std::string row = "surface,line,group,material,area [m^2]";
     for (const char* prefix : {",E_", ",B_"})
-        for (std::size_t b = 0; b < bands; ++b) row += prefix + band_name(b);
+        for (std::size_t b = 0; b < bands; ++b) row += prefix + band_name(b) + " [W/m^2]";
     file->write(row + "\n");
     for (SurfaceId s : scene.surfaces().ids()) {
         const Surface& face = scene.surfaces()[s];
