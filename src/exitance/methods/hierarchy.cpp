@@ -7,6 +7,7 @@
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/transport/link_refiner.hpp"
+#include "exitance/transport/ray_rows.hpp"
 
 namespace exitance {
 namespace {
@@ -55,6 +56,7 @@ class Hierarchy {
             const double factor = std::clamp(0.8 * demand / refiner_.error(), 0.1, 0.8);
             tolerance.error *= factor, tolerance.interpolation *= factor;
         }
+        if (!light_.delivers && !input_.stop.requested()) correct_by_rays();
         hand_over();
         return std::move(light_);
     }
@@ -117,29 +119,81 @@ class Hierarchy {
         input_.progress.phase("solve");
         light_.numbering = LeafNumbering(light_.tree);
         links_.emplace(refiner_.make_links());
+        solve_on_links(first_, b_);
+    }
+
+    /// x = rhs + rho F x for what leaves the elements, from the x that there is.
+    void solve_on_links(const NodalField& rhs, NodalField& x) {
         const LinkOperator F(sites_, *links_, light_.numbering);
         const std::size_t n = sites_.nodes();
-        std::vector<Spectrum> rho, first, b;
+        std::vector<Spectrum> rho, first, value;
         std::vector<double> area;
         for (ElementId e : light_.numbering.leaves)
             for (std::size_t k = 0; k < n; ++k) {
                 rho.push_back(material(e).reflectance);
-                first.push_back(first_.node(e, k));
-                b.push_back(b_.node(e, k));
+                first.push_back(rhs.node(e, k));
+                value.push_back(x.node(e, k));
                 area.push_back(light_.tree.area(e) * sites_.weight(e, k));
             }
         const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
         // Links are gathered all at once, and higher orders are not symmetric.
         const Relaxation method = asked == Relaxation::jacobi ? asked : Relaxation::gmres;
         const std::size_t before = light_.report.iterations;
-        light_.report = solve_radiosity({F, rho, first, area}, method, b,
+        light_.report = solve_radiosity({F, rho, first, area}, method, value,
                                         {.residual = 0.1 * input_.knobs.residual,
                                          .max_iterations = input_.knobs.max_iterations,
                                          .request = &input_.stop});
         light_.report.iterations += before;
         for (std::size_t i = 0; i < light_.numbering.leaves.size(); ++i)
-            for (std::size_t k = 0; k < n; ++k) b_.set_node(light_.numbering.leaves[i], k, b[i * n + k]);
-        b_.pull();
+            for (std::size_t k = 0; k < n; ++k) x.set_node(light_.numbering.leaves[i], k, value[i * n + k]);
+        x.pull();
+    }
+
+    /// Defect correction: rays, which know no links, find what these miss of F b in the mean of every leaf, and b = rho
+    /// (E_dir + missed + F b) is solved once more. Coarse links are up to some percent too dark in all places together,
+    /// which no average over a hemisphere mends; two steps of this do.
+    void correct_by_rays() {
+        input_.progress.phase("correct");
+        const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
+        const RayRows rows(input_.stage, light_.tree, light_.numbering, locator, input_.knobs.solve_rays,
+                           input_.options.seed);
+        const std::vector<ElementId>& leaves = light_.numbering.leaves;
+        std::vector<Spectrum> b(leaves.size()), E(leaves.size());
+        missed_.assign(leaves.size(), Spectrum());
+        NodalField first = first_;
+        constexpr int steps = 2;
+        for (int step = 0; step < steps && !input_.stop.requested(); ++step) {
+            for (std::size_t i = 0; i < leaves.size(); ++i) b[i] = mean_over(b_, leaves[i]);
+            rows.gather(b, E);
+            const NodalField found = gather();
+            for (std::size_t i = 0; i < leaves.size(); ++i) {
+                const Spectrum missed = E[i] - mean_over(found, leaves[i]), rho = material(leaves[i]).reflectance;
+                missed_[i] += missed;
+                for (std::size_t k = 0; k < sites_.nodes(); ++k)
+                    first.set_node(leaves[i], k, first.node(leaves[i], k) + rho * missed);
+            }
+            solve_on_links(first, b_);
+        }
+        light_.rays += rows.rays();
+    }
+
+    /// E_ind of leaves, by the links, and by what rays found them to miss.
+    NodalField gather() const {
+        NodalField E(sites_);
+        links_->gather(b_, E);
+        E.push();
+        for (std::size_t i = 0; i < missed_.size(); ++i) {
+            const ElementId e = light_.numbering.leaves[i];
+            for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, E.node(e, k) + missed_[i]);
+        }
+        return E;
+    }
+
+    /// The mean of a function over an element.
+    Spectrum mean_over(const NodalField& field, ElementId e) const {
+        Spectrum sum;
+        for (std::size_t k = 0; k < sites_.nodes(); ++k) sum += sites_.weight(e, k) * field.node(e, k);
+        return sum;
     }
 
     /// The leaf of the direct projection that `e` is part of, or is.
@@ -188,16 +242,10 @@ class Hierarchy {
     }
 
     void hand_over() {
-        NodalField E(sites_);
-        links_->gather(b_, E);
-        E.push();
+        NodalField E = gather();
         if (basis_.order() > 2) cut_for_delivery(E);
         for (ElementId e : light_.numbering.leaves) {
-            Spectrum direct, indirect;
-            for (std::size_t k = 0; k < sites_.nodes(); ++k) {
-                direct += sites_.weight(e, k) * direct_.node(e, k);
-                indirect += sites_.weight(e, k) * E.node(e, k);
-            }
+            const Spectrum direct = mean_over(direct_, e), indirect = mean_over(E, e);
             light_.direct.push_back(direct);
             light_.indirect.push_back(indirect);
             light_.reflected.push_back(material(e).reflectance * (direct + indirect));
@@ -214,7 +262,7 @@ class Hierarchy {
         }
         light_.links = links_->size();
         light_.link_memory_bytes = links_->memory_bytes();
-        light_.rays = refiner_.rays();
+        light_.rays += refiner_.rays();
         light_.form_factors = refiner_.form_factors();
     }
 
@@ -225,6 +273,7 @@ class Hierarchy {
     NodalField direct_, first_, b_;  ///< E_dir, rho E_dir, and all reflected light.
     LinkRefiner refiner_;
     std::optional<Links> links_;
+    std::vector<Spectrum> missed_;  ///< By the links, of E_ind; of every leaf, or empty.
 };
 
 }  // namespace

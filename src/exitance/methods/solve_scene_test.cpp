@@ -172,6 +172,16 @@ TEST(SolveScene, EnergyIsKeptInAClosedRoom) {
     EXPECT_LT(solution.statistics.energy.defect, 1e-3);
 }
 
+TEST(SolveScene, CoarseLinksBehindObstaclesTakeNoLightAway) {
+    // By themselves links of a tenth leave 0.7 to 1% of the energy out; rays correct it, and leave their noise.
+    const Scene scene = built_scene("complex", {{"m", "6"}});
+    for (const Method method : {Method::hierarchical, Method::wavelet}) {
+        SolveOptions options{.method = method};
+        options.epsilon = 0.1;
+        EXPECT_LT(solved(scene, options).statistics.energy.defect, 2e-3);
+    }
+}
+
 TEST(SolveScene, AnInterruptedSolveStillHasAResult) {
     const Scene scene = built_scene("gcr2");
     Progress progress;

@@ -20,10 +20,13 @@ LinkJudge::LinkJudge(const LinkSites& sites, const NodalField& b, const Field<El
       near_row_(sites) {}
 
 /// Points between the nodes, the middle first, at which a polynomial of the basis and one of a degree more differ by
-/// about as much as in the mean.
+/// about as much as in the mean; of constants, Gauss's points.
 LinkJudge::Checks LinkJudge::make_checks(Patch::Shape shape) const {
     Checks out;
-    if (shape == Patch::Shape::triangle) {
+    if (n_ == 1) {
+        for (const PlanarNode& node : shape == Patch::Shape::triangle ? triangle_rule(2) : square_rule(2))
+            out.at.push_back(node.at);
+    } else if (shape == Patch::Shape::triangle) {
         if (sites_.basis().order() == 2)
             out.at = {{1.0 / 3, 1.0 / 3}, {0.5, 0.08}, {0.08, 0.5}, {0.42, 0.42}};
         else
@@ -31,7 +34,7 @@ LinkJudge::Checks LinkJudge::make_checks(Patch::Shape shape) const {
     } else if (sites_.basis().order() == 2) {
         out.at = {{0.5, 0.5}, {0.5, 0.08}, {0.92, 0.5}, {0.5, 0.92}, {0.08, 0.5}};
     } else {
-        const double g = sites_.basis().order() == 1 ? 0.2887 : 0.26;
+        constexpr double g = 0.26;
         out.at = {{0.5, 0.5}, {0.5 - g, 0.5 - g}, {0.5 + g, 0.5 - g}, {0.5 - g, 0.5 + g}, {0.5 + g, 0.5 + g}};
     }
     out.factors.resize(out.at.size() * n_);
@@ -79,6 +82,19 @@ double LinkJudge::light(const Row& row) const {
     return sum;
 }
 
+/// One number stands for the whole receiver: the mean over Gauss's points of what reaches them, which goes to `light`.
+/// Its middle alone would miss what peaks at edges where surfaces meet.
+LinkJudge::Row LinkJudge::mean_row(const Patch& receiver, const Normal& n, Departure& light) {
+    const Checks& checks = this->checks(receiver.shape);
+    Row out{};
+    for (std::size_t i = 0; i < checks.at.size(); ++i) {
+        const Row here = row(receiver.at(checks.at[i]), n);
+        light[i] = this->light(here);
+        out[0] += here[0] / static_cast<double>(checks.at.size());
+    }
+    return out;
+}
+
 double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& departure) {
     const Normal& n = sites_.normal(p);
     const Patch frame = sites_.frame(p);
@@ -95,8 +111,9 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     double unit = 0, most = 0;
     const auto at_nodes = [&] {
         unit = most = 0;
+        departure.fill(0);
         for (std::size_t k = 0; k < n_; ++k) {
-            rows_[k] = row(sites_.node(p, k), n);
+            rows_[k] = n_ == 1 ? mean_row(frame, n, departure) : row(sites_.node(p, k), n);
             node_light_[k] = light(rows_[k]);
             most = std::max(most, std::abs(node_light_[k]));
             for (std::size_t l = 0; l < n_; ++l) unit += sites_.weight(p, k) * rows_[k][l];
@@ -115,12 +132,10 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
                 for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(rows_[k][l]));
     }
     form_factor_ = rows_[0][0];
-    departure.fill(0);
     for (std::size_t i = 0; i < checks.at.size(); ++i) {
-        departure[i] = light(row(frame.at(checks.at[i]), n));
+        if (n_ > 1) departure[i] = light(row(frame.at(checks.at[i]), n));
         for (std::size_t k = 0; k < n_; ++k) departure[i] -= checks.factors[i * n_ + k] * node_light_[k];
     }
-    // Over a source of that size, the kernel departs from polynomials of degree M - 1 by so much.
     const double unevenness = 0.5 * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
     return (near_ ? 0 : most * rule_error) + tolerance_.systematic * unevenness;
 }

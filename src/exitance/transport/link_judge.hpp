@@ -78,6 +78,7 @@ class LinkJudge {
     bool may_see(ElementId p, ElementId q) const;
     void set_source(ElementId q, const Spectrum& weight);
     Row row(const Point& x, const Normal& n);
+    Row mean_row(const Patch& receiver, const Normal& n, Departure& light);
     double light(const Row& row) const;
     /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
     double send(ElementId p, ElementId q, double allowed, Departure& departure);
