@@ -32,7 +32,11 @@ class Cutter {
 
     /// `touches` tells which borders of the element lie on a concave border of its piece.
     void refine(ElementId e, std::array<bool, 4> touches) {
-        if (!tree_.patch(e).is_triangle()) return refine_parallelogram(e, touches);
+        if (!tree_.patch(e).is_triangle()) {
+            std::array<bool, 4> open;
+            for (std::size_t i = 0; i < 4; ++i) open[i] = !touches[i] && size_.longest_end > 0;
+            return refine_parallelogram(e, touches, open);
+        }
         if (touches[0] || touches[1] || touches[2])
             grade_triangle(e, touches);
         else
@@ -40,10 +44,15 @@ class Cutter {
     }
 
   private:
-    void refine_parallelogram(ElementId e, std::array<bool, 4> touches) {
+    /// `open`: which of its borders lie on other borders of its piece whose corners are to be graded, too.
+    void refine_parallelogram(ElementId e, std::array<bool, 4> touches, std::array<bool, 4> open) {
         const double a = norm(tree_.patch(e).a), b = norm(tree_.patch(e).b);
-        const bool cut_u = a > size_.edge || ((touches[1] || touches[3]) && a > strip_);
-        const bool cut_v = b > size_.edge || ((touches[0] || touches[2]) && b > strip_);
+        const bool along_u = touches[0] || touches[2], along_v = touches[1] || touches[3];
+        const bool end_of_u = along_u && (open[1] || open[3]), end_of_v = along_v && (open[0] || open[2]);
+        const bool cut_u =
+            a > size_.edge || (along_v && a > strip_) || (end_of_u && a > size_.longest_end * std::max(b, strip_));
+        const bool cut_v =
+            b > size_.edge || (along_u && b > strip_) || (end_of_v && b > size_.longest_end * std::max(a, strip_));
         if (!cut_u && !cut_v) return;
         const Cut way = cut_u && cut_v ? Cut::both : cut_u ? Cut::u : Cut::v;
         tree_.split(e, way);
@@ -51,10 +60,11 @@ class Cutter {
         for (std::size_t i = 0; i < children.size(); ++i) {
             const bool right = way == Cut::both ? i % 2 == 1 : way == Cut::u && i == 1;
             const bool top = way == Cut::both ? i >= 2 : way == Cut::v && i == 1;
-            std::array<bool, 4> t = touches;  // borders: bottom v = 0, right u = 1, top v = 1, left u = 0
-            if (way != Cut::v) (right ? t[3] : t[1]) = false;
-            if (way != Cut::u) (top ? t[0] : t[2]) = false;
-            refine_parallelogram(children[i], t);
+            std::array<bool, 4> t = touches, o = open;  // borders: bottom v = 0, right u = 1, top v = 1, left u = 0
+            const std::size_t inner_u = right ? 3 : 1, inner_v = top ? 0 : 2;
+            if (way != Cut::v) t[inner_u] = o[inner_u] = false;
+            if (way != Cut::u) t[inner_v] = o[inner_v] = false;
+            refine_parallelogram(children[i], t, o);
         }
     }
 

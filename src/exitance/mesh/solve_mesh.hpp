@@ -14,6 +14,9 @@ struct MeshSize {
     /// Elements that touch a concave edge are cut, across the edge, down to edge / 2^levels: near such an edge the
     /// solution rises like a broken power of the distance, and only strips that shrink with it follow [Atkinson00].
     int grading_levels = 0;
+    /// Where a concave edge ends in the open, light turns within the width of a strip: there strips are cut, too, until
+    /// they are no longer than this many times their width; 0: not.
+    double longest_end = 0;
 };
 
 /// Which borders of a piece, in the order of its corners (border i leads from corner i to corner i + 1), meet another

@@ -35,8 +35,25 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // In corners, too, where elements are small and count little.
     if (error < 0.01) knobs.gather_relative_noise = 0.6 * error;
     knobs.gather_tolerance = 0.4 * error;
+    if (error < 0.01) knobs.gather_relative_tolerance = 0.6 * error;
+    knobs.gather_element_share = 0.05 * error;
     apply_user_knobs(knobs, options);
     return knobs;
+}
+
+Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
+    Knobs out = knobs;
+    if (error < 0.01) {
+        out.solve_mesh.longest_end = out.gather_mesh.longest_end = 4;
+        return out;
+    }
+    // Coarser than this, and the certificate, which reads the light that the method's elements hold, sees too little.
+    constexpr double coarsest = 0.05;
+    const Knobs coarse = knobs_for_error(std::clamp(2.5 * error, error, std::max(error, coarsest)), pieces, options);
+    out.solve_mesh = coarse.solve_mesh, out.solve_rays = coarse.solve_rays;
+    out.gather_mesh = coarse.gather_mesh, out.gather_tolerance = coarse.gather_tolerance;
+    out.gather_element_share = coarse.gather_element_share;
+    return out;
 }
 
 Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options) {
@@ -68,7 +85,10 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
             out.knobs.gather_relative_noise *= factor;
             out.knobs.gather_rays.average *= std::pow(factor, -4.0 / 3);
         }
-        if (parts.interpolation > small * allowed) out.knobs.gather_tolerance *= factor;
+        if (parts.interpolation > small * allowed) {
+            out.knobs.gather_tolerance *= factor;
+            out.knobs.gather_element_share *= factor;
+        }
         out.work = std::max(out.work, std::pow(factor, -4.0 / 3));
     }
     apply_user_knobs(out.knobs, options);

@@ -13,17 +13,23 @@ struct Knobs {
     double direct_tolerance = 0.1;  ///< Misfit of the projected direct light, relative to its mean.
     double residual = 1e-3;         ///< Of the discrete system.
     std::size_t max_iterations = 1000;
-    double link_error = 0;             ///< Of all links together, relative to the mean reflected radiosity.
-    MeshSize gather_mesh;              ///< Of the elements that indirect light is gathered on, to begin with.
-    RayBudget gather_rays;             ///< Rays of a node.
-    double gather_tolerance = 0;       ///< Error of interpolation, relative to the mean reflected radiosity.
-    double gather_noise = 0;           ///< Error of the rays, likewise,
-    double gather_relative_noise = 0;  ///< and of the light on small elements; 0: any.
+    double link_error = 0;                 ///< Of all links together, relative to the mean reflected radiosity.
+    MeshSize gather_mesh;                  ///< Of the elements that indirect light is gathered on, to begin with.
+    RayBudget gather_rays;                 ///< Rays of a node.
+    double gather_tolerance = 0;           ///< Error of interpolation, relative to the mean reflected radiosity.
+    double gather_noise = 0;               ///< Error of the rays, likewise,
+    double gather_relative_noise = 0;      ///< and of the light on small elements; 0: any.
+    double gather_relative_tolerance = 0;  ///< Error of interpolation where elements are summed, of the light there.
+    double gather_element_share = 0;       ///< What an element may miss there, of the light there.
 };
 
 /// Knobs for a relative error, where the pieces of the scene are these. Rules of thumb that the certificate checks:
 /// elements ~ 1/R, rays a node ~ R^(-4/3) (scrambled Sobol points), strips at concave edges until their share is R.
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options);
+
+/// The same where light is summed over elements (`ElementGather`). Nothing is lost to noise there, so that meshes for a
+/// larger error do; below 1%, where places by themselves are to be right, meshes stay and ends of edges are graded.
+Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options);
 
 /// What an error is made of, RMS relative to the mean reflected light: the method's elements, and of the local pass the
 /// noise of its rays and its interpolation.

@@ -5,6 +5,7 @@
 #include "exitance/reconstruct/path_reference.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "support/built_scene.hpp"
+#include "support/solved.hpp"
 
 namespace exitance {
 namespace {
@@ -34,14 +35,6 @@ Scene room_with_bulb() {
     CheckedScene checked = make_scene(std::move(d));
     EXI_CHECK(static_cast<bool>(checked.scene));
     return std::move(*checked.scene);
-}
-
-Solution solved(const Scene& scene, const SolveOptions& options) {
-    Progress progress;
-    const StopRequest stop;
-    Result<Solution> solution = solve_scene(scene, options, progress, stop);
-    EXI_CHECK(static_cast<bool>(solution));
-    return std::move(*solution);
 }
 
 }  // namespace

@@ -58,8 +58,9 @@ class Solver {
         constexpr double coarse = 0.08;
         constexpr double near = 30;  // seconds
         const bool deadline = stop.seconds_left() < near && !checkpoints_;
-        knobs_ = knobs_for_error(deadline ? std::max(coarse, options.error_target()) : options.error_target(),
-                                 stage_.pieces, options);
+        const double error = deadline ? std::max(coarse, options.error_target()) : options.error_target();
+        knobs_ = knobs_for_error(error, stage_.pieces, options);
+        if (ElementGather::suits(stage_)) knobs_ = knobs_for_sums(knobs_, error, stage_.pieces, options);
     }
 
     Result<Solution> run() {
@@ -198,9 +199,10 @@ class Solver {
         }
         if (step_ == Step::decide) return;
         Stopwatch watch;
-        const QuickFunction b(gathered_light(stage_.scene, direct_, *light_, share_), stage_.scene.regions().size());
+        const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
+        const QuickFunction b(light, stage_.scene.regions().size());
         if (step_ == Step::gather) {
-            const bool whole = deliver(b);
+            const bool whole = deliver(light, b);
             statistics().seconds["reconstruct"] += watch.restart();
             if (!whole) return;
             reach(Step::certify);
@@ -225,11 +227,14 @@ class Solver {
     }
 
     /// Light everywhere, from what the method found. False when a request to stop cut that short.
-    bool deliver(const QuickFunction& b) {
+    bool deliver(const ElementFunction& light, const QuickFunction& b) {
+        const bool gathers = !light_->holds_direct && !light_->delivers;
+        std::optional<ElementGather> elements;
+        if (gathers && ElementGather::suits(stage_)) elements.emplace(stage_, light);
         gathered_ = {};
         ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_)
                                    : light_->delivers   ? polynomials_on_leaves(*light_)
-                                                        : gather(b, fresh_);
+                                                        : gather(b, elements ? &*elements : nullptr, fresh_);
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
             if (certificate_.points > 0) return false;
@@ -251,7 +256,7 @@ class Solver {
         return find_direct_share(stage_, *light_, locator, options_.seed);
     }
 
-    ElementFunction gather(const ReflectedLight& b, bool fresh) {
+    ElementFunction gather(const ReflectedLight& b, const ElementGather* elements, bool fresh) {
         progress_.phase("gather");
         const double scale = light_->mean_reflected();
         if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
@@ -259,7 +264,10 @@ class Solver {
                                    {.rays = knobs_.gather_rays,
                                     .noise = knobs_.gather_noise * scale,
                                     .relative_noise = knobs_.gather_relative_noise,
-                                    .tolerance = knobs_.gather_tolerance * scale},
+                                    .tolerance = knobs_.gather_tolerance * scale,
+                                    .relative_tolerance = knobs_.gather_relative_tolerance,
+                                    .elements = elements,
+                                    .element_share = knobs_.gather_element_share},
                                    gathered_, progress_, stop_, safe_points());
     }
 

@@ -6,18 +6,11 @@
 #include "exitance/reconstruct/path_reference.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "support/built_scene.hpp"
+#include "support/solved.hpp"
 #include "support/test_scenes.hpp"
 
 namespace exitance {
 namespace {
-
-Solution solved(const Scene& scene, const SolveOptions& options) {
-    Progress progress;
-    const StopRequest stop;
-    Result<Solution> solution = solve_scene(scene, options, progress, stop);
-    EXI_CHECK(static_cast<bool>(solution));
-    return std::move(*solution);
-}
 
 std::vector<double> bits(const Solution& s) {
     std::vector<double> out = {s.statistics.relative_error_estimate, s.statistics.relative_error_bound};
@@ -136,7 +129,7 @@ TEST(SolveScene, ErrorFallsWithTheErrorAskedFor) {
     for (const ReferenceLight& r : reference_light(scene, points, 16384, 5, progress, stop))
         E.push_back(r.irradiance[0]);
     double last = 1;
-    for (const double asked : {0.08, 0.02}) {
+    for (const double asked : {0.08, 0.01}) {
         const Solution solution = solved(scene, {.error = asked});
         const double error = error_at(RadiosityFunction(solution), points, E);
         EXPECT_LT(error, asked + 0.004);  // the reference's own noise

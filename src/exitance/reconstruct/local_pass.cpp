@@ -19,8 +19,18 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
 double LocalPass::allowed_noise(ElementId e, double light, const LocalPassDemand& demand) const {
     const double share = demand.noise * std::pow(mean_area_ / tree_.area(e), 0.25);
     constexpr double small = 0.125, least = 0.2;
-    if (demand.relative_noise == 0 || tree_.area(e) > small * mean_area_) return share;
-    return std::min(share, std::max(demand.relative_noise * light, least * demand.noise));
+    if (demand.relative_noise == 0) return share;
+    // Large ones, where their light is dim: four times as much of what there is.
+    const double relative = (tree_.area(e) > small * mean_area_ ? 4 : 1) * demand.relative_noise;
+    return std::min(share, std::max(relative * light, least * demand.noise));
+}
+
+/// An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Without noise it can
+/// be told how far dim places are off, too.
+double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
+    const double share = demand.tolerance * std::sqrt(mean_area_ / tree_.area(e));
+    if (demand.elements == nullptr || demand.relative_tolerance == 0) return share;
+    return std::min(share, demand.relative_tolerance * light);
 }
 
 bool LocalPass::is_too_noisy(ElementId e, const LocalPassDemand& demand) const {
@@ -31,7 +41,7 @@ bool LocalPass::is_too_noisy(ElementId e, const LocalPassDemand& demand) const {
 /// Gathers with the rays that the element's area suggests, or that it or its parent took before, and once more with as
 /// many as the noise then asks for.
 LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand,
-                                     GatherWorkspace& workspace) const {
+                                     Workspace& workspace) const {
     const ElementId parent = tree_.parent(e);
     const unsigned inherited = parent.is_none() ? 0 : sampled_[parent].place_rays / 2;
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays : inherited;
@@ -46,29 +56,39 @@ LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, const
     };
     unsigned spent = 0;
     if (sampled_[e].place_rays > 0) rays = more(sampled_[e]);
-    Sampled out = sample(e, b, rays, workspace);
+    Sampled out = sample(e, b, rays, demand, workspace);
     constexpr double tolerated = 1.5;
     if (excess_of(out) > tolerated && more(out) > rays) {
         spent = out.rays;
-        out = sample(e, b, more(out), workspace);
+        out = sample(e, b, more(out), demand, workspace);
     }
     out.rays += spent;
     return out;
 }
 
-LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, unsigned rays,
-                                     GatherWorkspace& workspace) const {
-    const Patch& patch = tree_.patch(e);
+/// One place's light: summed over elements, exact but for what they may miss, or by rays.
+Gathered LocalPass::gather_at(ElementId e, std::size_t place, const Point& x, const ReflectedLight& b, unsigned rays,
+                              const LocalPassDemand& demand, Workspace& workspace) const {
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
-    const Spectrum& rho = stage_.scene.material(region).reflectance;
+    if (demand.elements != nullptr) {
+        if (stage_.occluders.is_covered(x, n, region)) return {};
+        return {(*demand.elements)(x, n, region, demand.element_share, workspace.elements), {}};
+    }
+    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, place);
+    return gather_reflected(stage_, x, n, region, rays, key, b, workspace.rays);
+}
+
+LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, unsigned rays, const LocalPassDemand& demand,
+                                     Workspace& workspace) const {
+    const Patch& patch = tree_.patch(e);
+    const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
     const std::vector<WeightedPlace> places = element_rule(tree_, e, RuleOrder::fine);
     std::vector<Spectrum> value(places.size());
     Sampled out;
     double noise = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, i);
-        const Gathered g = gather_reflected(stage_, patch.at(places[i].uv), n, region, rays, key, b, workspace);
+        const Gathered g = gather_at(e, i, patch.at(places[i].uv), b, rays, demand, workspace);
         value[i] = g.irradiance;
         noise += places[i].weight * mean(rho * rho * g.variance);
         out.light += places[i].weight * squared(rho * g.irradiance) / static_cast<double>(bands);
@@ -84,7 +104,8 @@ LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, unsig
     out.noise_squared = taken * noise;
     out.noise_in_misfit = (1 - taken) * noise;
     out.place_rays = rays;
-    out.rays = rays * static_cast<unsigned>(places.size());
+    // Summed light has no noise, and what judges it should have little, too.
+    out.rays = (demand.elements != nullptr ? 4 : 1) * rays * static_cast<unsigned>(places.size());
     return out;
 }
 
@@ -94,10 +115,9 @@ std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId
     std::vector<ElementId> fresh;
     for (ElementId e : candidates) {
         const Sampled& s = sampled_[e];
-        // An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Five freedoms
-        // of noise alone leave over 2.3 times what they do on average once in twenty times.
-        const double share = demand.tolerance * demand.tolerance * mean_area_ / tree_.area(e);
-        if (s.misfit_squared <= share + 2.3 * s.noise_in_misfit) continue;
+        // Five freedoms of noise alone leave over 2.3 times what they do on average once in twenty times.
+        const double share = allowed_misfit(e, s.light, demand);
+        if (s.misfit_squared <= share * share + 2.3 * s.noise_in_misfit) continue;
         for (ElementId child : refine_element(tree_, e)) fresh.push_back(child);
     }
     return fresh;
@@ -147,7 +167,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
             safe_points.pass([&](auto& a) { a(active, depth, first, report.rays); });
             parallel_ranges(std::min(slice, active.size() - first), 1,
                             [&](std::size_t begin, std::size_t end) {
-                                GatherWorkspace workspace;
+                                Workspace workspace;
                                 for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
                                     sampled_[active[i]] = sample(active[i], b, demand, workspace),
                                     note_touched("rays", sampled_[active[i]].rays);
@@ -157,7 +177,8 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
             const double done = static_cast<double>(first) / static_cast<double>(active.size());
             progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
         }
-        for (ElementId e : active) report.rays += sampled_[e].rays;
+        if (demand.elements == nullptr)
+            for (ElementId e : active) report.rays += sampled_[e].rays;
         report.interrupted = stop.requested();
         if (depth == demand.max_depth || report.interrupted) break;
         active = split_where_needed(active, demand);

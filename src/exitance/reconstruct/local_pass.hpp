@@ -2,6 +2,7 @@
 
 #include "exitance/core/checkpoint.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
+#include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/reconstruct/gather.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/transport/ray_rows.hpp"
@@ -14,7 +15,12 @@ struct LocalPassDemand {
     double noise = 0;           ///< RMS error of rho E_ind that the rays may leave, W/m^2.
     double relative_noise = 0;  ///< As much of the light there as the rays may leave on small elements; 0: any.
     double tolerance = 0;       ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
-    int max_depth = 8;          ///< Rounds of cutting.
+    /// As much of the light there as interpolation may leave on an element that elements are summed for; 0: any.
+    double relative_tolerance = 0;
+    /// The same b, to be summed over in place of rays, where that suits the scene; and what one element may miss.
+    const ElementGather* elements = nullptr;
+    double element_share = 1e-4;
+    int max_depth = 8;  ///< Rounds of cutting.
 };
 
 struct LocalPassReport {
@@ -67,9 +73,18 @@ class LocalPass {
         unsigned place_rays = 0;     ///< Of one place, in the end; 0: not gathered yet.
     };
 
-    Sampled sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand,
-                   GatherWorkspace& workspace) const;
-    Sampled sample(ElementId e, const ReflectedLight& b, unsigned rays, GatherWorkspace& workspace) const;
+    /// Room for the gathers of one thread.
+    struct Workspace {
+        GatherWorkspace rays;
+        ElementGather::Workspace elements;
+    };
+
+    Sampled sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, Workspace& workspace) const;
+    Sampled sample(ElementId e, const ReflectedLight& b, unsigned rays, const LocalPassDemand& demand,
+                   Workspace& workspace) const;
+    Gathered gather_at(ElementId e, std::size_t place, const Point& x, const ReflectedLight& b, unsigned rays,
+                       const LocalPassDemand& demand, Workspace& workspace) const;
+    double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double allowed_noise(ElementId e, double light, const LocalPassDemand& demand) const;
     bool is_too_noisy(ElementId e, const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);

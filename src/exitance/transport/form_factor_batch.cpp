@@ -116,12 +116,15 @@ void QuadBatch::reserve(std::size_t count) {
 void QuadBatch::add(const std::array<Point, 4>& corners) {
     const Point middle = 0.25 * ((corners[0] + corners[1]) + (corners[2] + corners[3]));
     double squared_radius = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (const Point& corner : corners) squared_radius = std::max(squared_radius, squared_norm(corner - middle));
+    add(corners, middle, std::sqrt(squared_radius));
+}
+
+void QuadBatch::add(const std::array<Point, 4>& corners, const Point& middle, double radius) {
+    for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t axis = 0; axis < 3; ++axis) corner_[3 * i + axis].push_back(corners[i][axis]);
-        squared_radius = std::max(squared_radius, squared_norm(corners[i] - middle));
-    }
     for (std::size_t axis = 0; axis < 3; ++axis) middle_[axis].push_back(middle[axis]);
-    radius_.push_back(std::sqrt(squared_radius));
+    radius_.push_back(radius);
 }
 
 void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out) {

@@ -16,6 +16,8 @@ class QuadBatch {
     void reserve(std::size_t count);
     /// Corners counter-clockwise seen from the front, metres.
     void add(const std::array<Point, 4>& corners);
+    /// The same, where a ball that holds the quad is known: its middle and radius, metres.
+    void add(const std::array<Point, 4>& corners, const Point& middle, double radius);
     std::size_t size() const { return radius_.size(); }
 
   private:

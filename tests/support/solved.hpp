@@ -1,0 +1,17 @@
+#pragma once
+
+#include "exitance/core/check.hpp"
+#include "exitance/methods/solve_scene.hpp"
+
+namespace exitance {
+
+/// The solution of a scene; the test ends when there is none.
+inline Solution solved(const Scene& scene, const SolveOptions& options) {
+    Progress progress;
+    const StopRequest stop;
+    Result<Solution> solution = solve_scene(scene, options, progress, stop);
+    EXI_CHECK(static_cast<bool>(solution));
+    return std::move(*solution);
+}
+
+}  // namespace exitance
