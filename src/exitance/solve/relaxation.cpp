@@ -68,6 +68,54 @@ SolveReport jacobi(const RadiositySystem& s, std::span<Spectrum> b, StopRule sto
     }
 }
 
+/// A bound on the eigenvalues of rho F, a band: the largest (rho F x)_i / x_i for x = rho F 1 [Wielandt50], which
+/// holds where F has no negative entries. Two gathers.
+Spectrum spectral_bound(const RadiositySystem& s) {
+    Values x(s.rhs.size(), Spectrum(1.0)), y(x.size());
+    Spectrum bound(0.0);
+    for (int step = 0; step < 2; ++step) {
+        s.F.gather(x, y);
+        bound = Spectrum(0.0);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            y[i] = s.reflectance[i] * y[i];
+            const Spectrum ratio = divided(y[i], x[i]);
+            for (std::size_t k = 0; k < bands; ++k) bound[k] = std::max(bound[k], ratio[k]);
+        }
+        std::swap(x, y);
+    }
+    for (double& v : bound.value) v = std::min(v, 0.9999);
+    return bound;
+}
+
+SolveReport chebyshev(const RadiositySystem& s, std::span<Spectrum> b, StopRule stop) {
+    Watch watch(s, stop);
+    Spectrum r = spectral_bound(s), omega;
+    watch.report.iterations += 2;
+    Values before(b.begin(), b.end()), change;
+    double least = HUGE_VAL;
+    for (int step = 0;; ++step) {
+        residual(s, b, change);
+        ++watch.report.iterations;
+        const bool done = watch.done(change);
+        constexpr double diverges = 10;
+        if (watch.report.residual > diverges * least) {  // the bound was none: entries below 0
+            for (double& v : r.value) v = 0.5 * (v + 1);
+            step = 0;
+        }
+        least = std::min(least, watch.report.residual);
+        for (std::size_t k = 0; k < bands; ++k)
+            omega[k] = done || step == 0 ? 1
+                       : step == 1       ? 2 / (2 - r[k] * r[k])
+                                         : 1 / (1 - 0.25 * r[k] * r[k] * omega[k]);
+        parallel_for(b.size(), 1024, [&](std::size_t i) {
+            const Spectrum now = b[i];
+            b[i] = before[i] + omega * (now + change[i] - before[i]);
+            before[i] = now;
+        });
+        if (done) return watch.report;
+    }
+}
+
 SolveReport gauss_seidel(const RadiositySystem& s, std::span<Spectrum> b, StopRule stop) {
     Watch watch(s, stop);
     for (;;) {
@@ -217,6 +265,8 @@ SolveReport solve_radiosity(const RadiositySystem& system, Relaxation method, st
             return conjugate_gradients(system, b, stop);
         case Relaxation::gmres:
             return gmres(system, b, stop);
+        case Relaxation::chebyshev:
+            return chebyshev(system, b, stop);
     }
     return {};
 }

@@ -16,7 +16,7 @@ struct RadiositySystem {
     std::span<const double> area;           ///< m^2; weights of the norms.
 };
 
-enum class Relaxation { jacobi, gauss_seidel, cg, gmres, southwell };
+enum class Relaxation { jacobi, gauss_seidel, cg, gmres, southwell, chebyshev };
 
 /// When to stop: the first of these that is reached.
 struct StopRule {
@@ -44,6 +44,10 @@ double surface_norm(std::span<const Spectrum> b, std::span<const double> area);
 /// elements
 ///   with rho = 0 are known (b = rhs) and leave the system. Wants A_i F_ij = A_j F_ji; each band has its own process.
 /// - gmres: GMRES(20) on (I - rho F) b = rhs, any F; each band has its own process. Source: [Saad86].
+/// - chebyshev: Jacobi with two terms, b' = a + w (rhs + rho F b - a) from b and the step before it, a; w from a bound
+/// r
+///   on the eigenvalues of rho F, real and in [-r, r] by reciprocity. 1 / (1 - r^2)^(1/2) gathers where Jacobi takes
+///   1 / (1 - r); no inner products. Source: [Golub61].
 /// - southwell: shooting, see solve/shooting.hpp; asked for here it stands for gauss_seidel, which visits all in turn.
 SolveReport solve_radiosity(const RadiositySystem& system, Relaxation method, std::span<Spectrum> b, StopRule stop);
 

@@ -55,7 +55,7 @@ struct Problem {
 class EveryRelaxation : public testing::TestWithParam<Relaxation> {};
 INSTANTIATE_TEST_SUITE_P(Relaxations, EveryRelaxation,
                          testing::Values(Relaxation::jacobi, Relaxation::gauss_seidel, Relaxation::cg,
-                                         Relaxation::gmres));
+                                         Relaxation::gmres, Relaxation::chebyshev));
 
 TEST_P(EveryRelaxation, LeavesNoResidual) {
     const Problem problem;
@@ -85,6 +85,38 @@ TEST(Relaxation, KrylovNeedsFewerGathersThanJacobi) {
     };
     EXPECT_LT(gathers(Relaxation::cg), gathers(Relaxation::jacobi));
     EXPECT_LT(gathers(Relaxation::gmres), gathers(Relaxation::jacobi));
+}
+
+/// Two plates of even elements that see nothing but each other: eigenvalues 1 and -1 of F.
+class TwoPlates final : public TransportOperator {
+  public:
+    std::size_t size() const override { return 8; }
+    Spectrum gather_at(std::size_t i, std::span<const Spectrum> b) const override {
+        Spectrum sum;
+        for (std::size_t j = 0; j < 4; ++j) sum += 0.25 * b[i < 4 ? 4 + j : j];
+        return sum;
+    }
+    void gather(std::span<const Spectrum> b, std::span<Spectrum> E) const override {
+        for (std::size_t i = 0; i < size(); ++i) E[i] = gather_at(i, b);
+    }
+    std::size_t memory_bytes() const override { return 0; }
+};
+
+TEST(Relaxation, ChebyshevNeedsTheRootOfJacobisGathersWhereLightIsReflectedOften) {
+    const TwoPlates F;
+    const std::vector<Spectrum> rho(F.size(), Spectrum(0.95));
+    std::vector<Spectrum> rhs(F.size());
+    rhs[0] = Spectrum(1.0);
+    const std::vector<double> area(F.size(), 1.0);
+    const auto gathers = [&](Relaxation method) {
+        std::vector<Spectrum> b(F.size());
+        const SolveReport report = solve_radiosity({F, rho, rhs, area}, method, b, {.residual = 1e-8});
+        EXPECT_TRUE(report.converged);
+        return report.iterations;
+    };
+    // ln 1e-8 / ln 0.95 = 359, less what the light on one element alone begins with; and with (1 - (1 - r^2)^(1/2)) / r = 0.72 in place of r = 0.95: 57.
+    EXPECT_NEAR(static_cast<double>(gathers(Relaxation::jacobi)), 359, 15);
+    EXPECT_LE(gathers(Relaxation::chebyshev), 65u);
 }
 
 TEST(Relaxation, AStopRequestEndsIt) {
