@@ -37,6 +37,10 @@ const std::vector<std::string> statistics_keys{"method",
                                                "seconds",
                                                "peak_memory_bytes",
                                                "link_memory_bytes",
+                                               "bytes_per_link",
+                                               "element_memory_bytes",
+                                               "bytes_per_element",
+                                               "elements_by_level",
                                                "warnings"};
 
 }  // namespace

@@ -228,6 +228,17 @@ void declare(CLI::App& app, SolveArguments& arguments) {
            "Links look for certain visibility before they cast rays; default on")
         ->type_name("on|off")
         ->group("Method");
+    app.add_option_function<std::string>(
+           "--smoothing", [&o](const std::string& w) { o.smoothing = read_switch("--smoothing", w); },
+           "Deliver the method's elements, smoothed or as they are, in place of gathering their light")
+        ->type_name("on|off")
+        ->group("Method");
+    app.add_option("--importance", arguments.importance,
+                   "Refine links for the light at these points (.csv or .pts, as of probe)")
+        ->type_name("FILE")
+        ->group("Method");
+    app.add_flag("--keep-links", o.keep_links, "Put a hierarchy's links into the solution, for export --links")
+        ->group("Method");
     add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
         ->group("Method");
     add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");
@@ -285,6 +296,11 @@ void declare(CLI::App& app, ExportArguments& arguments) {
     app.add_option("-o,--output", arguments.output, "By ending: .glb, .vtkhdf, .vtu, .obj, .csv")
         ->type_name("FILE")
         ->required();
+    app.add_option(
+           "--links", arguments.links,
+           "Of a solution with --keep-links: the links to an element, by its number, or, with those to all that "
+           "it is part of, to the one at x,y,z; as .csv or .obj")
+        ->type_name("ELEMENT");
 }
 
 void declare(CLI::App& app, RenderArguments& arguments) {

@@ -29,6 +29,7 @@ struct SolveArguments : CommonArguments {
     std::string scene, output;
     SolveOptions options;
     std::optional<double> time_limit;        ///< Of the whole run, seconds.
+    std::string importance;                  ///< Points that light is looked at; empty: everywhere.
     std::string trace;                       ///< Where to write what parallel loops did; empty: nowhere.
     std::optional<double> checkpoint_every;  ///< Seconds.
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
@@ -56,6 +57,7 @@ struct StatsArguments : CommonArguments {
 
 struct ExportArguments : CommonArguments {
     std::string solution, output;
+    std::string links;  ///< An element's number, or a place x,y,z; empty: export the light.
 };
 
 struct RenderArguments : CommonArguments {

@@ -1,7 +1,7 @@
 #include "exitance/io/export.hpp"
-
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/io/export_links.hpp"
 #include "exitance/io/solution_file.hpp"
 
 namespace exitance {
@@ -13,7 +13,8 @@ ExitCode run(const ExportArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
     if (signals.received()) return *signals.received();
-    const Result<void> written = export_solution(*solution, arguments.output);
+    const Result<void> written = arguments.links.empty() ? export_solution(*solution, arguments.output)
+                                                         : export_links(*solution, arguments.links, arguments.output);
     if (!written) return terminal.fail(written.error());
     return signals.received().value_or(ExitCode::done);
 }

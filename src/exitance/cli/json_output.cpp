@@ -1,6 +1,12 @@
 #include "exitance/cli/json_output.hpp"
 
+#include <fmt/format.h>
+
+#include <bit>
 #include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "exitance/core/random.hpp"
 
 namespace exitance {
 namespace {
@@ -23,6 +29,15 @@ Json name_or_null(const std::array<std::pair<Choice, std::string_view>, N>& tabl
     return value ? Json(name_in(table, *value)) : Json(nullptr);
 }
 
+/// How many points, and which: "12 points c0ffee".
+std::string fingerprint(const std::vector<ImportantPoint>& points) {
+    std::uint64_t all = 0;
+    for (const ImportantPoint& p : points)
+        for (double v : {p.at.x, p.at.y, p.at.z, p.normal.x, p.normal.y, p.normal.z})
+            all = hash(all, std::bit_cast<std::uint64_t>(v));
+    return fmt::format("{} points {:016x}", points.size(), all);
+}
+
 Json to_json(const std::vector<Finding>& findings, Finding::Kind kind) {
     Json list = Json::array();
     for (const Finding& finding : findings)
@@ -39,6 +54,11 @@ std::string statistics_json(const SolveStatistics& s) {
         const auto at = s.seconds.find(phase);
         seconds[phase] = at == s.seconds.end() ? 0.0 : at->second;
     }
+    const std::size_t elements =
+        std::accumulate(s.elements_by_level.begin(), s.elements_by_level.end(), std::size_t(0));
+    const auto share = [](std::size_t whole, std::size_t parts) {
+        return parts > 0 ? static_cast<double>(whole) / static_cast<double>(parts) : 0.0;
+    };
     const Json json{
         {"method", s.method},
         {"basis", s.basis},
@@ -60,6 +80,10 @@ std::string statistics_json(const SolveStatistics& s) {
         {"seconds", seconds},
         {"peak_memory_bytes", s.peak_memory_bytes},
         {"link_memory_bytes", s.link_memory_bytes},
+        {"bytes_per_link", share(s.link_memory_bytes, s.links)},
+        {"element_memory_bytes", s.element_memory_bytes},
+        {"bytes_per_element", share(s.element_memory_bytes, elements)},
+        {"elements_by_level", s.elements_by_level},
         {"warnings", s.warnings},
     };
     return dump(json, 2);
@@ -95,7 +119,10 @@ std::string options_json(const SolveOptions& o) {
         {"overshooting", o.overshooting},
         {"visibility", name_in(visibility_names, o.visibility)},
         {"visibility_samples", value_or_null(o.visibility_samples)},
+        {"smoothing", value_or_null(o.smoothing)},
+        {"importance", o.importance.empty() ? Json(nullptr) : Json(fingerprint(o.importance))},
         {"form_factors", name_or_null(form_factor_names, o.form_factors)},
+        {"keep_links", o.keep_links},
         {"seed", o.seed},
     };
     return dump(json, -1);

@@ -12,6 +12,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/atomic_file.hpp"
 #include "exitance/io/checkpoint_file.hpp"
+#include "exitance/io/probe_file.hpp"
 #include "exitance/io/scene_file.hpp"
 #include "exitance/io/solution_file.hpp"
 #include "exitance/io/trace_file.hpp"
@@ -78,6 +79,18 @@ class Tracing {
     std::optional<TracedProgress> progress_;
 };
 
+/// The points that light is looked at become options.
+Result<void> read_importance(SolveArguments& arguments) {
+    if (arguments.importance.empty()) return {};
+    const Result<ProbePoints> points = load_probe_points(arguments.importance);
+    if (!points) return points.error();
+    if (points->size() == 0)
+        return Error{ErrorCode::bad_input, "holds no points", arguments.importance, "without --importance all counts"};
+    for (std::size_t i = 0; i < points->size(); ++i)
+        arguments.options.importance.push_back({points->points[i], points->normals[i]});
+    return {};
+}
+
 /// What a solution depends on.
 CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     CheckpointFacts facts{{"bands", std::to_string(bands)}, {"the scene", scene_fingerprint(scene)}};
@@ -116,8 +129,10 @@ ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) 
 }  // namespace
 
 /// exitance solve SCENE -o SOLUTION
-ExitCode run(const SolveArguments& arguments, Terminal& terminal) {
+ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
+    SolveArguments arguments = given;
+    if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
     StopRequest stop;
     const SignalGuard signals(stop);
     if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace exitance {
@@ -46,6 +47,14 @@ std::string summary(const SolveStatistics& s) {
     line("elements", fmt::format("{} ({} leaves) on {} surfaces", s.elements, s.leaf_elements, s.surfaces));
     line("transport", fmt::format("{} links ({}), {} form factors, {} rays", s.links, bytes(s.link_memory_bytes),
                                   s.form_factors, s.rays));
+    if (!s.elements_by_level.empty()) {
+        std::size_t all = 0;
+        for (std::size_t count : s.elements_by_level) all += count;
+        line("hierarchy", fmt::format("{} elements by level; {:.3g} bytes a link, {:.3g} an element",
+                                      fmt::join(s.elements_by_level, " "),
+                                      static_cast<double>(s.link_memory_bytes) / std::max<std::size_t>(1, s.links),
+                                      static_cast<double>(s.element_memory_bytes) / all));
+    }
     line("solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
     line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {} apart", s.energy.emitted, s.energy.absorbed,
                                percent(s.energy.defect)));

@@ -22,6 +22,10 @@ class StoredScene {
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function);
 ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
+/// The links of a hierarchy, with their elements as a function.
+void write_links(Hdf5Writer& file, const std::string& group, const KeptLinks& links);
+KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+
 /// Everything that may differ from run to run.
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics);
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);

@@ -27,6 +27,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("energy_defect", s.energy.defect);
     visit("peak_memory_bytes", s.peak_memory_bytes);
     visit("link_memory_bytes", s.link_memory_bytes);
+    visit("element_memory_bytes", s.element_memory_bytes);
     visit("stopped_by", s.stopped_by);
 }
 
@@ -45,6 +46,11 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
     file.make_group(group + "/seconds");
     for (const auto& [phase, seconds] : statistics.seconds)
         file.set_attribute(group + "/seconds", phase.c_str(), seconds);
+    if (!statistics.elements_by_level.empty()) {
+        const std::vector<std::int64_t> levels(statistics.elements_by_level.begin(),
+                                               statistics.elements_by_level.end());
+        file.write(group + "/elements_by_level", levels, 1, {"1", "elements of a hierarchy by depth, roots first"});
+    }
     file.write_texts(group + "/warnings", statistics.warnings, {"1", "what the user should know"});
 }
 
@@ -61,6 +67,9 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
     for (const std::string& phase : file.attribute_names(group + "/seconds"))
         if (const auto seconds = file.number_attribute(group + "/seconds", phase.c_str()))
             statistics.seconds[phase] = *seconds;
+    if (const std::string levels = group + "/elements_by_level"; file.has(levels))
+        for (const std::int64_t count : file.read<std::int64_t>(levels))
+            statistics.elements_by_level.push_back(static_cast<std::size_t>(std::max<std::int64_t>(0, count)));
     statistics.warnings = file.read_texts(group + "/warnings");
     return statistics;
 }

@@ -6,6 +6,8 @@
 
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/memory.hpp"
+#include "exitance/mesh/element_tree_archive.hpp"
+#include "exitance/methods/importance.hpp"
 #include "exitance/transport/link_refiner.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -28,7 +30,9 @@ class Hierarchy {
         project_direct();
         b_ = first_;
         // By the light that is reflected once, at first; then by all of it.
-        constexpr double coarse = 8, links_in_a_sum = 300;
+        constexpr double links_in_a_sum = 300;
+        const bool somewhere = !input_.options.importance.empty();  // else light is as good everywhere
+        const double coarse = somewhere ? 128 : 8;
         double demand = input_.knobs.link_error * light_norm();
         const double first = coarse * demand / std::sqrt(links_in_a_sum);
         LinkTolerance tolerance{.error = first,
@@ -37,22 +41,35 @@ class Hierarchy {
                                 .most_links = most_links(),
                                 .least_area = input_.options.min_area.value_or(1e-7 * input_.stage.area),
                                 .fractional = input_.options.visibility == VisibilityKind::fractional,
+                                .quadrature = input_.options.visibility == VisibilityKind::quadrature,
                                 .triage = input_.options.triage,
                                 .seed = input_.options.seed};
         constexpr int most_rounds = 8;
-        for (int round = 0; round < most_rounds; ++round) {
+        int round = 0;
+        const auto state = [&](auto& a) {
+            a(round, tolerance, light_.tree, light_.report, light_.delivers);
+            for (NodalField* field : {&direct_, &first_, &b_}) field->archive_state(a);
+            refiner_.archive_state(a);
+        };
+        SafePoints safe_points = input_.safe_points;
+        if (safe_points.resume(state)) sites_.update();
+        for (; round < most_rounds; ++round) {
+            safe_points.pass(state);
             input_.progress.phase("link");
             NodalField* const also[] = {&direct_, &first_};
             refiner_.refine(b_, also, tolerance, input_.progress, input_.stop);
             relax();
             light_.delivers = is_polynomial() && refiner_.open_share() > mostly_open;
-            demand = input_.knobs.link_error * (light_.delivers ? 1 : gathers_forgive) * light_norm();
+            demand = input_.knobs.link_error * (light_.delivers || input_.options.smoothing ? 1 : gathers_forgive) *
+                     light_norm();
             input_.progress.note(fmt::format(
                 "{} links ({:.0f}% of their light in the open), {} elements, {} rays; their error {:.3f}% of {:.3f}%",
                 refiner_.size(), 100 * refiner_.open_share(), light_.tree.size(), refiner_.rays(),
                 100 * refiner_.error() / light_norm(), 100 * demand / light_norm()));
             light_.limited_by_memory = refiner_.is_limited();
-            if (input_.stop.requested() || light_.limited_by_memory || refiner_.error() <= demand) break;
+            if (input_.stop.requested() || light_.limited_by_memory) break;
+            const bool weighed = round > 0 || !somewhere;
+            if (weighed && refiner_.error() <= demand) break;
             const double factor = std::clamp(0.8 * demand / refiner_.error(), 0.1, 0.8);
             tolerance.error *= factor, tolerance.interpolation *= factor;
         }
@@ -120,6 +137,38 @@ class Hierarchy {
         light_.numbering = LeafNumbering(light_.tree);
         links_.emplace(refiner_.make_links());
         solve_on_links(first_, b_);
+        if (!input_.options.importance.empty()) find_importance();
+    }
+
+    /// How much errors of elements count at the points that are looked at: by reciprocity the same links bear it,
+    /// w = w_0 + F rho w. Solved for rho w, which obeys the equation of light: v = rho w_0 + rho F v.
+    void find_importance() {
+        const std::vector<Spectrum> points =
+            looked_at(input_.stage, light_.tree, light_.numbering, input_.options.importance, input_.options.seed);
+        const std::vector<ElementId>& leaves = light_.numbering.leaves;
+        NodalField source(sites_), w(sites_);
+        for (std::size_t i = 0; i < leaves.size(); ++i)
+            for (std::size_t k = 0; k < sites_.nodes(); ++k)
+                source.set_node(leaves[i], k, material(leaves[i]).reflectance * points[i]);
+        NodalField v = source;
+        const SolveReport of_light = light_.report;
+        solve_on_links(source, v);
+        light_.report = of_light;
+        links_->gather(v, w);
+        w.push();
+        Field<ElementId, double> importance(light_.tree.size(), 0.0);
+        double total = 0;
+        for (std::size_t i = 0; i < leaves.size(); ++i) {
+            const double here = mean(points[i] + mean_over(w, leaves[i]));
+            importance[leaves[i]] = light_.tree.area(leaves[i]) * std::max(0.0, here);
+            total += importance[leaves[i]];
+        }
+        for (std::size_t e = importance.size(); e-- > 0;)
+            for (ElementId child : light_.tree.children(ElementId(e))) importance[ElementId(e)] += importance[child];
+        constexpr double least = 1e-6;
+        for (ElementId e : importance.ids())
+            importance[e] = std::max(least, importance[e] / total * input_.stage.area / light_.tree.area(e));
+        refiner_.set_importance(std::move(importance));
     }
 
     /// x = rhs + rho F x for what leaves the elements, from the x that there is.
@@ -137,7 +186,8 @@ class Hierarchy {
             }
         const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
         // Links are gathered all at once, and higher orders are not symmetric.
-        const Relaxation method = asked == Relaxation::jacobi ? asked : Relaxation::gmres;
+        const bool all_at_once = asked == Relaxation::jacobi || asked == Relaxation::chebyshev;
+        const Relaxation method = all_at_once ? asked : Relaxation::gmres;
         const std::size_t before = light_.report.iterations;
         light_.report = solve_radiosity({F, rho, first, area}, method, value,
                                         {.residual = 0.1 * input_.knobs.residual,
@@ -261,7 +311,9 @@ class Hierarchy {
                     input_.direct.at({own, input_.direct.tree.patch(own).coordinates(patch.corner(i))});
         }
         light_.links = links_->size();
+        if (input_.options.keep_links) light_.kept_links = links_->list();
         light_.link_memory_bytes = links_->memory_bytes();
+        light_.element_memory_bytes = light_.tree.memory_bytes() + sites_.memory_bytes() + 3 * b_.memory_bytes();
         light_.rays += refiner_.rays();
         light_.form_factors = refiner_.form_factors();
     }

@@ -98,7 +98,7 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
 /// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each). With `--basis linear` rows are cast from nodes, and
 /// what a ray reads is the polynomial of the element that it hits [Atkinson00].
 GlobalLight solve_matrix(const MethodInput& input) {
-    const auto& [stage, options, knobs, direct, progress, stop] = input;
+    const auto& [stage, options, knobs, direct, progress, stop, safe_points] = input;
     GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};
     light.direct = leaf_means(direct, light.numbering);
     light.on_projection = true;

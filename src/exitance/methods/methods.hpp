@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/progress.hpp"
+#include "exitance/core/checkpoint.hpp"
 #include "exitance/methods/accuracy.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
@@ -17,6 +17,8 @@ struct MethodInput {
     const DirectProjection& direct;
     Progress& progress;
     const StopRequest& stop;
+    /// Where a method of several rounds may keep its state between them.
+    SafePoints safe_points = {};
 };
 
 /// Finds the reflected light of every element of a mesh that it makes. One file a method.

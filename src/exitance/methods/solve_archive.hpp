@@ -33,10 +33,10 @@ template <class Archive>
 void archive(Archive& a, GlobalLight& light) {
     auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection,
            standard_error, direct_share, holds_direct, limited_by_memory, report, rays, form_factors, links,
-           link_memory_bytes] = light;
+           link_memory_bytes, element_memory_bytes, kept_links] = light;
     a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection);
     a(standard_error, direct_share, holds_direct, limited_by_memory, report, rays, form_factors, links);
-    a(link_memory_bytes);
+    a(link_memory_bytes, element_memory_bytes, kept_links);
 }
 
 template <class Archive>
@@ -49,10 +49,10 @@ template <class Archive>
 void archive(Archive& a, SolveStatistics& statistics) {
     auto& [method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations,
            converged, residual, estimate, bound, interpolant, energy, seconds, peak_memory_bytes, link_memory_bytes,
-           warnings, stopped_by] = statistics;
+           element_memory_bytes, elements_by_level, warnings, stopped_by] = statistics;
     a(method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations);
     a(converged, residual, estimate, bound, interpolant, energy, seconds, peak_memory_bytes, link_memory_bytes);
-    a(warnings, stopped_by);
+    a(element_memory_bytes, elements_by_level, warnings, stopped_by);
 }
 
 }  // namespace exitance

@@ -6,15 +6,17 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "exitance/core/schedule.hpp"
+#include "exitance/geometry/vec.hpp"
 #include "exitance/solve/relaxation.hpp"
 
 namespace exitance {
 
 enum class Method { automatic, matrix, progressive, substructuring, hierarchical, wavelet, monte_carlo };
 enum class BasisKind { constant, linear, haar, flatlet2, flatlet3, multiwavelet2, multiwavelet3 };
-enum class VisibilityKind { automatic, fractional, exact };
+enum class VisibilityKind { automatic, fractional, quadrature, exact };
 enum class FormFactorKind { analytic, ray_cast };
 
 /// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
@@ -36,16 +38,18 @@ inline constexpr std::array<std::pair<BasisKind, std::string_view>, 7> basis_nam
     {BasisKind::multiwavelet2, "multiwavelet2"},
     {BasisKind::multiwavelet3, "multiwavelet3"},
 }};
-inline constexpr std::array<std::pair<Relaxation, std::string_view>, 5> relaxation_names{{
+inline constexpr std::array<std::pair<Relaxation, std::string_view>, 6> relaxation_names{{
     {Relaxation::jacobi, "jacobi"},
     {Relaxation::gauss_seidel, "gauss-seidel"},
     {Relaxation::cg, "cg"},
     {Relaxation::gmres, "gmres"},
     {Relaxation::southwell, "southwell"},
+    {Relaxation::chebyshev, "chebyshev"},
 }};
-inline constexpr std::array<std::pair<VisibilityKind, std::string_view>, 3> visibility_names{{
+inline constexpr std::array<std::pair<VisibilityKind, std::string_view>, 4> visibility_names{{
     {VisibilityKind::automatic, "auto"},
     {VisibilityKind::fractional, "fractional"},
+    {VisibilityKind::quadrature, "quadrature"},
     {VisibilityKind::exact, "exact"},
 }};
 inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 2> form_factor_names{{
@@ -72,6 +76,12 @@ constexpr std::string_view name_in(const std::array<std::pair<Choice, std::strin
 inline constexpr int all_bounces = -1;
 inline constexpr double default_error = 0.02;  ///< Relative RMS error, of radiosity.
 
+/// A point where light is looked at, and the direction in which the receiving plane faces there, of length 1.
+struct ImportantPoint {
+    Point at;
+    Normal normal;
+};
+
 /// What a solve is asked for. An empty optional leaves the choice to the method, which derives it from the error asked
 /// for; a knob that is set by hand is used as it stands and lifts the default demand.
 struct SolveOptions {
@@ -93,6 +103,12 @@ struct SolveOptions {
     std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
     bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
     std::optional<FormFactorKind> form_factors = {};
+    /// Deliver what the method's elements hold in place of gathering it: smoothed (true) or as it is. Empty: whatever
+    /// is best.
+    std::optional<bool> smoothing = {};
+    /// Points where light is looked at; links are refined for their sake. Empty: light is as good everywhere.
+    std::vector<ImportantPoint> importance = {};
+    bool keep_links = false;  ///< Put the links of a hierarchy into the solution, for people to look at.
 
     int threads = 0;                         ///< 0: all cores. Results do not depend on it.
     Schedule schedule = Schedule::stealing;  ///< How work comes to threads. Likewise.
@@ -104,9 +120,10 @@ struct SolveOptions {
         return epsilon || mesh_size || residual || max_iterations || min_area || visibility_samples;
     }
     /// The error to be reached: as asked for; `default_error` when nothing was said; none when knobs were set by hand.
+    /// Where points are looked at, it is the error there.
     std::optional<double> error_demand() const {
         if (error) return error;
-        return has_knobs() ? std::nullopt : std::optional(default_error);
+        return has_knobs() || !importance.empty() ? std::nullopt : std::optional(default_error);
     }
     /// The error that knobs left open are derived from.
     double error_target() const { return error.value_or(default_error); }

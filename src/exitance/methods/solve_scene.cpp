@@ -6,9 +6,11 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/methods/importance.hpp"
 #include "exitance/methods/light_functions.hpp"
 #include "exitance/methods/memory_plan.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/smoothing.hpp"
 #include "exitance/methods/solve_archive.hpp"
 #include "exitance/reconstruct/certificate.hpp"
 #include "exitance/reconstruct/energy.hpp"
@@ -26,6 +28,17 @@ const MethodEntry& find_method(const SolveOptions& options) {
     const Method id = options.method == Method::automatic || counts_bounces ? Method::matrix : options.method;
     const auto table = method_table();
     return *std::find_if(table.begin(), table.end(), [&](const MethodEntry& m) { return m.id == id; });
+}
+
+std::vector<std::size_t> count_by_level(const ElementTree& tree) {
+    std::vector<std::size_t> count;
+    Field<ElementId, std::uint32_t> level(tree.size(), 0);
+    for (ElementId e : tree.ids()) {
+        if (!tree.parent(e).is_none()) level[e] = level[tree.parent(e)] + 1;
+        if (level[e] >= count.size()) count.push_back(0);
+        ++count[level[e]];
+    }
+    return count;
 }
 
 class Solver {
@@ -51,6 +64,9 @@ class Solver {
         statistics().threads = threads();
         statistics().schedule = name_in(schedule_names, schedule());
         statistics().surfaces = scene.surfaces().size();
+        has_links_ = method.id == Method::hierarchical || method.id == Method::wavelet;
+        if (!options.importance.empty() && !has_links_)
+            warn(fmt::format("--importance steers links, of which the method {} has none", statistics().method));
         statistics().converged = true;
         solution_.indirect = dark(stage_);
         // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
@@ -75,6 +91,8 @@ class Solver {
         } else {
             project_direct();
         }
+        if (light_ && !light_->kept_links.empty())
+            solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
         // What only attempts need makes room for the mesh that is written.
         light_.reset();
         local_pass_.reset();
@@ -208,7 +226,7 @@ class Solver {
             reach(Step::certify);
         }
         progress_.phase("certify");
-        if (light_->holds_direct || light_->delivers)
+        if (!gathers())
             certify_solution({.error = options_.error_target()});
         else
             certify_solution({.error = options_.error_target(), .leaves = &gathered_.leaves, .gathered = &b});
@@ -219,7 +237,7 @@ class Solver {
     void find_light() {
         const Stopwatch watch;
         if (fresh_) {
-            light_ = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_});
+            light_ = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points()});
             record_method();
             share_ = direct_share();
         }
@@ -228,13 +246,10 @@ class Solver {
 
     /// Light everywhere, from what the method found. False when a request to stop cut that short.
     bool deliver(const ElementFunction& light, const QuickFunction& b) {
-        const bool gathers = !light_->holds_direct && !light_->delivers;
         std::optional<ElementGather> elements;
-        if (gathers && ElementGather::suits(stage_)) elements.emplace(stage_, light);
+        if (gathers() && ElementGather::suits(stage_)) elements.emplace(stage_, light);
         gathered_ = {};
-        ElementFunction indirect = light_->holds_direct ? constant_on_leaves(*light_)
-                                   : light_->delivers   ? polynomials_on_leaves(*light_)
-                                                        : gather(b, elements ? &*elements : nullptr, fresh_);
+        ElementFunction indirect = gathers() ? gather(b, elements ? &*elements : nullptr, fresh_) : on_leaves();
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
             if (certificate_.points > 0) return false;
@@ -250,8 +265,19 @@ class Solver {
         return true;
     }
 
+    /// Is the method's light gathered once more, or are its elements what is delivered?
+    bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
+
+    ElementFunction on_leaves() const {
+        const bool constant =
+            light_->indirect_corners.empty() || solution_.statistics.basis == name_in(basis_names, BasisKind::haar);
+        if (!constant) return polynomials_on_leaves(*light_);
+        return options_.smoothing.value_or(false) ? smoothed_on_leaves(*light_, stage_.scene.regions().size())
+                                                  : constant_on_leaves(*light_);
+    }
+
     Spectrum direct_share() const {
-        if (light_->holds_direct || light_->delivers || options_.bounces >= 0) return {};
+        if (!gathers() || options_.bounces >= 0) return {};
         const ElementLocator locator(light_->tree, stage_.scene.regions().size());
         return find_direct_share(stage_, *light_, locator, options_.seed);
     }
@@ -274,6 +300,7 @@ class Solver {
     void certify_solution(CertificateOptions options) {
         options.seed = options_.seed;
         options.direct_in_elements = light_->holds_direct;
+        if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
         // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
         const bool older = options_.bounces > 0;
         const Spectrum c = solution_.direct_share;
@@ -285,7 +312,7 @@ class Solver {
 
     /// What the estimate is made of, relative to the mean reflected light.
     ErrorParts error_parts() const {
-        if (light_->holds_direct || light_->delivers) return {.method = certificate_.estimate};
+        if (!gathers()) return {.method = certificate_.estimate};
         const double noise = gathered_.noise / certificate_.mean_reflected;
         const double misfit = std::sqrt(std::max(0.0, certificate_.local * certificate_.local - noise * noise));
         return {.method = certificate_.method,
@@ -301,6 +328,8 @@ class Solver {
         s.form_factors += light_->form_factors;
         s.links = light_->links;
         s.link_memory_bytes = light_->link_memory_bytes;
+        s.element_memory_bytes = light_->element_memory_bytes;
+        if (has_links_) s.elements_by_level = count_by_level(light_->tree);
         const double scale = light_->mean_reflected();
         if (!light_->standard_error.empty() && scale > 0)
             progress_.note(
@@ -353,6 +382,7 @@ class Solver {
     Progress& progress_;
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
+    bool has_links_ = false;
     Solution solution_;
     Stage stage_;
     Knobs knobs_;

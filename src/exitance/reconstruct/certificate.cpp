@@ -53,6 +53,13 @@ std::vector<WeightedSample> stratified_places(const ElementTree& tree,
     return out;
 }
 
+/// The places given, again and again, `count` in all.
+std::vector<WeightedSample> in_turn(const std::vector<ElementTree::Place>& places, std::size_t count) {
+    std::vector<WeightedSample> out;
+    for (std::size_t k = 0; k < count; ++k) out.push_back({places[k % places.size()], 1 / static_cast<double>(count)});
+    return out;
+}
+
 /// b + rho H b + (rho H)^2 b + ..., on the coarse mesh.
 std::vector<Spectrum> respond(const RadiositySystem& system, double residual) {
     std::vector<Spectrum> b(system.rhs.begin(), system.rhs.end());
@@ -107,7 +114,8 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
     const std::vector<WeightedSample> places =
-        stratified_places(indirect.tree, options.leaves, sample_count, options.seed);
+        options.places.empty() ? stratified_places(indirect.tree, options.leaves, sample_count, options.seed)
+                               : in_turn(options.places, sample_count);
     std::vector<Sample> samples(places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         GatherWorkspace workspace;

@@ -13,6 +13,8 @@ struct CertificateOptions {
     /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
     /// rays in proportion to those that it took. Null when there was none.
     const Field<ElementId, LocalPassReport::Leaf>* leaves = nullptr;
+    /// Where the error is to be measured, in the delivered function; empty: all over the surfaces.
+    std::vector<ElementTree::Place> places = {};
     /// What the local pass gathered, where there was one: tells its error from the method's.
     const ReflectedLight* gathered = nullptr;
 };

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/mesh/element_tree.hpp"
+#include "exitance/transport/kept_link.hpp"
 
 namespace exitance {
 
@@ -42,8 +42,17 @@ struct SolveStatistics {
     EnergyBalance energy;
     std::map<std::string, double> seconds;  ///< total, read, mesh, link, solve, certify, reconstruct, write
     std::size_t peak_memory_bytes = 0, link_memory_bytes = 0;
+    /// Of a hierarchy: elements that links lead between, with their light, and how many there are at each depth.
+    std::size_t element_memory_bytes = 0;
+    std::vector<std::size_t> elements_by_level;
     std::vector<std::string> warnings;
     std::string stopped_by;  ///< Empty, or "time limit", "memory limit", "iterations", "interrupt".
+};
+
+/// The links of a hierarchy, and the elements that they lead between.
+struct KeptLinks {
+    ElementFunction elements;     ///< With the indirect irradiance of the method's leaves, W/m^2.
+    std::vector<KeptLink> links;  ///< By receiver, then by source; empty where none were to be kept.
 };
 
 /// Light everywhere: B(x) = M + rho (E_dir(x) + E_ind(x)). E_dir is evaluated exactly from the scene when asked for,
@@ -62,6 +71,7 @@ struct Solution {
     bool direct_in_elements = false;
     /// All bounces (-1), or direct light alone (0): then `indirect` is zero and without elements below the roots.
     int bounces = -1;
+    KeptLinks links = {};  ///< Where they were to be kept.
 };
 
 }  // namespace exitance

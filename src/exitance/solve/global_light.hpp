@@ -5,6 +5,7 @@
 
 #include "exitance/mesh/solve_mesh.hpp"
 #include "exitance/solve/relaxation.hpp"
+#include "exitance/transport/kept_link.hpp"
 
 namespace exitance {
 
@@ -39,6 +40,10 @@ struct GlobalLight {
 
     SolveReport report = {};
     std::size_t rays = 0, form_factors = 0, links = 0, link_memory_bytes = 0;
+    std::size_t element_memory_bytes = 0;  ///< Of a hierarchy's elements and the light that they hold.
+
+    /// Of a hierarchy, where they are asked for: links by receiver, then by source.
+    std::vector<KeptLink> kept_links = {};
 
     double mean_reflected() const;  ///< Over all surfaces and bands, W/m^2.
 };

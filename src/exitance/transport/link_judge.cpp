@@ -157,8 +157,10 @@ double LinkJudge::cast_one(ElementId p, ElementId q, unsigned count) {
     const Patch &receiver = sites_.tree().patch(p), &source = sites_.tree().patch(q);
     from_.clear(), to_.clear();
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Point x = receiver.at(sites_.tree().uniform(p, points(i, 0), points(i, 1)));
-        const Point y = source.at(sites_.tree().uniform(q, points(i, 2), points(i, 3)));
+        const Point x = tolerance_.quadrature ? sites_.node(p, 0)
+                                              : receiver.at(sites_.tree().uniform(p, points(i, 0), points(i, 1)));
+        const Point y =
+            tolerance_.quadrature ? sites_.node(q, 0) : source.at(sites_.tree().uniform(q, points(i, 2), points(i, 3)));
         if (dot(sites_.normal(p), y - x) <= 0 || dot(source_normal_, x - y) <= 0) continue;
         from_.push_back(x), to_.push_back(y);
     }
@@ -177,7 +179,7 @@ double LinkJudge::cast_one(ElementId p, ElementId q, unsigned count) {
 /// `each` rays join a place near a receiver's node with one near a source's node: copies of the elements, so much
 /// smaller, stand around the nodes. Or one a receiver's node, to anywhere on the source.
 double LinkJudge::cast_many(ElementId p, ElementId q, unsigned each, bool few) {
-    const double size = n_ == 4 ? 0.42 : 0.22;
+    const double size = tolerance_.quadrature ? 0 : n_ == 4 ? 0.42 : 0.22;
     RandomStream random(tolerance_.seed, Stream::visibility, p.value, q.value);
     const Patch receiver = sites_.frame(p), source = sites_.frame(q);
     const auto around = [&](const Patch& frame, const Point& node) {
@@ -227,6 +229,7 @@ double LinkJudge::cast_many(ElementId p, ElementId q, unsigned each, bool few) {
 
 double LinkJudge::cast(ElementId p, ElementId q, bool few, double allowed) {
     constexpr unsigned one_link = 16;
+    if (tolerance_.quadrature) return n_ == 1 ? cast_one(p, q, 1) : cast_many(p, q, 1, false);
     const auto once = [&](unsigned times) {
         return n_ == 1 ? cast_one(p, q, few ? 4 : one_link * times) : cast_many(p, q, times, few);
     };
@@ -242,7 +245,8 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     if (!may_see(p, q)) return out;
     const Material& material = sites_.stage().scene.material(sites_.tree().region(p));
     set_source(q, light_weight(material));
-    const double area = sites_.tree().area(p), allowed = tolerance_.error / std::sqrt(area);
+    const double area = sites_.tree().area(p), weight = tolerance_.weight(p),
+                 allowed = tolerance_.error / std::sqrt(area * weight);
     const double rule = send(p, q, allowed, out.departure);
     double light = 0;
     for (std::size_t k = 0; k < n_; ++k) light = std::max(light, std::abs(node_light_[k]));
@@ -269,7 +273,7 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     }
     hand_over(pair.view == View::open, out);
     for (std::size_t k = 0; k < n_; ++k) out.light += area * sites_.weight(p, k) * std::abs(node_light_[k]);
-    out.squared_error = area * (rule * rule + visibility * visibility);
+    out.squared_error = area * weight * (rule * rule + visibility * visibility);
     out.verdict = Verdict::accept;
     return out;
 }

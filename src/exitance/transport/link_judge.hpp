@@ -22,8 +22,13 @@ struct LinkTolerance {
     std::size_t most_links = std::numeric_limits<std::size_t>::max();
     double least_area = 0;    ///< No element is cut below this, m^2.
     bool fractional = false;  ///< The share of rays that get through, for all nodes of a link; else each its own.
-    bool triage = true;       ///< Look for certain visibility before rays are cast.
+    bool quadrature = false;  ///< One ray from each node to each node, yes or no.
+    /// How much errors count on a receiver, squared, by element; null: alike everywhere.
+    const Field<ElementId, double>* importance = nullptr;
+    bool triage = true;  ///< Look for certain visibility before rays are cast.
     std::uint64_t seed = 1;
+
+    double weight(ElementId receiver) const { return importance ? (*importance)[receiver] : 1; }
 };
 
 /// A pair of elements on its way to become a link, or several. What may stand in between is known or not.

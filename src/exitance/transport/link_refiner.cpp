@@ -94,8 +94,10 @@ void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalFiel
     b.resize();
     for (NodalField* field : also) field->resize();
     roughness_.resize(tree_.size(), 0.0);
+    if (!importance_.empty()) importance_.resize(tree_.size(), 0.0);
     for (ElementId e : elements)
         for (ElementId child : tree_.children(e)) {
+            if (!importance_.empty()) importance_[child] = importance_[e];
             inherit(sites_, e, child, b);
             for (NodalField* field : also) inherit(sites_, e, child, *field);
         }
@@ -104,10 +106,12 @@ void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalFiel
 void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                         const StopRequest& stop) {
     std::vector<PieceId> pool;
+    const Field<ElementId, double>* const importance = importance_.empty() ? nullptr : &importance_;
     while (!pairs.empty()) {
         std::vector<Block> blocks((pairs.size() + block_size - 1) / block_size);
         // Once a stop is asked for, what is left is linked as it is.
         LinkTolerance now = tolerance;
+        now.importance = importance;
         limited_ |= links_.size() + pairs.size() > tolerance.most_links;
         if (stop.requested() || limited_) now.error = HUGE_VAL;
         parallel_for(
@@ -170,7 +174,7 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     Field<ElementId, std::uint8_t> too_much(tree_.size(), 0);
     interpolation_ = 0;
     for (ElementId e : received.ids()) {
-        const double error = tree_.area(e) * received[e].squared_error(sites_, e);
+        const double error = weight(e) * tree_.area(e) * received[e].squared_error(sites_, e);
         interpolation_ += error;
         if (error <= tolerance.interpolation * tolerance.interpolation) continue;
         if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
@@ -183,7 +187,7 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     std::vector<LinkPair> pairs;
     std::erase_if(links_, [&](const Found& found) {
         const ElementId p = found.result.link.receiver;
-        const double error = tree_.area(p) * mean_square(found.result.departure);
+        const double error = weight(p) * tree_.area(p) * mean_square(found.result.departure);
         if (!too_much[p] || (found.open && error < negligible * negligible)) return false;
         for (ElementId child : tree_.children(p)) {
             pairs.push_back(pair_of(found));

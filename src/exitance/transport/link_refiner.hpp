@@ -22,6 +22,10 @@ class LinkRefiner {
     void refine(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance, Progress& progress,
                 const StopRequest& stop);
 
+    /// How much errors count on each element as a receiver, squared and relative to the mean, from the next refinement
+    /// on; parts take it from their wholes. Empty: alike everywhere.
+    void set_importance(Field<ElementId, double> importance) { importance_ = std::move(importance); }
+
     /// Cuts leaves; their parts take their functions, of `b` and of each of `also`.
     void cut_elements(const std::vector<ElementId>& elements, NodalField& b, std::span<NodalField* const> also);
 
@@ -35,6 +39,12 @@ class LinkRefiner {
     double open_share() const;
     std::size_t size() const { return links_.size(); }
     Links make_links() const;
+
+    /// What was found so far, for checkpoints.
+    template <class Archive>
+    void archive_state(Archive& a) {
+        a(importance_, links_, blocks_, interpolation_, rays_, form_factors_, begun_, limited_);
+    }
 
     std::size_t rays() const { return rays_; }
     std::size_t form_factors() const { return form_factors_; }
@@ -57,7 +67,8 @@ class LinkRefiner {
 
     ElementTree& tree_;
     LinkSites& sites_;
-    Field<ElementId, double> roughness_;
+    double weight(ElementId receiver) const { return importance_.empty() ? 1 : importance_[receiver]; }
+    Field<ElementId, double> roughness_, importance_;
     std::vector<Found> links_;
     std::vector<float> blocks_;
     double interpolation_ = 0;  ///< Squared, as in error().

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/basis/nodal_basis.hpp"
+#include "exitance/core/archive.hpp"
 #include "exitance/core/spectrum.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -75,6 +76,11 @@ class NodalField {
   public:
     explicit NodalField(const LinkSites& sites) : sites_(&sites) { resize(); }
     void resize() { values_.resize(sites_->tree().size() * bands * sites_->stride(), 0.0); }
+    std::size_t memory_bytes() const { return 8 * values_.size(); }
+    template <class Archive>
+    void archive_state(Archive& a) {
+        a(values_);
+    }
     void clear() { std::fill(values_.begin(), values_.end(), 0.0); }
 
     double* at(ElementId e, std::size_t band) { return &values_[(e.value * bands + band) * sites_->stride()]; }

@@ -117,6 +117,39 @@ void Links::gather(const NodalField& b, NodalField& E) const {
                  {"gather links", [&](std::size_t row) { return sites_->tree().region(receiver_[row]).value; }, true});
 }
 
+template <std::size_t groups>
+double Links::mean_form_factor(std::size_t row, std::size_t link) const {
+    const ElementId p = receiver_[row];
+    const std::size_t n = sites_->nodes();
+    const SourceNodes<groups> source(*sites_, source_[link]);
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        four::Real K[groups]{};
+        if (block_[link] == Link::far) source.kernel(sites_->node(p, k), sites_->normal(p), K);
+        for (std::size_t l = 0; l < n; ++l) {
+            const std::size_t bit = k * n + l;
+            if (!bits_of(&visible_[link * words_], bit, 1)) continue;
+            const double factor =
+                block_[link] == Link::far ? K[l / 4][l % 4] : static_cast<double>(blocks_[block_[link] + bit]);
+            sum += sites_->weight(p, k) * factor;
+        }
+    }
+    return sum;
+}
+
+std::vector<KeptLink> Links::list() const {
+    std::vector<KeptLink> out;
+    out.reserve(size());
+    for (std::size_t row = 0; row < receiver_.size(); ++row)
+        for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
+            const double factor = sites_->nodes() == 1   ? static_cast<double>(factor_[i])
+                                  : sites_->nodes() == 4 ? mean_form_factor<1>(row, i)
+                                                         : mean_form_factor<3>(row, i);
+            out.push_back({receiver_[row], source_[i], static_cast<float>(factor)});
+        }
+    return out;
+}
+
 LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const LeafNumbering& numbering)
     : sites_(&sites), links_(&links), numbering_(&numbering), b_(sites), E_(sites) {}
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/transport/kept_link.hpp"
 #include "exitance/transport/link_sites.hpp"
 #include "exitance/transport/transport_operator.hpp"
 
@@ -47,7 +48,12 @@ class Links {
     /// E of every element that links lead to, at its nodes; of the others: zero. O(links).
     void gather(const NodalField& b, NodalField& E) const;
 
+    /// All of them, by receiver, then by source. O(links).
+    std::vector<KeptLink> list() const;
+
   private:
+    template <std::size_t groups>
+    double mean_form_factor(std::size_t row, std::size_t link) const;
     void gather_constants(std::size_t row, const NodalField& b, NodalField& E) const;
     template <std::size_t groups>
     void gather_kernels(std::size_t row, const NodalField& b, NodalField& E) const;
