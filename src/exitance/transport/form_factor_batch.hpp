@@ -2,12 +2,17 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "exitance/geometry/vec.hpp"
 
 namespace exitance {
+
+/// What a batch is evaluated with: the widest registers there are, or those that every processor has. The bits are the
+/// same; the second is there for tests.
+enum class Processor : std::uint8_t { fastest, any };
 
 /// Convex quads stored one array a coordinate, for evaluation several at a time. A triangle repeats its last corner.
 class QuadBatch {
@@ -19,9 +24,13 @@ class QuadBatch {
     /// The same, where a ball that holds the quad is known: its middle and radius, metres.
     void add(const std::array<Point, 4>& corners, const Point& middle, double radius);
     std::size_t size() const { return radius_.size(); }
+    std::array<Point, 4> corners(std::size_t k) const;
 
   private:
-    friend void point_to_quads(const Point&, const Normal&, const QuadBatch&, std::span<double>);
+    friend void point_to_quads(const Point&, const Normal&, const QuadBatch&, std::span<double>, Processor);
+    /// Where each coordinate begins: corners, middle, radius.
+    std::array<const double*, 16> columns() const;
+
     std::array<std::vector<double>, 12> corner_;  ///< x, y, z of corner 0, then of corner 1, ...
     std::array<std::vector<double>, 3> middle_;
     std::vector<double> radius_;  ///< Of a ball about the middle, metres.
@@ -32,8 +41,10 @@ class QuadBatch {
 /// Quads that look smaller than 0.006 take 7 points of the kernel (degree 5), below 0.07 it is 12 points (degree 7),
 /// nearer ones Lambert's contour sum with a polynomial arc tangent; quads cut by the horizon are left to
 /// point_to_polygon. Relative error 1e-12, on grazing views as many digits fewer as the height over the horizon has
-/// lost. About 10 ns a quad. x  point, metres      n  its unit normal      out  size() entries, in [0, 1]
-void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out);
+/// lost. About 10 ns a quad with AVX-512, 16 without. x  point, metres      n  its unit normal      out  size()
+/// entries, in [0, 1]
+void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out,
+                    Processor processor = Processor::fastest);
 
 /// Terms of Lambert's contour sum, gathered from any number of edges of any number of polygons.
 class EdgeTerms {

@@ -38,6 +38,19 @@ TEST(PointToQuads, AgreesWithTheScalarSumAtEveryDistance) {
     }
 }
 
+TEST(PointToQuads, HaveTheSameBitsWhateverTheProcessorOffers) {
+    RandomStream random(2, Stream::mesh);
+    for (std::size_t size : {3, 8, 1001}) {
+        QuadBatch batch;
+        for (std::size_t k = 0; k < size; ++k) batch.add(random_quad(random, std::exp(6 * random.uniform())));
+        std::vector<double> fastest(size), plain(size);
+        const Normal n = normalized({0.2, -0.3, 0.9});
+        point_to_quads({0.01, 0.02, 0.03}, n, batch, fastest);
+        point_to_quads({0.01, 0.02, 0.03}, n, batch, plain, Processor::any);
+        EXPECT_EQ(fastest, plain);
+    }
+}
+
 TEST(PointToQuads, WallsAndCeilingOfAClosedRoomSumToOne) {
     QuadBatch room;
     room.add({{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}});

@@ -5,63 +5,71 @@
 
 #include "exitance/geometry/vec.hpp"
 
-// Four numbers at a time, for the kernels of this folder, in the compiler's own vector types, which become whatever the
-// processor has.
-namespace exitance::four {
+// Several numbers at a time, for the kernels of this folder, in the compiler's own vector types, which become whatever
+// the processor has. Inlined always: a kernel that is made for several processors takes these along.
+#define EXITANCE_INLINE [[gnu::always_inline]] inline
 
-constexpr std::size_t lanes = 4;
-using Real = double __attribute__((vector_size(32)));
-using Mask = long long __attribute__((vector_size(32)));
+namespace exitance::lanes_of {
 
-struct Vec {
+template <class Real>
+struct VecOf {
     Real x, y, z;
 };
-inline Vec operator-(const Vec& a, const Vec& b) {
+template <class Real>
+EXITANCE_INLINE VecOf<Real> operator-(const VecOf<Real>& a, const VecOf<Real>& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline Vec operator+(const Vec& a, const Vec& b) {
+template <class Real>
+EXITANCE_INLINE VecOf<Real> operator+(const VecOf<Real>& a, const VecOf<Real>& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-inline Vec operator*(double s, const Vec& a) {
+template <class Real>
+EXITANCE_INLINE VecOf<Real> operator*(double s, const VecOf<Real>& a) {
     return {s * a.x, s * a.y, s * a.z};
 }
-inline Real dot(const Vec& a, const Vec& b) {
+template <class Real>
+EXITANCE_INLINE Real dot(const VecOf<Real>& a, const VecOf<Real>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline Real dot(const Normal& n, const Vec& a) {
+template <class Real>
+EXITANCE_INLINE Real dot(const Normal& n, const VecOf<Real>& a) {
     return n.x * a.x + n.y * a.y + n.z * a.z;
 }
-inline Vec cross(const Vec& a, const Vec& b) {
+template <class Real>
+EXITANCE_INLINE VecOf<Real> cross(const VecOf<Real>& a, const VecOf<Real>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-inline Real load(const double* p) {
-    return Real{p[0], p[1], p[2], p[3]};
+template <class Real>
+EXITANCE_INLINE Real load(const double* p) {
+    Real out;
+    __builtin_memcpy(&out, p, sizeof out);
+    return out;
 }
-inline Real sqrt(const Real& v) {
-    return Real{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+template <class Real>
+EXITANCE_INLINE void store(const Real& v, double* p) {
+    __builtin_memcpy(p, &v, sizeof v);
 }
-inline Real max(const Real& a, const Real& b) {
+template <class Real>
+EXITANCE_INLINE Real sqrt(const Real& v) {
+    Real out;
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < sizeof v / sizeof(double); ++i) out[i] = std::sqrt(v[i]);
+    return out;
+}
+template <class Real>
+EXITANCE_INLINE Real max(const Real& a, const Real& b) {
     return a > b ? a : b;
 }
-inline Real min(const Real& a, const Real& b) {
+template <class Real>
+EXITANCE_INLINE Real min(const Real& a, const Real& b) {
     return a < b ? a : b;
-}
-/// A bit for each lane whose sign bit is set, as it is where a comparison holds.
-inline int bits(const Mask& m) {
-#ifdef __AVX__
-    return __builtin_ia32_movmskpd256(reinterpret_cast<const Real&>(m));
-#else
-    return (m[0] < 0 ? 1 : 0) | (m[1] < 0 ? 2 : 0) | (m[2] < 0 ? 4 : 0) | (m[3] < 0 ? 8 : 0);
-#endif
-}
-inline bool any(const Mask& m) {
-    return bits(m) != 0;
 }
 
 /// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
 /// quotients share one division; then a polynomial in t^2 that interpolates atan(t)/t at Chebyshev points to 4e-17.
-inline Real angle_over_sine(const Real& y, const Real& x) {
+template <class Real>
+EXITANCE_INLINE Real angle_over_sine(const Real& y, const Real& x) {
     constexpr double c[11] = {1.0,
                               -0.3333333333332844,
                               0.1999999999885511,
@@ -74,19 +82,44 @@ inline Real angle_over_sine(const Real& y, const Real& x) {
                               -0.04348052215716462,
                               0.021135373157693246};
     const Real away = max(x, -x), low = min(y, away), high = max(y, away);
-    const Mask turned = low > 0.41421356237309503 * high;
+    const auto turned = low > 0.41421356237309503 * high;
     const Real under = turned ? low + high : high, inverse = 1 / (under * y);
     const Real t = (turned ? low - high : low) * y * inverse, z = t * t, w = z * z, v = w * w;
     // Estrin's scheme: short chains, so that edges overlap in the pipeline.
     const Real p = (c[0] + c[1] * z) + w * (c[2] + c[3] * z) + v * ((c[4] + c[5] * z) + w * (c[6] + c[7] * z)) +
                    v * v * ((c[8] + c[9] * z) + w * c[10]);
     // The angle is base + sign t p, by octant.
-    const Mask steep = y > away, back = x < 0;
+    const auto steep = y > away, back = x < 0;
     const Real eighth = turned ? Real{} + pi / 4 : Real{};
     Real a = t * p + eighth;
     a = steep ? pi / 2 - a : a;
     a = back ? pi - a : a;
     return a * under * inverse;
+}
+
+}  // namespace exitance::lanes_of
+
+namespace exitance::four {
+
+using namespace lanes_of;
+constexpr std::size_t lanes = 4;
+using Real = double __attribute__((vector_size(32)));
+using Mask = long long __attribute__((vector_size(32)));
+using Vec = lanes_of::VecOf<Real>;
+
+inline Real load(const double* p) {
+    return lanes_of::load<Real>(p);
+}
+/// A bit for each lane whose sign bit is set, as it is where a comparison holds.
+EXITANCE_INLINE int bits(const Mask& m) {
+#ifdef __AVX__
+    return __builtin_ia32_movmskpd256(reinterpret_cast<const Real&>(m));
+#else
+    return (m[0] < 0 ? 1 : 0) | (m[1] < 0 ? 2 : 0) | (m[2] < 0 ? 4 : 0) | (m[3] < 0 ? 8 : 0);
+#endif
+}
+inline bool any(const Mask& m) {
+    return bits(m) != 0;
 }
 
 }  // namespace exitance::four
