@@ -166,35 +166,71 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
     }
 }
 
-std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalField* const> also,
-                                                 const LinkTolerance& tolerance) {
-    Field<ElementId, ReceivedLight> received(tree_.size());
-    for (const Found& found : links_) received[found.result.link.receiver].add(found.result);
-    std::vector<ElementId> leaves;
-    Field<ElementId, std::uint8_t> too_much(tree_.size(), 0);
+/// What receivers get, from round to round: only what new links bring is added up and judged anew.
+struct LinkRefiner::Receivers {
+    Field<ElementId, ReceivedLight> light;
+    Field<ElementId, double> error;  ///< Of interpolation, squared.
+    std::size_t known = 0;           ///< So many links are in there.
+};
+
+/// Adds up new links; returns the receivers of theirs whose light departs too much, as flags, and among `leaves` those
+/// that are to be cut.
+Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers, const LinkTolerance& tolerance,
+                                                            std::vector<ElementId>& leaves) {
+    receivers.light.resize(tree_.size()), receivers.error.resize(tree_.size(), 0.0);
+    Field<ElementId, std::uint8_t> too_much(tree_.size(), 0), gained(tree_.size(), 0);
+    for (; receivers.known < links_.size(); ++receivers.known) {
+        const LinkJudge::Result& link = links_[receivers.known].result;
+        receivers.light[link.link.receiver].add(link);
+        gained[link.link.receiver] = 1;
+    }
     interpolation_ = 0;
-    for (ElementId e : received.ids()) {
-        const double error = weight(e) * tree_.area(e) * received[e].squared_error(sites_, e);
-        interpolation_ += error;
-        if (error <= tolerance.interpolation * tolerance.interpolation) continue;
+    for (ElementId e : gained.ids()) {
+        if (gained[e]) receivers.error[e] = weight(e) * tree_.area(e) * receivers.light[e].squared_error(sites_, e);
+        interpolation_ += receivers.error[e];
+        if (!gained[e] || receivers.error[e] <= tolerance.interpolation * tolerance.interpolation) continue;
         if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
         too_much[e] = 1;
+        receivers.light[e] = {};  // of the links that will be left
         if (tree_.is_leaf(e)) leaves.push_back(e);
     }
+    return too_much;
+}
+
+std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalField* const> also,
+                                                 const LinkTolerance& tolerance, Receivers& receivers) {
+    std::vector<ElementId> leaves;
+    const Field<ElementId, std::uint8_t> too_much = judge_receivers(receivers, tolerance, leaves);
     cut_elements(leaves, b, also);
     // A link that hardly departs stays; all such ones of a receiver together are a share of what is allowed.
     const double negligible = 0.03 * tolerance.interpolation;
-    std::vector<LinkPair> pairs;
-    std::erase_if(links_, [&](const Found& found) {
+    enum : std::uint8_t { untouched, left, handed_on };
+    std::vector<std::uint8_t> fate(links_.size());
+    parallel_for(links_.size(), 4096, [&](std::size_t i) {
+        const Found& found = links_[i];
         const ElementId p = found.result.link.receiver;
+        if (!too_much[p]) return;
         const double error = weight(p) * tree_.area(p) * mean_square(found.result.departure);
-        if (!too_much[p] || (found.open && error < negligible * negligible)) return false;
-        for (ElementId child : tree_.children(p)) {
-            pairs.push_back(pair_of(found));
-            pairs.back().receiver = child;
-        }
-        return true;
+        fate[i] = found.open && error < negligible * negligible ? left : handed_on;
     });
+    std::vector<LinkPair> pairs;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+        if (fate[i] == handed_on) {
+            for (ElementId child : tree_.children(links_[i].result.link.receiver)) {
+                pairs.push_back(pair_of(links_[i]));
+                pairs.back().receiver = child;
+            }
+            continue;
+        }
+        if (fate[i] == left) receivers.light[links_[i].result.link.receiver].add(links_[i].result);
+        if (kept != i) links_[kept] = links_[i];
+        ++kept;
+    }
+    links_.resize(kept);
+    receivers.known = kept;
+    for (ElementId e : too_much.ids())
+        if (too_much[e]) receivers.error[e] = weight(e) * tree_.area(e) * receivers.light[e].squared_error(sites_, e);
     return pairs;
 }
 
@@ -204,24 +240,30 @@ void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const
     std::vector<LinkPair> pairs = pairs_to_begin_with();
     begun_ = true;
     links_.clear(), blocks_.clear();
+    Receivers receivers;
     for (int round = 0; !pairs.empty(); ++round) {
         judge(std::move(pairs), b, tolerance, stop);
-        if (stop.requested() || limited_) return;
-        pairs = cut_receivers(b, also, tolerance);
+        if (stop.requested() || limited_) break;
+        pairs = cut_receivers(b, also, tolerance, receivers);
         progress.advance(1 - std::ldexp(1.0, -round));
     }
+    sum_up();
 }
 
-double LinkRefiner::error() const {
-    double sum = interpolation_;
-    for (const Found& found : links_) sum += found.result.squared_error;
-    return std::sqrt(sum);
-}
-
-double LinkRefiner::open_share() const {
-    double open = 0, all = 0;
-    for (const Found& found : links_) all += found.result.light, open += found.open ? found.result.light : 0;
-    return all > 0 ? open / all : 1;
+void LinkRefiner::sum_up() {
+    struct Sums {
+        double squared_error = 0, light = 0, open = 0;
+        Sums& operator+=(const Sums& o) {
+            squared_error += o.squared_error, light += o.light, open += o.open;
+            return *this;
+        }
+    };
+    const Sums sums = parallel_sum<Sums>(links_.size(), [&](std::size_t i) {
+        const Found& found = links_[i];
+        return Sums{found.result.squared_error, found.result.light, found.open ? found.result.light : 0};
+    });
+    error_ = std::sqrt(interpolation_ + sums.squared_error);
+    open_share_ = sums.light > 0 ? sums.open / sums.light : 1;
 }
 
 Links LinkRefiner::make_links() const {

@@ -30,13 +30,13 @@ class LinkRefiner {
     void cut_elements(const std::vector<ElementId>& elements, NodalField& b, std::span<NodalField* const> also);
 
     /// Root of areas times squared errors, of rules and visibility by link and of interpolation by receiver, W/m^2 m.
-    double error() const;
+    double error() const { return error_; }
     /// Did the number of links end the refinement?
     bool is_limited() const { return limited_; }
     /// Bytes that a link takes while links are refined, with its block.
     static constexpr std::size_t bytes_a_link = 400;
     /// How much of the light that links carry meets nothing on its way, certainly.
-    double open_share() const;
+    double open_share() const { return open_share_; }
     std::size_t size() const { return links_.size(); }
     Links make_links() const;
 
@@ -62,8 +62,13 @@ class LinkRefiner {
     void judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                const StopRequest& stop);
     /// Cuts receivers whose light departs too much from a polynomial; returns the pairs that their parts inherit.
+    struct Receivers;
+    Field<ElementId, std::uint8_t> judge_receivers(Receivers& receivers, const LinkTolerance& tolerance,
+                                                   std::vector<ElementId>& leaves);
     std::vector<LinkPair> cut_receivers(NodalField& b, std::span<NodalField* const> also,
-                                        const LinkTolerance& tolerance);
+                                        const LinkTolerance& tolerance, Receivers& receivers);
+
+    void sum_up();
 
     ElementTree& tree_;
     LinkSites& sites_;
@@ -72,6 +77,7 @@ class LinkRefiner {
     std::vector<Found> links_;
     std::vector<float> blocks_;
     double interpolation_ = 0;  ///< Squared, as in error().
+    double error_ = 0, open_share_ = 1;
     std::size_t rays_ = 0, form_factors_ = 0;
     bool begun_ = false, limited_ = false;
 };
