@@ -194,9 +194,15 @@ void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
                "auto: a bar on a terminal, a line every ten seconds otherwise");
 }
 
+void declare_bent(CLI::App& app, BentFaces& bent) {
+    app.add_flag_callback(
+        "--split-bent", [&bent] { bent = BentFaces::split; }, "Faces that are out of plane become triangles");
+}
+
 void declare(CLI::App& app, SolveArguments& arguments) {
     SolveOptions& o = arguments.options;
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
+    declare_bent(app, arguments.bent);
     app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
     add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
     add_choice(app, "--basis", basis_names, o.basis, "Of matrix: constant, linear; of wavelet: the others");
@@ -350,6 +356,7 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 
 void declare(CLI::App& app, CheckArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
+    declare_bent(app, arguments.bent);
     app.add_option("--picture", arguments.picture, "Picture of the scene that marks what was found (.png)")
         ->type_name("FILE");
     declare_json(app, arguments);

@@ -9,6 +9,7 @@
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/core/result.hpp"
 #include "exitance/io/false_colour.hpp"
+#include "exitance/io/scene_file.hpp"
 #include "exitance/io/tone_map.hpp"
 #include "exitance/methods/solve_options.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
@@ -34,6 +35,7 @@ struct SolveArguments : CommonArguments {
     std::optional<double> checkpoint_every;  ///< Seconds.
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
+    BentFaces bent = BentFaces::refuse;
 };
 
 struct ProbeArguments : CommonArguments {
@@ -80,6 +82,7 @@ struct RenderArguments : CommonArguments {
 
 struct CheckArguments : CommonArguments {
     std::string scene, picture;
+    BentFaces bent = BentFaces::refuse;
 };
 
 struct GenerateArguments : CommonArguments {

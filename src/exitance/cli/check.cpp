@@ -58,7 +58,7 @@ ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
     if (!arguments.picture.empty() && ending(arguments.picture) != ".png")
         return terminal.fail(
             {ErrorCode::usage, "the picture is written as .png", arguments.picture, "name it something.png"});
-    CheckedScene checked = load_scene(arguments.scene);
+    CheckedScene checked = load_scene(arguments.scene, arguments.bent);
     Shell shell;
     if (checked.scene) {
         shell = inspect_shell(*checked.scene);

@@ -40,7 +40,8 @@ void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>
     std::vector<std::string> all;
     for (const Finding& finding : findings)
         if (finding.kind == Finding::Kind::warning)
-            all.push_back(fmt::format("line {}: {}", finding.line, finding.message));
+            all.push_back(finding.line > 0 ? fmt::format("line {}: {}", finding.line, finding.message)
+                                           : finding.message);
     warnings.insert(warnings.begin(), all.begin(), all.end());
 }
 
@@ -145,7 +146,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     Tracing tracing(arguments.trace, terminal.progress());
 
     Stopwatch reading;
-    const CheckedScene checked = load_scene(arguments.scene);
+    const CheckedScene checked = load_scene(arguments.scene, arguments.bent);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     const double read_seconds = reading.seconds();

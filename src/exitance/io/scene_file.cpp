@@ -18,7 +18,8 @@ CheckedScene refused(ErrorCode code, const std::string& path, std::string messag
 
 /// Findings of the reader and of the checks together. A file with errors is still looked at in full, but not warned
 /// about light that may be among what could not be read.
-CheckedScene checked(ReadScene read) {
+CheckedScene checked(ReadScene read, BentFaces bent) {
+    read.description.split_bent = bent == BentFaces::split;
     const bool broken = has_errors(read.findings);
     if (broken && read.description.faces.empty()) {
         sort_findings(read.findings);
@@ -52,11 +53,11 @@ Reader reader_of(const std::string& path) {
 
 }  // namespace
 
-CheckedScene load_scene(const std::string& path) {
+CheckedScene load_scene(const std::string& path, BentFaces bent) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
         return refused(ErrorCode::cannot_read, path, "there is no such file", "");
-    if (const Reader read = reader_of(path)) return checked(read(path));
+    if (const Reader read = reader_of(path)) return checked(read(path), bent);
     return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
                    "known endings: .obj, .gltf, .glb, .rad");
 }

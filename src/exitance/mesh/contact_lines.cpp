@@ -11,31 +11,36 @@ struct Segment {
     Point a, b;
 };
 
-/// The edges of a face that lie in a plane or hover over it by less than `gap`, the latter with a line on either side
-/// as far away as the edge is high: so wide is the strip in which light changes; and the lines in which the face
-/// crosses it.
-void contacts_with_plane(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
-                         std::vector<Segment>& out) {
+bool hovers(double hp, double hq, double tolerance, double gap) {
+    return std::min(hp, hq) >= -tolerance && std::max(hp, hq) <= gap;
+}
+
+/// An edge that lies in a plane, or hovers over it by less than `gap`: then also a line on either side as far away as
+/// the edge is high, so wide is the strip in which light changes.
+void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double tolerance, double gap,
+                      std::vector<Segment>& out) {
+    const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
+    if (!hovers(hp, hq, tolerance, gap)) return;
+    out.push_back({p, q});
+    const double height = std::max(hp, hq);
+    if (height <= 10 * tolerance) return;
+    const Vec3 across = (height / norm(q - p)) * cross(plane.n, q - p);
+    out.push_back({p + across, q + across});
+    out.push_back({p - across, q - across});
+}
+
+/// The line in which a face crosses a plane; its edges that hover over the plane are left out.
+void crossing_of_face(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
+                      std::vector<Segment>& out) {
     const std::size_t m = outline.size();
     std::vector<Point> crossings;
     for (std::size_t i = 0; i < m; ++i) {
         const Point &p = outline[i], &q = outline[(i + 1) % m];
         const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
-        const bool on_p = std::abs(hp) <= tolerance, on_q = std::abs(hq) <= tolerance;
-        const bool hovers = std::min(hp, hq) >= -tolerance && std::max(hp, hq) <= gap;
-        if (hovers) {
-            out.push_back({p, q});
-            const double height = std::max(hp, hq);
-            if (height > 10 * tolerance) {
-                const Vec3 across = (height / norm(q - p)) * cross(plane.n, q - p);
-                out.push_back({p + across, q + across});
-                out.push_back({p - across, q - across});
-            }
-        }
-        if (hovers) continue;
-        if (on_p)
+        if (hovers(hp, hq, tolerance, gap)) continue;
+        if (std::abs(hp) <= tolerance)
             crossings.push_back(p);
-        else if (!on_q && (hp > 0) != (hq > 0))
+        else if (std::abs(hq) > tolerance && (hp > 0) != (hq > 0))
             crossings.push_back(p + (hp / (hp - hq)) * (q - p));
     }
     if (crossings.size() < 2) return;
@@ -76,7 +81,17 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
     std::vector<Box> boxes(scene.surfaces().size());
     for (SurfaceId s : scene.surfaces().ids())
         for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);
-    bvh_ = Bvh(boxes);
+    faces_ = Bvh(boxes);
+    // Edges between coplanar faces are in nothing's way: borders of regions alone count.
+    boxes.clear();
+    for (RegionId r : scene.regions().ids())
+        for (const std::vector<Point>& loop : scene.regions()[r].loops)
+            for (std::size_t i = 0; i < loop.size(); ++i) {
+                const Edge& e = edges_.emplace_back(Edge{loop[i], loop[(i + 1) % loop.size()], r});
+                boxes.emplace_back().add(e.a);
+                boxes.back().add(e.b);
+            }
+    borders_ = Bvh(boxes);
 }
 
 std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree, ElementId e) const {
@@ -93,10 +108,14 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
     box.lo -= Vec3{tolerance_, tolerance_, tolerance_};
     box.hi += Vec3{tolerance_, tolerance_, tolerance_};
     std::vector<Segment> segments;
-    bvh_.visit_box(box, [&](std::uint32_t i) {
+    borders_.visit_box(box, [&](std::uint32_t i) {
+        if (edges_[i].region != tree.region(e))
+            contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, segments);
+    });
+    faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
         if (scene_->surfaces()[s].region != tree.region(e))
-            contacts_with_plane(scene_->outline(s), plane, tolerance_, gap, segments);
+            crossing_of_face(scene_->outline(s), plane, tolerance_, gap, segments);
     });
     std::vector<std::pair<Vec2, Vec2>> out;
     const Patch& patch = tree.patch(e);
@@ -109,15 +128,23 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
 }
 
 void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts) {
-    std::vector<ElementId> open = from;
+    // Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at.
+    // But around a point where many meet there is no end to it, and it is left as it is when it is small.
+    constexpr std::size_t many = 24;
+    constexpr double small = 1.0 / 64;
+    struct Open {
+        ElementId element;
+        double least_area;  // of what is halved still, m^2
+    };
+    std::vector<Open> open;
+    for (ElementId e : from) open.push_back({e, small * small * tree.area(e)});
     while (!open.empty()) {
-        const ElementId e = open.back();
+        const auto [e, least_area] = open.back();
         open.pop_back();
         const std::vector<std::pair<Vec2, Vec2>> lines = contacts.within(tree, e);
-        // Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at.
-        constexpr std::size_t many = 24;
         if (lines.size() > many) {
-            for (ElementId child : refine_element(tree, e)) open.push_back(child);
+            if (tree.area(e) < least_area) continue;
+            for (ElementId child : refine_element(tree, e)) open.push_back({child, least_area});
             if (!tree.is_leaf(e)) continue;
         }
         for (const auto& [a, b] : lines) {
@@ -126,7 +153,7 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
             const Vec2 normal = {-d.y / length, d.x / length};
             // A line along the domain's border leaves nothing on one side, and cuts nothing.
             if (tree.split_by_line(e, {normal, dot(normal, a)}, 1e-5).is_none()) continue;
-            for (ElementId child : tree.children(e)) open.push_back(child);
+            for (ElementId child : tree.children(e)) open.push_back({child, least_area});
             break;  // the children look for their own share of the other contacts
         }
     }

@@ -20,9 +20,14 @@ class ContactLines {
     std::vector<std::pair<Vec2, Vec2>> within(const ElementTree& tree, ElementId e) const;
 
   private:
+    struct Edge {
+        Point a, b;
+        RegionId region;
+    };
     const Scene* scene_;
-    Bvh bvh_;
-    double tolerance_;  ///< Metres; what is nearer than this to a plane touches it.
+    Bvh faces_, borders_;
+    std::vector<Edge> edges_;  ///< Of borders of regions.
+    double tolerance_;         ///< Metres; what is nearer than this to a plane touches it.
 };
 
 /// Cuts every leaf of `from` along the contacts inside it, into cells.

@@ -53,5 +53,40 @@ TEST(ContactLines, AnEdgeFarAboveAndABorderCutNothing) {
     EXPECT_EQ(beside.leaves().size(), 1u);
 }
 
+TEST(ContactLines, TrianglesOfTheOtherSideOfASheetCutNothing) {
+    // A disc with two sides, each of 48 triangles around one corner, as exporters write it.
+    constexpr std::uint32_t n = 50;
+    SceneDescription d;
+    for (std::uint32_t k = 0; k < n; ++k) d.points.push_back({std::cos(2 * pi * k / n), std::sin(2 * pi * k / n), 0});
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    for (std::uint32_t k = 2; k < n; ++k)
+        d.faces.push_back({{0, k - 1, k}, 0, 0, 1}), d.faces.push_back({{0, k, k - 1}, 0, 0, 2});
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    ASSERT_EQ(scene.regions().size(), 2u);
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0.5, -0.3, 0}, {0.4, 0, 0}, {0, 0.6, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+    EXPECT_EQ(tree.leaves().size(), 1u);
+}
+
+TEST(ContactLines, APointWhereManyThingsMeetIsNotLookedIntoForEver) {
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1.3, 1.7, 0}, {1.3, 1.7, 1}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1}};
+    for (std::uint32_t k = 0; k < 40; ++k) {  // leaves of a book that stands open
+        d.points.push_back({1.3 + std::cos(0.1 + 0.15 * k), 1.7 + std::sin(0.1 + 0.15 * k), 0});
+        d.faces.push_back({{4, static_cast<std::uint32_t>(d.points.size()) - 1, 5}, 0, 0, 2});
+    }
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+    EXPECT_LT(tree.leaves().size(), 5000u);
+    EXPECT_GT(tree.leaves().size(), 40u);
+}
+
 }  // namespace
 }  // namespace exitance

@@ -45,6 +45,9 @@ class Joiner {
   public:
     Joiner(const FaceMesh& mesh, const Tolerances& tolerances, std::vector<std::uint32_t> faces)
         : mesh_(mesh), tol_(tolerances), faces_(std::move(faces)), sets_(faces_.size()) {
+        std::size_t count = 0;
+        for (std::uint32_t f : faces_) count += mesh_.outline(f).size();
+        edges_.reserve(count), first_edge_.reserve(faces_.size() + 1);
         for (std::uint32_t f = 0; f < faces_.size(); ++f) {
             const auto outline = mesh_.outline(faces_[f]);
             first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));

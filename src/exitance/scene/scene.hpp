@@ -91,6 +91,7 @@ struct SceneDescription {
     std::vector<Face> faces;
     std::vector<PunctualLight> lights;
     std::vector<SceneCamera> cameras;
+    bool split_bent = false;  ///< Faces out of plane become triangles, rather than errors.
 };
 
 /// Polygons with materials, checked and joined to regions. Immutable once made.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "exitance/core/random.hpp"
+#include "exitance/geometry/triangulation.hpp"
 #include "exitance/scene/border.hpp"
 #include "exitance/scene/findings.hpp"
 #include "exitance/scene/hash_chains.hpp"
@@ -38,9 +39,12 @@ class SceneBuilder {
     void check_lights();
     void place_corners();
     void check_faces();
-    bool check_face(const SceneDescription::Face& face);
-    bool check_shape(const SceneDescription::Face& face, std::span<const std::uint32_t> outline);
-    void report_flattened();
+    void check_face(std::uint32_t f);
+    void check_shape(std::uint32_t f, std::span<const std::uint32_t> outline);
+    void add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area);
+    void add_triangles(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners,
+                       const Normal& n);
+    void report_bent();
     void drop_duplicates();
     void check_light();
     void check_overlaps(const Scene& scene);
@@ -72,9 +76,18 @@ class SceneBuilder {
     FaceMesh mesh_;
     std::vector<std::uint32_t> origin_;  // face of the mesh -> face of the description
     Box box_;
-    std::size_t flattened_ = 0;  // faces out of plane by more than rounding, within the tolerance
-    double farthest_ = 0;
-    int first_flattened_ = 0;
+    /// Faces out of plane by more than rounding.
+    struct Bent {
+        std::size_t count = 0;
+        double farthest = 0;  ///< m
+        int first_line = 0;
+
+        void add(const SceneDescription::Face& face, double off) {
+            if (count++ == 0) first_line = face.line;
+            farthest = std::max(farthest, off);
+        }
+    };
+    Bent flattened_, split_;  // within the tolerance; beyond it
     std::vector<Mark> marks_;
     struct Listed {
         Finding::Kind kind;
@@ -82,6 +95,10 @@ class SceneBuilder {
         int first_unlisted;
     };
     std::map<std::string, Listed> listed_;  ///< What `rest` says -> how many there were.
+    struct Alike {
+        std::size_t finding, more = 0;
+    };
+    std::map<std::string, Alike> alike_;  ///< Messages without lines: where each is told, and how often again.
 };
 
 constexpr std::size_t most_listed = 20;
@@ -96,17 +113,24 @@ void SceneBuilder::find(Finding::Kind kind, const SceneDescription::Face& face, 
     Mark& marked = marks_.emplace_back(mark, std::vector<Point>());
     for (std::uint32_t c : face.corners)
         if (c < in_.points.size() && is_finite(in_.points[c])) marked.outline.push_back(in_.points[c]);
+    if (face.line == 0) {
+        if (face.group < in_.groups.size()) message = fmt::format("in '{}': {}", in_.groups[face.group], message);
+        const auto [told, is_new] = alike_.try_emplace(message, Alike{findings_.size()});
+        if (!is_new) return void(++told->second.more);
+    }
     if (rest) {
         Listed& listed = listed_.try_emplace(rest, Listed{kind, 0, face.line}).first->second;
         if (++listed.count == most_listed + 1) listed.first_unlisted = face.line;
         if (listed.count > most_listed) return;
     }
-    if (face.line == 0 && face.group < in_.groups.size())
-        message = fmt::format("in '{}': {}", in_.groups[face.group], message);
     find(kind, face.line, std::move(message), std::move(hint));
 }
 
 void SceneBuilder::report_unlisted() {
+    for (const auto& [message, alike] : alike_)
+        if (alike.more > 0 && alike.finding < findings_.size() && findings_[alike.finding].message == message)
+            findings_[alike.finding].message += fmt::format(" (and {} more like this)", alike.more);
+    alike_.clear();
     for (const auto& [rest, listed] : listed_)
         if (listed.count > most_listed)
             find(listed.kind, listed.first_unlisted, fmt::format("{} more {}", listed.count - most_listed, rest));
@@ -166,13 +190,8 @@ void SceneBuilder::place_corners() {
 
 void SceneBuilder::check_faces() {
     mesh_.first.push_back(0);
-    for (std::uint32_t f = 0; f < in_.faces.size(); ++f) {
-        if (!check_face(in_.faces[f])) continue;
-        origin_.push_back(f);
-        mesh_.first.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
-        mesh_.material.push_back(in_.faces[f].material);
-    }
-    report_flattened();
+    for (std::uint32_t f = 0; f < in_.faces.size(); ++f) check_face(f);
+    report_bent();
     if (in_.faces.empty())
         error(1, "there are no polygons", "a scene needs at least one face ('f' line)");
     else if (mesh_.size() == 0 && !has_errors())
@@ -180,14 +199,15 @@ void SceneBuilder::check_faces() {
 }
 
 /// Appends the face to the mesh if it can be used; reports why not otherwise.
-bool SceneBuilder::check_face(const SceneDescription::Face& face) {
+void SceneBuilder::check_face(std::uint32_t f) {
+    const SceneDescription::Face& face = in_.faces[f];
     if (face.material >= in_.materials.size() || face.group >= in_.groups.size())
-        return error(face, "face has no material or no group"), false;
+        return error(face, "face has no material or no group");
     std::vector<std::uint32_t> outline = face.corners;
     for (std::uint32_t& c : outline) {
         if (c >= in_.points.size())
-            return error(face, fmt::format("face names corner {} of {} points", c + 1, in_.points.size())), false;
-        if (!is_finite(in_.points[c])) return error(face, "a corner of the face is not a finite point"), false;
+            return error(face, fmt::format("face names corner {} of {} points", c + 1, in_.points.size()));
+        if (!is_finite(in_.points[c])) return error(face, "a corner of the face is not a finite point");
         c = place_[c];
     }
     const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);
@@ -195,18 +215,35 @@ bool SceneBuilder::check_face(const SceneDescription::Face& face) {
         find(Finding::Kind::repair, face, Mark::Kind::left_out,
              fmt::format("face of {} corners goes to and fro and has no area: it is left out", given),
              "remove it, or give it three corners that are not in line", "faces without area are left out");
-        return false;
+        return;
     }
     if (dropped > 0)
         find(Finding::Kind::repair, face, Mark::Kind::left_out,
              fmt::format("{} of the face's {} corners stand where a neighbour stands: they are merged", dropped, given),
              "", "faces have corners that stand where a neighbour stands");
-    if (!check_shape(face, outline)) return false;
-    mesh_.corners.insert(mesh_.corners.end(), outline.begin(), outline.end());
-    return true;
+    check_shape(f, outline);
 }
 
-bool SceneBuilder::check_shape(const SceneDescription::Face& face, std::span<const std::uint32_t> outline) {
+void SceneBuilder::add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area) {
+    mesh_.corners.insert(mesh_.corners.end(), outline.begin(), outline.end());
+    mesh_.first.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
+    mesh_.material.push_back(in_.faces[f].material);
+    mesh_.area_vector.push_back(area);
+    origin_.push_back(f);
+}
+
+void SceneBuilder::add_triangles(std::uint32_t f, std::span<const std::uint32_t> outline,
+                                 std::span<const Point> corners, const Normal& n) {
+    for (const auto& [a, b, c] : triangulate(corners, n)) {
+        const Vec3 area = 0.5 * cross(corners[b] - corners[a], corners[c] - corners[a]);
+        const double longest =
+            std::max({norm(corners[b] - corners[a]), norm(corners[c] - corners[b]), norm(corners[a] - corners[c])});
+        if (norm(area) > tol_.place * longest) add_face(f, std::array{outline[a], outline[b], outline[c]}, area);
+    }
+}
+
+void SceneBuilder::check_shape(std::uint32_t f, std::span<const std::uint32_t> outline) {
+    const SceneDescription::Face& face = in_.faces[f];
     std::vector<Point> corners;
     for (std::uint32_t c : outline) corners.push_back(in_.points[c]);
     const Vec3 area = area_vector(corners);
@@ -219,16 +256,16 @@ bool SceneBuilder::check_shape(const SceneDescription::Face& face, std::span<con
                  "", "faces without area are left out");
         else
             error(face, "face crosses itself: its parts cancel out", "order its corners counter-clockwise");
-        return false;
+        return;
     }
     const Normal n = normalized(area);
     const double off = out_of_plane(corners, n);
     // A face may be bent by as much as its neighbours may be tilted.
-    if (off > std::max(tol_.place, std::min(tol_.plane, tol_.tilt * box.diagonal()))) {
-        error(face, fmt::format("face of {} corners is {:.3g} m out of plane", corners.size(), off),
-              "split it into triangles");
-        return false;
-    }
+    const bool is_bent = off > std::max(tol_.place, std::min(tol_.plane, tol_.tilt * box.diagonal()));
+    if (is_bent && !in_.split_bent)
+        return find(Finding::Kind::error, face, Mark::Kind::broken,
+                    fmt::format("face of {} corners is {:.3g} m out of plane", corners.size(), off),
+                    "split it into triangles, or have it done: --split-bent", "faces are out of plane");
     EdgePair where{};
     if (crosses_itself(corners, n, tol_.place, where)) {
         const std::size_t m = corners.size();
@@ -236,25 +273,24 @@ bool SceneBuilder::check_shape(const SceneDescription::Face& face, std::span<con
               fmt::format("face crosses itself: the edge from corner {} to {} meets the edge from corner {} to {}",
                           where.first + 1, (where.first + 1) % m + 1, where.second + 1, (where.second + 1) % m + 1),
               "order its corners counter-clockwise, or split it");
-        return false;
+        return;
     }
-    if (!is_one_polygon(outline, area)) {
-        error(face, "face crosses itself in a corner: a part of it is turned over", "split it there");
-        return false;
-    }
-    if (off > tol_.place) {
-        if (flattened_++ == 0) first_flattened_ = face.line;
-        farthest_ = std::max(farthest_, off);
-    }
-    mesh_.area_vector.push_back(area);
-    return true;
+    if (!is_one_polygon(outline, area))
+        return error(face, "face crosses itself in a corner: a part of it is turned over", "split it there");
+    if (is_bent) return split_.add(face, off), add_triangles(f, outline, corners, n);
+    if (off > tol_.place) flattened_.add(face, off);
+    add_face(f, outline, area);
 }
 
-void SceneBuilder::report_flattened() {
-    if (flattened_ == 0) return;
-    find(Finding::Kind::repair, first_flattened_,
-         fmt::format("{} {} out of plane by up to {:.3g} m, the first of them here: corners are moved into the plane",
-                     flattened_, flattened_ == 1 ? "face is" : "faces are", farthest_));
+void SceneBuilder::report_bent() {
+    const auto report = [&](const Bent& bent, const char* remedy) {
+        if (bent.count > 0)
+            find(Finding::Kind::repair, bent.first_line,
+                 fmt::format("{} {} out of plane by up to {:.3g} m, the first of them here: {}", bent.count,
+                             bent.count == 1 ? "face is" : "faces are", bent.farthest, remedy));
+    };
+    report(flattened_, "corners are moved into the plane");
+    report(split_, "they are split into triangles, each a surface of its own");
 }
 
 /// Leaves out faces that repeat an earlier one, corner by corner and to the same side: which of the two light meets

@@ -220,6 +220,29 @@ TEST(Checks, AClearlyBentFaceIsAnErrorThatSaysByHowMuch) {
     EXPECT_NE(s.scene.error().message.find("0.01 m out of plane"), std::string::npos) << s.scene.error().message;
 }
 
+TEST(Checks, BentFacesMayBeSplitIntoTriangles) {
+    Sketch sketch;
+    sketch.add({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).light();
+    EXPECT_NE(sketch.make().scene.error().hint.find("--split-bent"), std::string::npos);
+    sketch.d.split_bent = true;
+    const auto s = sketch.make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 3u);
+    EXPECT_EQ(s.scene->surfaces()[SurfaceId(1)].line, 1);
+    ASSERT_EQ(count(s, Finding::Kind::repair), 1);
+    EXPECT_NE(s.findings[0].message.find("0.05 m"), std::string::npos) << s.findings[0].message;
+}
+
+TEST(Checks, FindingsThatReadAlikeAreToldOnce) {
+    Sketch sketch;
+    for (int i = 0; i < 3; ++i) sketch.add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+    for (auto& face : sketch.rectangle(0, 0, 1, 1).light().d.faces) face.line = 0;  // as from glTF
+    const auto s = sketch.make();
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(count(s, Finding::Kind::repair), 1);
+    EXPECT_NE(s.findings[0].message.find("(and 2 more like this)"), std::string::npos) << s.findings[0].message;
+}
+
 TEST(Checks, EveryErrorIsFoundNotJustTheFirst) {
     Sketch sketch;
     sketch.add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.4}, {0, 1, 0}})
