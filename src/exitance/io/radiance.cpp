@@ -281,7 +281,7 @@ void RadianceReader::take_surface(const Primitive& p, const Place& place, const 
     if (!meaning || !facets_of(p, file, facets, inwards, is_closed) || meaning->kind == Meaning::Kind::left_out) return;
     auto& d = out_.description;
     // A line of text can ask for any number of copies. Most scenes have no more than these.
-    if (const std::size_t most = 400'000 + bytes_ / 4; d.faces.size() + 2 * facets.size() > most) {
+    if (const std::size_t most = 300'000 + bytes_ / 20; d.faces.size() + 2 * facets.size() > most) {
         if (!failed_)
             error(file, p.line, fmt::format("copies make more than {} faces", most),
                   "write the copies to a file with Radiance's own xform, and read that");
