@@ -1,6 +1,7 @@
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
 #include "exitance/methods/methods.hpp"
-#include "exitance/transport/hemisphere.hpp"
+#include "exitance/transport/element_rays.hpp"
 
 namespace exitance {
 namespace {
@@ -48,32 +49,16 @@ class Shooter {
     std::size_t rays_shot = 0;
 
   private:
-    static constexpr std::uint32_t missed = 0xffffffffu;
+    static constexpr std::uint32_t missed = ElementRays::missed;
 
     void trace(const std::vector<std::size_t>& first, std::size_t begin, std::size_t end,
                std::vector<std::uint32_t>& target) const {
-        std::vector<Point> origins;
-        std::vector<Vec3> directions;
-        std::vector<RayHit> hits;
+        ElementRays rays(stage_, tree_, locator_);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t count = first[i + 1] - first[i];
             if (count == 0) continue;
-            const ElementId e = numbering_.leaves[i];
-            const Patch& patch = tree_.patch(e);
-            const Frame frame(stage_.scene.regions()[tree_.region(e)].plane.n);
-            const ScrambledSobol points(hash(seed_, static_cast<std::uint64_t>(Stream::shooting), step_, i));
-            origins.resize(count), directions.resize(count), hits.resize(count);
-            for (std::uint32_t k = 0; k < count; ++k) {
-                origins[k] = patch.at(tree_.uniform(e, points(k, 2), points(k, 3)));
-                directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
-            }
-            stage_.tracer.nearest(origins, directions, tree_.region(e), hits);
-            for (std::size_t k = 0; k < count; ++k) {
-                if (hits[k].surface.is_none() || !hits[k].front) continue;
-                const Point y = origins[k] + hits[k].distance * directions[k];
-                target[first[i] + k] =
-                    numbering_.number[locator_.find(stage_.scene.surfaces()[hits[k].surface].region, y).element];
-            }
+            rays.cast(numbering_.leaves[i], hash(seed_, static_cast<std::uint64_t>(Stream::shooting), step_, i),
+                      std::span(target).subspan(first[i], count));
         }
     }
 

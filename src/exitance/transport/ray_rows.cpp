@@ -3,8 +3,9 @@
 #include <bit>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
 #include "exitance/core/trace.hpp"
-#include "exitance/transport/hemisphere.hpp"
+#include "exitance/transport/element_rays.hpp"
 
 namespace exitance {
 
@@ -25,32 +26,11 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
 
     parallel_ranges(n, 16,
                     [&](std::size_t begin, std::size_t end) {
-                        std::vector<Point> origins;
-                        std::vector<Vec3> directions;
-                        std::vector<RayHit> found;
-                        std::vector<LeafFinder::Query> queries;
-                        std::vector<std::size_t> of_ray;
+                        ElementRays rays(stage, tree, locator);
                         for (std::size_t i = begin; i < end; ++i) {
-                            const ElementId e = numbering.leaves[i];
-                            const Patch& patch = tree.patch(e);
-                            const Frame frame(stage.scene.regions()[tree.region(e)].plane.n);
                             const std::size_t count = first_[i + 1] - first_[i];
-                            const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::rows), i));
-                            origins.resize(count), directions.resize(count), found.resize(count);
-                            for (std::uint32_t k = 0; k < count; ++k) {
-                                origins[k] = patch.at(tree.uniform(e, points(k, 2), points(k, 3)));
-                                directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
-                            }
-                            stage.tracer.nearest(origins, directions, tree.region(e), found);
-                            queries.clear(), of_ray.clear();
-                            for (std::size_t k = 0; k < count; ++k) {
-                                if (found[k].surface.is_none() || !found[k].front) continue;
-                                const RegionId hit = stage.scene.surfaces()[found[k].surface].region;
-                                queries.push_back(locator.root_of(hit, origins[k] + found[k].distance * directions[k]));
-                                of_ray.push_back(first_[i] + k);
-                            }
-                            locator.leaves().find(queries);
-                            for (std::size_t k = 0; k < queries.size(); ++k) hits_[of_ray[k]] = queries[k].leaf;
+                            rays.cast(numbering.leaves[i], hash(seed, static_cast<std::uint64_t>(Stream::rows), i),
+                                      std::span(hits_).subspan(first_[i], count));
                             note_touched("rays", count);
                         }
                     },

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// Rays that leave an element as diffuse light does: spread over its area, density cos / pi around its normal, at
+/// scrambled Sobol points. What they hit first is what the element gathers from, and, read the other way round, where
+/// its light goes. One object serves one thread.
+class ElementRays {
+  public:
+    static constexpr std::uint32_t missed = 0xffffffffu;
+
+    /// `tree`, over which `locator` finds leaves, and all else must outlive it.
+    ElementRays(const Stage& stage, const ElementTree& tree, const ElementLocator& locator)
+        : stage_(stage), tree_(tree), locator_(locator) {}
+
+    /// Writes for each ray the number of the leaf whose front it hits, or `missed`. The rays are named by `key`.
+    void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves);
+
+  private:
+    const Stage& stage_;
+    const ElementTree& tree_;
+    const ElementLocator& locator_;
+    std::vector<Point> origins_;
+    std::vector<Vec3> directions_;
+    std::vector<RayHit> hits_;
+    std::vector<LeafFinder::Query> queries_;
+    std::vector<std::size_t> of_ray_;
+};
+
+}  // namespace exitance
