@@ -197,7 +197,8 @@ class Solver {
                                                       {.mesh = knobs_.solve_mesh,
                                                        .tolerance = knobs_.direct_tolerance,
                                                        .least_area = options_.min_area,
-                                                       .may_give_up = direct_.tree.size() > 0},
+                                                       .may_give_up = direct_.tree.size() > 0,
+                                                       .seed = options_.seed},
                                                       stop_);
         if (fresh.tree.size() > 0) direct_ = std::move(fresh);
         statistics().seconds["mesh"] += watch.seconds();

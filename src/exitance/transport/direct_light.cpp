@@ -73,21 +73,33 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
         if (emitter.region == own || emitter.plane.signed_distance(middle) <= -radius ||
             dot(n, emitter.centre - middle) <= -emitter.radius)
             continue;
-        for (PieceId piece : emitter.pieces) {
-            if (occluders_->has_nothing_inside()) {
-                if (face_each_other({n, dot(n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
-                    add_open(e, piece, light);
-                continue;
-            }
-            scratch.shaft.set(*occluders_, {receiver, n, own},
-                              {occluders_->corners(piece), emitter.plane.n, emitter.region});
-            PieceId& likely = scratch.last_blocker(*occluders_, piece);
-            if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) continue;
-            add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
-            if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
-        }
+        for (PieceId piece : emitter.pieces) look_at({e, piece}, receiver, light, scratch);
     }
     if (!beams_.empty()) beams_.prepare(receiver, n, own, light.beams, light.candidates);
+}
+
+void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own,
+                          std::span<const SourceName> sources, ReceiverLight& light, Workspace& scratch) const {
+    light.n = n, light.own = own;
+    light.clear();
+    for (const SourceName& source : sources) look_at(source, receiver, light, scratch);
+}
+
+void DirectLight::look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
+                          Workspace& scratch) const {
+    const auto& [e, piece] = source;
+    const Emitter& emitter = emitters_[e];
+    if (occluders_->has_nothing_inside()) {
+        if (face_each_other({light.n, dot(light.n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
+            add_open(e, piece, light);
+        return;
+    }
+    scratch.shaft.set(*occluders_, {receiver, light.n, light.own},
+                      {occluders_->corners(piece), emitter.plane.n, emitter.region});
+    PieceId& likely = scratch.last_blocker(*occluders_, piece);
+    if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) return;
+    add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
+    if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,

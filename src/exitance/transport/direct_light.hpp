@@ -50,10 +50,20 @@ class DirectLight {
     /// the caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
+    /// A convex piece of an emitter.
+    struct SourceName {
+        std::uint32_t emitter = 0;
+        PieceId piece;
+    };
+
     /// Looks at the emitters from a convex polygon of region `own` (metres, counter-clockwise about n); fills `light`,
     /// whose memory is used again. About 1-2 microseconds an emitter, and what the shaft meets of the tree.
     void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
                  Workspace& scratch) const;
+
+    /// The same for these sources alone, and no beams.
+    void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, std::span<const SourceName> sources,
+                 ReceiverLight& light, Workspace& scratch) const;
 
     /// The same for a part of the polygon that `whole` was made for: only what reached into its shafts is looked at.
     void prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
@@ -83,6 +93,8 @@ class DirectLight {
 
   private:
     Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
+    void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
+                 Workspace& scratch) const;
     void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch) const;
     void add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const;
     /// Does any of either polygon rise over the plane of the other?

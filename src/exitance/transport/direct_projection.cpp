@@ -3,16 +3,17 @@
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
+#include "exitance/transport/sampled_light.hpp"
 
 namespace exitance {
-DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
-                           DirectLight::Workspace& workspace) {
-    const Patch& patch = tree.patch(e);
-    const RegionId region = tree.region(e);
-    const std::vector<WeightedPlace> rule = element_rule(tree, e, RuleOrder::fine);
-    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, light, workspace);
+namespace {
+
+DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, const ReceiverLight& light,
+                     DirectLight::Workspace& workspace) {
     DirectFit out;
     if (light.is_dark()) return out;
+    const Patch& patch = tree.patch(e);
+    const std::vector<WeightedPlace> rule = element_rule(tree, e, RuleOrder::fine);
     std::vector<Spectrum> value(rule.size());
     for (std::size_t i = 0; i < rule.size(); ++i) {
         Spectrum parallel;
@@ -22,11 +23,20 @@ DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementI
     }
     const ElementFit fit(tree, e, rule, value);
     for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = fit.corner(i);
-    const Spectrum w = light_weight(stage.scene.material(region));
+    const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
     for (std::size_t i = 0; i < rule.size(); ++i)
         out.misfit_squared +=
             rule[i].weight * squared(w * (value[i] - fit.at(rule[i].uv))) / static_cast<double>(bands);
     return out;
+}
+
+}  // namespace
+
+DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
+                           DirectLight::Workspace& workspace) {
+    const RegionId region = tree.region(e);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, light, workspace);
+    return fit_values(stage, tree, e, light, workspace);
 }
 
 Spectrum DirectProjection::at(ElementTree::Place place) const {
@@ -43,12 +53,62 @@ Spectrum light_weight(const Material& material) {
     return w;
 }
 
+namespace {
+
+/// The same where there are many elements: sources that do not count on this one are left to rays.
+DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double share,
+                           SampledLight& sampled, ReceiverLight& light, DirectLight::Workspace& workspace) {
+    const RegionId region = tree.region(e);
+    const double allowed = share / tree.area(e);
+    const SampledLight::Estimate& of = sampled(tree, e, light_weight(stage.scene.material(region)), allowed);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, of.strong, light, workspace);
+    DirectFit out = fit_values(stage, tree, e, light, workspace);
+    for (Spectrum& corner : out.corners) corner += of.weak;
+    out.mean += of.weak;
+    // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
+    out.misfit_squared = std::max(out.misfit_squared, of.misfit_squared);
+    return out;
+}
+
+/// Sum of w E_dir over leaves, W.
+double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
+                     const Field<ElementId, DirectFit>& fit) {
+    double flux = 0;
+    for (ElementId e : leaves)
+        flux += tree.area(e) * mean(light_weight(stage.scene.material(tree.region(e))) * fit[e].mean);
+    return flux;
+}
+
+/// Of all surfaces, by a sample of their leaves.
+double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
+                      std::uint64_t seed) {
+    constexpr std::size_t sample_size = 2000;
+    SampledLight sampled(stage.direct, stage.tracer, seed);
+    double flux = 0, area = 0;
+    for (std::size_t i = 0; i < sample_size; ++i) {
+        const ElementId e = leaves[i * leaves.size() / sample_size];
+        area += tree.area(e);
+        const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
+        flux += tree.area(e) * mean(w * sampled(tree, e, w, HUGE_VAL).weak);
+    }
+    return flux * stage.area / area;
+}
+
+}  // namespace
+
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
                                       const StopRequest& stop) {
     DirectProjection out{stage.make_elements(options.mesh), {}};
     std::vector<ElementId> active = out.tree.leaves();
     const double mean_area = stage.area / static_cast<double>(active.size());
-    double share = 0;  // of the squared error that one element may have
+    const auto share_of = [&](double flux) {
+        const double allowed = options.tolerance * flux / stage.area;
+        return allowed * allowed * mean_area;
+    };
+    // Of the squared error that one element may have. Where elements are few, all of them are looked at well.
+    constexpr std::size_t few = 8000;
+    const bool many = active.size() > few && stage.direct.beams().empty();
+    double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed)) : 0;
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
         parallel_ranges(active.size(), 8,
@@ -56,19 +116,16 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
                             if (options.may_give_up && stop.requested()) return;
                             DirectLight::Workspace workspace;
                             ReceiverLight light;
+                            SampledLight sampled(stage.direct, stage.tracer, options.seed);
                             for (std::size_t i = begin; i < end; ++i)
-                                out.fit[active[i]] = fit_direct_light(stage, out.tree, active[i], light, workspace);
+                                out.fit[active[i]] =
+                                    many
+                                        ? fit_strong_light(stage, out.tree, active[i], share, sampled, light, workspace)
+                                        : fit_direct_light(stage, out.tree, active[i], light, workspace);
                         },
                         {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
         if (options.may_give_up && stop.requested()) return {};
-        if (depth == 0) {
-            double flux = 0;
-            for (ElementId e : active)
-                flux +=
-                    out.tree.area(e) * mean(light_weight(stage.scene.material(out.tree.region(e))) * out.fit[e].mean);
-            const double allowed = options.tolerance * flux / stage.area;
-            share = allowed * allowed * mean_area;
-        }
+        if (depth == 0) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
         if (depth == options.max_depth || stop.requested()) break;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {

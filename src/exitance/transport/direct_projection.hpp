@@ -17,6 +17,7 @@ struct DirectProjectionOptions {
     /// What to do when a stop is asked for: give up at once and return an empty tree, or end the first round, so that
     /// there is something to return.
     bool may_give_up = false;
+    std::uint64_t seed = 1;  ///< Of the rays to small elements, where there are many.
 };
 
 /// Exact direct light on one element, and the polynomial nearest to it.

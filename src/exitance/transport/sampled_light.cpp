@@ -1,0 +1,107 @@
+#include "exitance/transport/sampled_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/core/random.hpp"
+#include "exitance/transport/form_factor.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr unsigned rays_an_element = 16;
+
+/// A place of a convex polygon with uniform density, from two numbers in [0, 1).
+Point uniform_on(std::span<const Point> corners, double s, double t) {
+    double whole = 0;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        whole += norm(cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
+    double rest = s * whole;
+    for (std::size_t i = 2;; ++i) {
+        const Vec3 a = corners[i - 1] - corners[0], b = corners[i] - corners[0];
+        const double area = norm(cross(a, b));
+        if (rest < area || i + 1 == corners.size()) {
+            const Vec2 uv = uniform_in_shape(Patch::Shape::triangle, std::min(rest / area, 1.0), t);
+            return corners[0] + uv.x * a + uv.y * b;
+        }
+        rest -= area;
+    }
+}
+
+}  // namespace
+
+void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own) {
+    sources_.clear();
+    double all = 0;
+    for (std::uint32_t i = 0; i < direct_.emitters().size(); ++i) {
+        const DirectLight::Emitter& emitter = direct_.emitters()[i];
+        if (emitter.region == own || emitter.plane.signed_distance(x) <= 0 ||
+            dot(n, emitter.centre - x) <= -emitter.radius)
+            continue;
+        for (PieceId piece : emitter.pieces) {
+            const double F = point_to_polygon(x, n, direct_.occluders().corners(piece));
+            if (F <= 0) continue;
+            sources_.push_back({{i, piece}, emitter.region, F * emitter.exitance, 0, {}});
+            all += mean(sources_.back().light);
+        }
+    }
+    for (Source& source : sources_) source.expected = rays_an_element * mean(source.light) / all;
+}
+
+double SampledLight::visible_part(const ElementTree& tree, ElementId e, std::size_t s, std::uint64_t purpose) {
+    const Source& source = sources_[s];
+    const std::uint64_t name = hash(e.value, source.name.piece.value, purpose);
+    RandomStream random(seed_, Stream::direct, name);
+    const unsigned rays = static_cast<unsigned>(source.expected + random.uniform());
+    if (rays == 0) return 0;
+    const ScrambledSobol points(random.bits());
+    const Normal& n = direct_.occluders().scene().regions()[tree.region(e)].plane.n;
+    const Plane& plane = direct_.emitters()[source.name.emitter].plane;
+    from_.clear(), to_.clear();
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        const Point x = tree.patch(e).at(tree.uniform(e, points(i, 0), points(i, 1)));
+        const Point y = uniform_on(direct_.occluders().corners(source.name.piece), points(i, 2), points(i, 3));
+        if (dot(n, y - x) <= 0 || plane.signed_distance(x) <= 0) continue;
+        from_.push_back(x), to_.push_back(y);
+    }
+    if (from_.empty()) return 0;
+    std::array<bool, rays_an_element + 1> blocked;
+    tracer_.occluded(from_, to_, tree.region(e), source.region, std::span(blocked).first(from_.size()));
+    const auto open = std::count(blocked.begin(), blocked.begin() + static_cast<long>(from_.size()), false);
+    return static_cast<double>(open) / (static_cast<double>(from_.size()) * std::min(1.0, source.expected));
+}
+
+const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, ElementId e, const Spectrum& weight,
+                                                       double allowed) {
+    const RegionId own = tree.region(e);
+    find_sources(tree.patch(e).at(tree.centre(e)), direct_.occluders().scene().regions()[own].plane.n, own);
+    // What is in sight is found by rays of its own: a source must not be thought weak because its light was missed.
+    enum : std::uint64_t { sight, value };
+    for (std::size_t s = 0; s < sources_.size(); ++s)
+        if (visible_part(tree, e, s, sight) > 0)
+            sources_[s].in_sight = (1 / std::min(1.0, sources_[s].expected)) * sources_[s].light;
+    std::stable_sort(sources_.begin(), sources_.end(),
+                     [](const Source& a, const Source& b) { return mean(a.in_sight) < mean(b.in_sight); });
+    // Light that comes and goes between nothing and U misses in the mean square U^2 / 4 at most; as a rule half of
+    // that. Sources that no ray has found may still send theirs: then chance has it that rays of the second kind find
+    // it.
+    constexpr double misses = 0.125;
+    const auto power = [&](const Spectrum& light) { return squared(weight * light) / static_cast<double>(bands); };
+    estimate_.weak = Spectrum();
+    estimate_.misfit_squared = 0;
+    estimate_.strong.clear();
+    Spectrum in_sight;
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+        in_sight += sources_[s].in_sight;
+        const double misfit = misses * power(in_sight);
+        if (misfit > allowed) {
+            estimate_.strong.push_back(sources_[s].name);
+            continue;
+        }
+        estimate_.misfit_squared = misfit;
+        estimate_.weak += visible_part(tree, e, s, value) * sources_[s].light;
+    }
+    return estimate_;
+}
+
+}  // namespace exitance
