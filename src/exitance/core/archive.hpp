@@ -49,6 +49,7 @@ class ArchiveReader {
         std::memcpy(data, bytes_.data(), size);
         bytes_.remove_prefix(size);
     }
+    void fail() { good_ = false; }
     std::size_t left() const { return bytes_.size(); }
     bool good() const { return good_; }
 
@@ -63,7 +64,7 @@ std::size_t archive_size(Archive& a, std::size_t size, std::size_t bytes_each) {
     std::uint64_t count = size;
     if constexpr (Archive::reads) {
         a.raw(&count, sizeof count);
-        if (count > a.left() / bytes_each) count = 0;
+        if (count > a.left() / bytes_each) count = 0, a.fail();
     } else {
         a.raw(&count, sizeof count);
     }
@@ -75,6 +76,14 @@ template <class Archive, class T>
 requires std::is_trivially_copyable_v<T>
 void archive(Archive& a, T& value) {
     a.raw(const_cast<void*>(static_cast<const void*>(&value)), sizeof value);
+}
+
+/// Any byte but 0 is true; as a bool itself it might be neither.
+template <class Archive>
+void archive(Archive& a, bool& value) {
+    std::uint8_t byte = value;
+    a.raw(&byte, 1);
+    value = byte != 0;
 }
 
 template <class Archive, class T>

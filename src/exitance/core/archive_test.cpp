@@ -67,6 +67,7 @@ TEST(Archive, WhatIsCutShortIsNoticedAndTakesNoMemory) {
     std::vector<double> values;
     reader(values);
     EXPECT_TRUE(values.empty());
+    EXPECT_FALSE(reader.good());
 }
 
 }  // namespace exitance
