@@ -129,22 +129,28 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
 
 void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts) {
     // Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at.
-    // But around a point where many meet there is no end to it, and it is left as it is when it is small.
+    // But around a point where many meet there is no end to it: what has been halved some times in vain is left as it
+    // is.
     constexpr std::size_t many = 24;
-    constexpr double small = 1.0 / 64;
+    constexpr int most_in_vain = 6;
     struct Open {
         ElementId element;
-        double least_area;  // of what is halved still, m^2
+        std::size_t lines;  ///< When they last became fewer by a quarter,
+        int in_vain;        ///< and how many cuts ago that was.
     };
     std::vector<Open> open;
-    for (ElementId e : from) open.push_back({e, small * small * tree.area(e)});
+    for (ElementId e : from) open.push_back({e, ~std::size_t(0), 0});
     while (!open.empty()) {
-        const auto [e, least_area] = open.back();
+        Open now = open.back();
+        const ElementId e = now.element;
         open.pop_back();
         const std::vector<std::pair<Vec2, Vec2>> lines = contacts.within(tree, e);
         if (lines.size() > many) {
-            if (tree.area(e) < least_area) continue;
-            for (ElementId child : refine_element(tree, e)) open.push_back({child, least_area});
+            if (lines.size() < now.lines - now.lines / 4)
+                now = {e, lines.size(), 0};
+            else if (++now.in_vain > most_in_vain)
+                continue;
+            for (ElementId child : refine_element(tree, e)) open.push_back({child, now.lines, now.in_vain});
             if (!tree.is_leaf(e)) continue;
         }
         for (const auto& [a, b] : lines) {
@@ -153,7 +159,7 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
             const Vec2 normal = {-d.y / length, d.x / length};
             // A line along the domain's border leaves nothing on one side, and cuts nothing.
             if (tree.split_by_line(e, {normal, dot(normal, a)}, 1e-5).is_none()) continue;
-            for (ElementId child : tree.children(e)) open.push_back({child, least_area});
+            for (ElementId child : tree.children(e)) open.push_back({child, now.lines, now.in_vain});
             break;  // the children look for their own share of the other contacts
         }
     }
