@@ -79,19 +79,21 @@ double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<cons
     return flux;
 }
 
-/// Of all surfaces, by a sample of their leaves.
+/// Of all surfaces, from leaves at even steps of their running sum of areas.
 double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
                       std::uint64_t seed) {
-    constexpr std::size_t sample_size = 2000;
+    constexpr double samples = 2000;
     SampledLight sampled(stage.direct, stage.tracer, seed);
-    double flux = 0, area = 0;
-    for (std::size_t i = 0; i < sample_size; ++i) {
-        const ElementId e = leaves[i * leaves.size() / sample_size];
+    double flux = 0, area = 0, next = 0.5 * stage.area / samples;
+    for (ElementId e : leaves) {
         area += tree.area(e);
+        if (area <= next) continue;
+        const double steps = std::ceil((area - next) * samples / stage.area);
+        next += steps * stage.area / samples;
         const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-        flux += tree.area(e) * mean(w * sampled(tree, e, w, HUGE_VAL).weak);
+        flux += steps / samples * mean(w * sampled(tree, e, w, HUGE_VAL).weak);
     }
-    return flux * stage.area / area;
+    return flux * stage.area;
 }
 
 }  // namespace
@@ -105,7 +107,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         const double allowed = options.tolerance * flux / stage.area;
         return allowed * allowed * mean_area;
     };
-    // Of the squared error that one element may have. Where elements are few, all of them are looked at well.
+    // Where elements are few, all of them are looked at well, and tell what share of the squared error one may have.
     constexpr std::size_t few = 8000;
     const bool many = active.size() > few && stage.direct.beams().empty();
     double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed)) : 0;
@@ -125,7 +127,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
                         },
                         {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
         if (options.may_give_up && stop.requested()) return {};
-        if (depth == 0) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
+        if (depth == 0 && !many) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
         if (depth == options.max_depth || stop.requested()) break;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
