@@ -13,21 +13,24 @@ struct Office {
     Office() : scene(built_scene("office", {{"nx", "2"}, {"ny", "2"}, {"nfurn", "2"}})), stage(scene) {}
     Scene scene;
     Stage stage;
+    SampledLight sampled{stage.direct, stage.tracer, 1};
+    DirectLight::Workspace workspace;
+    ReceiverLight light;
+
+    double exact(const ElementTree& tree, ElementId e) {
+        return mean(fit_direct_light(stage, tree, e, light, workspace).mean);
+    }
 };
 
 TEST(SampledLight, IsRightInTheMeanOverManyElements) {
-    const Office office;
-    const Stage& stage = office.stage;
-    const ElementTree tree = stage.make_elements({0.3, 1});
-    SampledLight sampled(stage.direct, stage.tracer, 1);
-    DirectLight::Workspace workspace;
-    ReceiverLight light;
+    Office office;
+    const ElementTree tree = office.stage.make_elements({0.3, 1});
     double exact = 0, found = 0;
     const std::vector<ElementId> leaves = tree.leaves();
     for (std::size_t i = 0; i < leaves.size(); i += 5) {
         const ElementId e = leaves[i];
-        exact += tree.area(e) * mean(fit_direct_light(stage, tree, e, light, workspace).mean);
-        const SampledLight::Estimate& all = sampled(tree, e, Spectrum(1.0), HUGE_VAL);
+        exact += tree.area(e) * office.exact(tree, e);
+        const SampledLight::Estimate& all = office.sampled(tree, e, Spectrum(1.0), HUGE_VAL);
         EXPECT_TRUE(all.strong.empty());
         found += tree.area(e) * mean(all.weak);
     }
@@ -36,14 +39,11 @@ TEST(SampledLight, IsRightInTheMeanOverManyElements) {
 }
 
 TEST(SampledLight, LeavesNothingToRaysWhereNothingIsAllowed) {
-    const Office office;
-    const Stage& stage = office.stage;
-    const ElementTree tree = stage.make_elements({1, 0});
-    SampledLight sampled(stage.direct, stage.tracer, 1);
-    DirectLight::Workspace workspace;
+    Office office;
+    const ElementTree tree = office.stage.make_elements({1, 0});
     std::size_t strong = 0;
     for (ElementId e : tree.leaves()) {
-        const SampledLight::Estimate& of = sampled(tree, e, Spectrum(1.0), 0);
+        const SampledLight::Estimate& of = office.sampled(tree, e, Spectrum(1.0), 0);
         EXPECT_EQ(of.misfit_squared, 0);
         strong += of.strong.size();
     }
@@ -51,19 +51,16 @@ TEST(SampledLight, LeavesNothingToRaysWhereNothingIsAllowed) {
 }
 
 TEST(SampledLight, KeepsTheLightOfAProjectionOntoManyElements) {
-    const Office office;
-    const Stage& stage = office.stage;
+    Office office;
     const StopRequest stop;
     const DirectProjection many =
-        project_direct_light(stage, {.mesh = {0.2, 1}, .tolerance = 0.2, .max_depth = 1}, stop);
+        project_direct_light(office.stage, {.mesh = {0.2, 1}, .tolerance = 0.2, .max_depth = 1}, stop);
     const std::vector<ElementId> leaves = many.tree.leaves();
     ASSERT_GT(leaves.size(), 8000u);  // else every element is looked at well
-    DirectLight::Workspace workspace;
-    ReceiverLight light;
     double exact = 0, found = 0, square = 0;
     for (std::size_t i = 0; i < leaves.size(); i += 23) {
         const ElementId e = leaves[i];
-        const double E = mean(fit_direct_light(stage, many.tree, e, light, workspace).mean);
+        const double E = office.exact(many.tree, e);
         exact += many.tree.area(e) * E, found += many.tree.area(e) * mean(many.fit[e].mean);
         square += many.tree.area(e) * std::pow(E - mean(many.fit[e].mean), 2);
     }
