@@ -205,7 +205,8 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     declare_bent(app, arguments.bent);
     app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
     add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
-    add_choice(app, "--basis", basis_names, o.basis, "Of matrix: constant, linear; of wavelet: the others");
+    add_choice(app, "--basis", basis_names, o.basis,
+               "Of matrix: constant, linear, galerkin1 to 3; of wavelet: the others");
     app.callback([&o] {
         if (o.basis && !fits(*o.basis, o.method))
             throw CLI::ValidationError("--basis",

@@ -8,6 +8,7 @@
 #include "exitance/core/memory.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/importance.hpp"
+#include "exitance/transport/leaf_links.hpp"
 #include "exitance/transport/link_refiner.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -35,15 +36,7 @@ class Hierarchy {
         const double coarse = somewhere ? 128 : 8;
         double demand = input_.knobs.link_error * light_norm();
         const double first = coarse * demand / std::sqrt(links_in_a_sum);
-        LinkTolerance tolerance{.error = first,
-                                .interpolation = first,
-                                .systematic = systematic(),
-                                .most_links = most_links(),
-                                .least_area = input_.options.min_area.value_or(1e-7 * input_.stage.area),
-                                .fractional = input_.options.visibility == VisibilityKind::fractional,
-                                .quadrature = input_.options.visibility == VisibilityKind::quadrature,
-                                .triage = input_.options.triage,
-                                .seed = input_.options.seed};
+        LinkTolerance tolerance = tolerance_of(first);
         constexpr int most_rounds = 8;
         int round = 0;
         const auto state = [&](auto& a) {
@@ -78,7 +71,44 @@ class Hierarchy {
         return std::move(light_);
     }
 
+    /// All pairs of leaves as they are, in place of what a hierarchy would link.
+    GlobalLight solve_on_leaves() {
+        project_direct();
+        b_ = first_;
+        input_.progress.phase("link");
+        light_.numbering = LeafNumbering(light_.tree);
+        // As many links as there are at most, each of one error, come to the one asked for.
+        const double demand = input_.knobs.link_error * light_norm();
+        LinkTolerance tolerance = tolerance_of(demand / static_cast<double>(light_.numbering.leaves.size()));
+        LeafLinks found = link_leaves(sites_, b_, tolerance, input_.stop);
+        links_.emplace(std::move(found.links));
+        input_.progress.note(
+            fmt::format("{} links between {} leaves ({:.0f}% of their light in the open), {} rays; error of rules and "
+                        "visibility {:.3f}%",
+                        links_->size(), light_.numbering.leaves.size(), 100 * found.open_share, found.rays,
+                        100 * found.error / light_norm()));
+        light_.rays += found.rays;
+        light_.form_factors += found.form_factors;
+        light_.delivers = is_polynomial() && found.open_share > mostly_open;
+        input_.progress.phase("solve");
+        solve_on_links(first_, b_);
+        hand_over();
+        return std::move(light_);
+    }
+
   private:
+    LinkTolerance tolerance_of(double error) const {
+        return {.error = error,
+                .interpolation = error,
+                .systematic = systematic(),
+                .most_links = most_links(),
+                .least_area = input_.options.min_area.value_or(1e-7 * input_.stage.area),
+                .fractional = input_.options.visibility == VisibilityKind::fractional,
+                .quadrature = input_.options.visibility == VisibilityKind::quadrature,
+                .triage = input_.options.triage,
+                .seed = input_.options.seed};
+    }
+
     /// Where most light passes in the open, links give it as exactly as it is asked for. Elsewhere they only find what
     /// the elements reflect, and rays gather that: from a place that sees many things in part, rays over the hemisphere
     /// say more than as many between pairs.
@@ -332,6 +362,10 @@ class Hierarchy {
 
 GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind) {
     return Hierarchy(input, kind).solve();
+}
+
+GlobalLight solve_galerkin(const MethodInput& input, HierarchyBasis kind) {
+    return Hierarchy(input, kind).solve_on_leaves();
 }
 
 /// Hierarchical radiosity [Hanrahan91]: constant elements, links between levels.

@@ -13,4 +13,9 @@ namespace exitance {
 /// Source: [Hanrahan91], [Gortler93].
 GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind);
 
+/// The same without a hierarchy: Galerkin's method of order 1 to 3, whose basis is that of haar, multiwavelet2 or
+/// multiwavelet3. Every leaf of the direct projection is linked to every leaf, once (`leaf_links`); E_ind is delivered,
+/// or gathered, by the same rule. O(leaves^2). Source: [Zatz93].
+GlobalLight solve_galerkin(const MethodInput& input, HierarchyBasis kind);
+
 }  // namespace exitance

@@ -1,3 +1,4 @@
+#include "exitance/methods/hierarchy.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/solve/direct_share.hpp"
 #include "exitance/transport/linear_rows.hpp"
@@ -90,15 +91,24 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
     light.link_memory_bytes = H.memory_bytes();
 }
 
+HierarchyBasis galerkin_basis(BasisKind basis) {
+    return basis == BasisKind::galerkin1   ? HierarchyBasis::haar
+           : basis == BasisKind::galerkin2 ? HierarchyBasis::multiwavelet2
+                                           : HierarchyBasis::multiwavelet3;
+}
+
 }  // namespace
 
 /// Matrix radiosity [Goral84]: b = rho (E_dir + F b) on constant elements, solved by relaxation. The direct light of
 /// emitters is exact and stands apart, so that b is reflected light alone. Rows of F are cast by rays (entries are
 /// noisy, what they gather is not: O(n) rays), or computed, from elements to patches one level above them [Cohen86]
 /// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each). With `--basis linear` rows are cast from nodes, and
-/// what a ray reads is the polynomial of the element that it hits [Atkinson00].
+/// what a ray reads is the polynomial of the element that it hits [Atkinson00]. With `--basis galerkin1` to `3` blocks
+/// of Galerkin's matrix are integrated pair by pair [Zatz93].
 GlobalLight solve_matrix(const MethodInput& input) {
     const auto& [stage, options, knobs, direct, progress, stop, safe_points] = input;
+    if (options.bounces < 0 && options.basis && is_galerkin(*options.basis))
+        return solve_galerkin(input, galerkin_basis(*options.basis));
     GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};
     light.direct = leaf_means(direct, light.numbering);
     light.on_projection = true;

@@ -14,8 +14,10 @@ constexpr double bytes_per_element = 6000;
 double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
     const auto elements = static_cast<double>(predict_elements(pieces, knobs.solve_mesh.edge) +
                                               predict_elements(pieces, knobs.gather_mesh.edge));
-    const bool dense = options.form_factors == FormFactorKind::analytic;
-    const double entries = dense ? elements * elements : 4 * elements * knobs.solve_rays.average;
+    const bool galerkin = options.basis && is_galerkin(*options.basis);
+    const bool dense = options.form_factors == FormFactorKind::analytic || galerkin;
+    const double words_a_pair = galerkin ? 15 : 1;  // links while they are sorted; half of all pairs see each other
+    const double entries = dense ? words_a_pair * elements * elements : 4 * elements * knobs.solve_rays.average;
     return bytes_per_element * elements + 4 * entries;
 }
 

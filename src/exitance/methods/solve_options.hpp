@@ -15,7 +15,18 @@
 namespace exitance {
 
 enum class Method { automatic, matrix, progressive, substructuring, hierarchical, wavelet, monte_carlo };
-enum class BasisKind { constant, linear, haar, flatlet2, flatlet3, multiwavelet2, multiwavelet3 };
+enum class BasisKind {
+    constant,
+    linear,
+    galerkin1,
+    galerkin2,
+    galerkin3,
+    haar,
+    flatlet2,
+    flatlet3,
+    multiwavelet2,
+    multiwavelet3
+};
 enum class VisibilityKind { automatic, fractional, quadrature, exact };
 enum class FormFactorKind { analytic, ray_cast };
 
@@ -29,9 +40,12 @@ inline constexpr std::array<std::pair<Method, std::string_view>, 7> method_names
     {Method::wavelet, "wavelet"},
     {Method::monte_carlo, "monte-carlo"},
 }};
-inline constexpr std::array<std::pair<BasisKind, std::string_view>, 7> basis_names{{
+inline constexpr std::array<std::pair<BasisKind, std::string_view>, 10> basis_names{{
     {BasisKind::constant, "constant"},
     {BasisKind::linear, "linear"},
+    {BasisKind::galerkin1, "galerkin1"},
+    {BasisKind::galerkin2, "galerkin2"},
+    {BasisKind::galerkin3, "galerkin3"},
     {BasisKind::haar, "haar"},
     {BasisKind::flatlet2, "flatlet2"},
     {BasisKind::flatlet3, "flatlet3"},
@@ -57,9 +71,14 @@ inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 2> form
     {FormFactorKind::ray_cast, "ray-cast"},
 }};
 
+/// Constants to quadratic functions on leaves that are linked pair by pair, without a hierarchy.
+constexpr bool is_galerkin(BasisKind basis) {
+    return basis == BasisKind::galerkin1 || basis == BasisKind::galerkin2 || basis == BasisKind::galerkin3;
+}
+
 /// Can the elements of a method hold this basis?
 constexpr bool fits(BasisKind basis, Method method) {
-    const bool of_matrix = basis == BasisKind::constant || basis == BasisKind::linear;
+    const bool of_matrix = basis == BasisKind::constant || basis == BasisKind::linear || is_galerkin(basis);
     if (method == Method::automatic || method == Method::matrix) return of_matrix;
     if (method == Method::wavelet) return !of_matrix;
     return basis == (method == Method::hierarchical ? BasisKind::haar : BasisKind::constant);

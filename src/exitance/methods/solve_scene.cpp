@@ -58,8 +58,7 @@ class Solver {
         solution_.bounces = options.bounces;
         statistics().method = name_in(method_names, method.id);
         const bool chosen =
-            (method.id == Method::matrix && options.basis == BasisKind::linear && options.bounces < 0) ||
-            (method.id == Method::wavelet && options.basis);
+            options.basis && (method.id == Method::wavelet || (method.id == Method::matrix && options.bounces < 0));
         statistics().basis = chosen ? name_in(basis_names, *options.basis) : method.basis;
         statistics().threads = threads();
         statistics().schedule = name_in(schedule_names, schedule());
@@ -270,8 +269,9 @@ class Solver {
     bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
 
     ElementFunction on_leaves() const {
-        const bool constant =
-            light_->indirect_corners.empty() || solution_.statistics.basis == name_in(basis_names, BasisKind::haar);
+        const std::string& basis = solution_.statistics.basis;
+        const bool constant = light_->indirect_corners.empty() || basis == name_in(basis_names, BasisKind::haar) ||
+                              basis == name_in(basis_names, BasisKind::galerkin1);
         if (!constant) return polynomials_on_leaves(*light_);
         return options_.smoothing.value_or(false) ? smoothed_on_leaves(*light_, stage_.scene.regions().size())
                                                   : constant_on_leaves(*light_);
