@@ -2,7 +2,7 @@
 //
 // Gives a reader damaged files until the time is over, or the files named. Ends with status 1 and the path of the file
 // when one makes the reader crash, hang for more than 5 s, or ask at a time for more memory than ten times the file's
-// size and 64 MiB.
+// size and 64 MiB, or makes a copy of the process, in which a reader tries a file out, hold as much.
 
 #include <signal.h>
 #include <unistd.h>
@@ -37,10 +37,17 @@ void die(int signal) {
 }
 
 void read_watched(const Target& target, const std::string& bytes) {
-    limit_memory(10 * bytes.size() + (std::size_t(64) << 20));
+    static std::size_t most = 0;
+    const std::size_t limit = 10 * bytes.size() + (std::size_t(64) << 20);
+    limit_memory(limit);
     ::alarm(longest);
     target.read(bytes);
     ::alarm(0);
+    if (most_held_by_copies() <= most) return;
+    most = most_held_by_copies();
+    if (most <= limit) return;
+    std::fprintf(stderr, "memory: a copy of the process held %.1f MiB\n", static_cast<double>(most) / (1 << 20));
+    die(SIGABRT);
 }
 
 struct Options {
@@ -69,9 +76,11 @@ void attack(const Target& target, const Options& options) {
         slowest = std::max(slowest, elapsed() - before);
     }
     std::remove(current);
-    std::printf("%s: %llu files in %.0f s, the slowest %.2f s; at most %.1f MiB held; nothing found\n",
-                std::string(target.name).c_str(), static_cast<unsigned long long>(round), elapsed(), slowest,
-                static_cast<double>(most) / (1 << 20));
+    std::printf(
+        "%s: %llu files in %.0f s, the slowest %.2f s; at most %.1f MiB held, %.1f by copies; nothing "
+        "found\n",
+        std::string(target.name).c_str(), static_cast<unsigned long long>(round), elapsed(), slowest,
+        static_cast<double>(most) / (1 << 20), static_cast<double>(most_held_by_copies()) / (1 << 20));
 }
 
 int usage() {

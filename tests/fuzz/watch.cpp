@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <malloc.h>
+#include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -90,8 +92,17 @@ void free(void* p) {
 namespace exitance::fuzz {
 
 void limit_memory(std::size_t bytes) {
+    // A copy of the process reads as users' programs do: there the reader itself is to see to its limits.
+    [[maybe_unused]] static const int watched = ::pthread_atfork(nullptr, nullptr, [] { limit = 0; });
     held = 0, most = 0;
     limit = bytes;
+}
+
+std::size_t most_held_by_copies() {
+    rusage self{}, copies{};
+    ::getrusage(RUSAGE_SELF, &self);
+    ::getrusage(RUSAGE_CHILDREN, &copies);
+    return static_cast<std::size_t>(std::max(0L, copies.ru_maxrss - self.ru_maxrss)) * 1024;  // Linux counts it in KiB
 }
 
 std::size_t most_held() {

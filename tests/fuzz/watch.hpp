@@ -8,6 +8,10 @@ namespace exitance::fuzz {
 /// malloc, so operator new and C libraries alike.
 void limit_memory(std::size_t bytes);
 
+/// The most that a copy of the process, which a reader made and waited for, has held resident so far beyond the most
+/// that the process itself has, bytes. Copies are not limited by the above: they run as they do for users.
+std::size_t most_held_by_copies();
+
 /// The most that was held beyond what was held at the last limit_memory, bytes.
 std::size_t most_held();
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <new>
+#include <set>
 
 #include "exitance/io/atomic_file.hpp"
 #include "exitance/io/hdf5_checksum.hpp"
@@ -258,7 +260,13 @@ bool is_plain_number(hid_t type) {
     return false;
 }
 
-/// May a set of so many items be read: do the bytes that the file holds for it make so many, after unpacking?
+/// What reading a file may take at a time: what is written shrinks little, since most of it are digits of light.
+constexpr std::size_t room_for(std::uint64_t file_bytes) {
+    return 10 * static_cast<std::size_t>(file_bytes) + (std::size_t{64} << 20);
+}
+
+/// May a set of so many items be read: do the bytes that the file holds for it make so many, after unpacking, and are
+/// they no more than a file of this size may ask for, 8 bytes each at most?
 bool holds_really(hid_t set, std::size_t item_bytes, std::size_t items, std::uint64_t file_bytes) {
     const Handle creation(H5Dget_create_plist(set));
     const H5D_layout_t layout = H5Pget_layout(creation);
@@ -275,6 +283,7 @@ bool holds_really(hid_t set, std::size_t item_bytes, std::size_t items, std::uin
         if (H5Pget_nfilters(creation) > 0) grows = gzip_at_best;
     }
     const hsize_t held = H5Dget_storage_size(set);
+    if (items > room_for(file_bytes) / std::max<std::size_t>(item_bytes, 8)) return false;
     return held <= file_bytes &&
            static_cast<double>(items) * static_cast<double>(item_bytes) <= grows * static_cast<double>(held);
 }
@@ -284,15 +293,8 @@ class Rehearsal {
   public:
     explicit Rehearsal(std::uint64_t file_bytes) : file_bytes_(file_bytes) {}
 
-    void read(hid_t file) {
-        if (H5Lexists(file, "exitance", H5P_DEFAULT) <= 0) return;
-        const Handle top(H5Oopen(file, "exitance", H5P_DEFAULT));
-        if (top < 0) return;
-        const auto visit = [](hid_t from, const char* name, const H5O_info_t* info, void* self) -> herr_t {
-            return static_cast<Rehearsal*>(self)->object(from, name, info->type), 0;
-        };
-        H5Ovisit2(top, H5_INDEX_NAME, H5_ITER_INC, visit, this, H5O_INFO_BASIC);
-    }
+    /// Could everything be opened? What fails the first time is not always refused the next time, half made as it is.
+    bool read(hid_t file) { return H5Lexists(file, "exitance", H5P_DEFAULT) <= 0 || object(file, "exitance"); }
 
   private:
     /// How many items of a kind that we read, or none.
@@ -303,35 +305,80 @@ class Rehearsal {
     }
 
     char* room(std::size_t bytes) {
-        if (buffer_.size() < bytes) buffer_.resize(bytes);
+        if (buffer_.size() < bytes) {
+            buffer_ = {};  // given back before more is taken
+            buffer_.resize(bytes);
+        }
         return buffer_.data();
     }
 
-    void attribute(hid_t object, const char* name) {
+    bool attribute(hid_t object, const char* name) {
         const Handle attribute(H5Aopen(object, name, H5P_DEFAULT));
-        if (attribute < 0) return;
+        if (attribute < 0) return false;
         const Handle type(H5Aget_type(attribute)), space(H5Aget_space(attribute));
         const std::size_t items = items_of(type, space), size = H5Tget_size(type);
         if (items > 0 && items <= file_bytes_ / size) H5Aread(attribute, type, room(items * size));
+        return true;
     }
 
-    void object(hid_t from, const char* name, H5O_type_t kind) {
-        const Handle object(H5Oopen(from, name, H5P_DEFAULT));
-        if (object < 0) return;
-        const auto visit = [](hid_t at, const char* attribute, const H5A_info_t*, void* self) -> herr_t {
-            return static_cast<Rehearsal*>(self)->attribute(at, attribute), 0;
+    bool attributes(hid_t object) {
+        const auto visit = [](hid_t at, const char* name, const H5A_info_t*, void* self) -> herr_t {
+            return static_cast<Rehearsal*>(self)->attribute(at, name) ? 0 : -1;
         };
         hsize_t position = 0;
-        H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &position, visit, this);
-        if (kind != H5O_TYPE_DATASET) return;
-        const Handle type(H5Dget_type(object)), space(H5Dget_space(object));
+        return H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &position, visit, this) >= 0;
+    }
+
+    bool members(hid_t group) {
+        const auto visit = [](hid_t from, const char* link, const H5L_info_t*, void* self) -> herr_t {
+            return static_cast<Rehearsal*>(self)->object(from, link) ? 0 : -1;
+        };
+        hsize_t position = 0;
+        return H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, &position, visit, this) >= 0;
+    }
+
+    bool numbers(hid_t set) {
+        const Handle type(H5Dget_type(set)), space(H5Dget_space(set));
+        if (type < 0 || space < 0) return false;
         const std::size_t items = items_of(type, space), size = H5Tget_size(type);
-        if (items > 0 && holds_really(object, size, items, file_bytes_))
-            H5Dread(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, room(items * size));
+        if (items > 0 && holds_really(set, size, items, file_bytes_))
+            H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, room(items * size));
+        return true;
+    }
+
+    /// An object and all below it.
+    bool object(hid_t from, const char* name) {
+        const Handle object(H5Oopen(from, name, H5P_DEFAULT));
+        H5O_info_t info;
+        if (object < 0 || H5Oget_info2(object, &info, H5O_INFO_BASIC) < 0) return false;
+        if (!seen_.insert(info.addr).second) return true;
+        if (!attributes(object)) return false;
+        if (info.type == H5O_TYPE_GROUP) return members(object);
+        return info.type != H5O_TYPE_DATASET || numbers(object);
     }
 
     std::uint64_t file_bytes_;
     std::vector<char> buffer_;
+    std::set<haddr_t> seen_;  ///< Addresses of objects: links may lead back.
+};
+
+/// Remembers whether the library got less memory than it asked for. It says so where a call fails, and only there.
+class MemoryWatch {
+  public:
+    MemoryWatch() { H5Eset_auto2(H5E_DEFAULT, look, &lacking_); }
+    ~MemoryWatch() { quieten_library(); }
+    bool lacking() const { return lacking_; }
+
+  private:
+    static herr_t look(hid_t errors, void* lacking) {
+        const auto visit = [](unsigned, const H5E_error2_t* error, void* out) -> herr_t {
+            if (error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC) *static_cast<bool*>(out) = true;
+            return 0;
+        };
+        return H5Ewalk2(errors, H5E_WALK_DOWNWARD, visit, lacking);
+    }
+
+    bool lacking_ = false;
 };
 
 /// The library takes bytes on trust that are damaged on purpose: their checksums are right. It does so first where
@@ -339,12 +386,14 @@ class Rehearsal {
 std::optional<Error> rehearse_reading(const std::string& path, std::uint64_t bytes, hid_t access) {
     const auto failed = rehearse(
         [&] {
+            const MemoryWatch memory;
             const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
-            if (file < 0) return;
-            Rehearsal(bytes).read(file);
-            H5Fclose(file);
+            const bool whole = file < 0 || Rehearsal(bytes).read(file);
+            if (memory.lacking()) throw std::bad_alloc();
+            if (file >= 0) H5Fclose(file);
+            return whole;
         },
-        2 + 1e-7 * static_cast<double>(bytes));
+        2 + 1e-7 * static_cast<double>(bytes), room_for(bytes));
     if (!failed) return {};
     return Error{ErrorCode::bad_input, "is damaged: the HDF5 library " + *failed + " when it reads this file", path,
                  "solve the scene again with this program"};

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -9,9 +11,14 @@ namespace exitance {
 /// Runs `work` in a copy of this process that is thrown away: what it breaks is broken there. For libraries that trust
 /// files more than we do: what they survive in rehearsal they survive here, given the same bytes. The copy has one
 /// thread, so that `work` must not wait for others.
+/// work     returns whether all went well; may throw std::bad_alloc to say that it got less memory than it asked for
 /// seconds  of processor time that it may take, at least
-/// returns  how it failed ("crashes", "takes more than 2 s"), or nothing when `work` returned. Where no process can be
-///          made there is no rehearsal.
-std::optional<std::string> rehearse(const std::function<void()>& work, double seconds);
+/// memory   bytes of address space that it may take beyond what the process has now; not watched under the address
+///          sanitizer, whose shadow lies there, nor where /proc is not to be seen
+/// returns  how it failed ("fails", "crashes", "takes more than 2 s", "asks for more than 65 MiB"), or nothing when
+/// `work`
+///          returned. Where no process can be made there is no rehearsal.
+std::optional<std::string> rehearse(const std::function<bool()>& work, double seconds,
+                                    std::size_t memory = std::numeric_limits<std::size_t>::max());
 
 }  // namespace exitance

@@ -184,6 +184,22 @@ TEST(HostileSolutions, WhoseMetadataCrashTheLibraryAreErrors) {
     EXPECT_TRUE(back || said.starts_with("is damaged")) << said;
 }
 
+TEST(HostileSolutions, WhoseMetadataAskForMuchMemoryAreErrors) {
+    // The second part of a header is said to be 32 TiB long: version 1.10.8 of the library makes room for it.
+    const std::string bytes = fuzz::solution_corpus().at(0), goes_on("\x10\x10\0\0", 4);
+    const TemporaryFolder folder;
+    std::size_t refused = 0;
+    for (std::size_t at = bytes.find(goes_on); at != bytes.npos && at < 20000; at = bytes.find(goes_on, at + 4)) {
+        std::string longer = bytes;
+        longer[at + goes_on.size() + 1 + 8 + 5] = '\x20';  // flags, address, length
+        fuzz::mend_solution(longer);
+        ASSERT_TRUE(write_file(folder / "s.h5", longer));
+        const Result<Solution> back = load_solution(folder / "s.h5");
+        refused += !back && back.error().message.starts_with("is damaged: the HDF5 library ");
+    }
+    EXPECT_GE(refused, 1u);
+}
+
 TEST(Exports, ByUnknownEndingsAreErrors) {
     const Result<void> written = export_solution(sample_solution(), "solution.stl");
     ASSERT_FALSE(written);
