@@ -248,6 +248,7 @@ void declare(CLI::App& app, SolveArguments& arguments) {
         ->group("Method");
     add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
         ->group("Method");
+    add_count(app, "--hemicube-cells", o.hemicube_cells, 2, "Along an edge of a hemicube's top, even")->group("Method");
     add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");
 
     add_positive(app, "--time-limit", arguments.time_limit, "SECONDS", "Stop then and write what there is")

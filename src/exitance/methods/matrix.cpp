@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <cmath>
+
 #include "exitance/methods/hierarchy.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/solve/direct_share.hpp"
+#include "exitance/transport/hemicube_rows.hpp"
 #include "exitance/transport/linear_rows.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 #include "exitance/transport/ray_rows.hpp"
@@ -91,6 +95,13 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
     light.link_memory_bytes = H.memory_bytes();
 }
 
+/// So fine that a hemicube's rays are some 200 times as many as those of a row that is cast at random places.
+unsigned hemicube_cells(const MethodInput& input) {
+    const double asked = input.options.hemicube_cells ? static_cast<double>(*input.options.hemicube_cells)
+                                                      : 8 * std::sqrt(input.knobs.solve_rays.average);
+    return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));
+}
+
 HierarchyBasis galerkin_basis(BasisKind basis) {
     return basis == BasisKind::galerkin1   ? HierarchyBasis::haar
            : basis == BasisKind::galerkin2 ? HierarchyBasis::multiwavelet2
@@ -102,9 +113,9 @@ HierarchyBasis galerkin_basis(BasisKind basis) {
 /// Matrix radiosity [Goral84]: b = rho (E_dir + F b) on constant elements, solved by relaxation. The direct light of
 /// emitters is exact and stands apart, so that b is reflected light alone. Rows of F are cast by rays (entries are
 /// noisy, what they gather is not: O(n) rays), or computed, from elements to patches one level above them [Cohen86]
-/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each). With `--basis linear` rows are cast from nodes, and
-/// what a ray reads is the polynomial of the element that it hits [Atkinson00]. With `--basis galerkin1` to `3` blocks
-/// of Galerkin's matrix are integrated pair by pair [Zatz93].
+/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each), or seen by hemicubes [Cohen85]. With `--basis
+/// linear` rows are cast from nodes, and what a ray reads is the polynomial of the element that it hits [Atkinson00].
+/// With `--basis galerkin1` to `3` blocks of Galerkin's matrix are integrated pair by pair [Zatz93].
 GlobalLight solve_matrix(const MethodInput& input) {
     const auto& [stage, options, knobs, direct, progress, stop, safe_points] = input;
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis))
@@ -121,6 +132,12 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed);
         relax(input, F, light);
         light.rays = light.links = F.rays();
+    } else if (*options.form_factors == FormFactorKind::hemicube) {
+        const ElementLocator locator(light.tree, stage.scene.regions().size());
+        const HemicubeRows F(stage, light.tree, light.numbering, locator, hemicube_cells(input));
+        relax(input, F, light);
+        light.rays = F.rays();
+        light.links = light.form_factors = F.entries();
     } else {
         const PatchLevel patches(light.tree, light.numbering, 1);
         const auto samples = options.visibility_samples.value_or(default_visibility_samples);

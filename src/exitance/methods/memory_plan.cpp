@@ -15,9 +15,13 @@ double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, con
     const auto elements = static_cast<double>(predict_elements(pieces, knobs.solve_mesh.edge) +
                                               predict_elements(pieces, knobs.gather_mesh.edge));
     const bool galerkin = options.basis && is_galerkin(*options.basis);
-    const bool dense = options.form_factors == FormFactorKind::analytic || galerkin;
-    const double words_a_pair = galerkin ? 15 : 1;  // links while they are sorted; half of all pairs see each other
-    const double entries = dense ? words_a_pair * elements * elements : 4 * elements * knobs.solve_rays.average;
+    // Links while they are sorted; entries with their sources. Half of all pairs see each other.
+    const double words_a_pair = galerkin                                           ? 15
+                                : options.form_factors == FormFactorKind::hemicube ? 2
+                                : options.form_factors == FormFactorKind::analytic ? 1
+                                                                                   : 0;
+    const double entries =
+        words_a_pair > 0 ? words_a_pair * elements * elements : 4 * elements * knobs.solve_rays.average;
     return bytes_per_element * elements + 4 * entries;
 }
 

@@ -28,7 +28,7 @@ enum class BasisKind {
     multiwavelet3
 };
 enum class VisibilityKind { automatic, fractional, quadrature, exact };
-enum class FormFactorKind { analytic, ray_cast };
+enum class FormFactorKind { analytic, ray_cast, hemicube };
 
 /// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
 inline constexpr std::array<std::pair<Method, std::string_view>, 7> method_names{{
@@ -66,9 +66,10 @@ inline constexpr std::array<std::pair<VisibilityKind, std::string_view>, 4> visi
     {VisibilityKind::quadrature, "quadrature"},
     {VisibilityKind::exact, "exact"},
 }};
-inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 2> form_factor_names{{
+inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 3> form_factor_names{{
     {FormFactorKind::analytic, "analytic"},
     {FormFactorKind::ray_cast, "ray-cast"},
+    {FormFactorKind::hemicube, "hemicube"},
 }};
 
 /// Constants to quadratic functions on leaves that are linked pair by pair, without a hierarchy.
@@ -122,6 +123,7 @@ struct SolveOptions {
     std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
     bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
     std::optional<FormFactorKind> form_factors = {};
+    std::optional<std::size_t> hemicube_cells = {};  ///< Along an edge of a hemicube's top.
     /// Deliver what the method's elements hold in place of gathering it: smoothed (true) or as it is. Empty: whatever
     /// is best.
     std::optional<bool> smoothing = {};
@@ -136,7 +138,7 @@ struct SolveOptions {
 
     /// Has any of the knobs been set that the error asked for would otherwise decide?
     bool has_knobs() const {
-        return epsilon || mesh_size || residual || max_iterations || min_area || visibility_samples;
+        return epsilon || mesh_size || residual || max_iterations || min_area || visibility_samples || hemicube_cells;
     }
     /// The error to be reached: as asked for; `default_error` when nothing was said; none when knobs were set by hand.
     /// Where points are looked at, it is the error there.

@@ -1,0 +1,133 @@
+#include "exitance/transport/hemicube_rows.hpp"
+
+#include <algorithm>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/core/trace.hpp"
+#include "exitance/transport/form_factor.hpp"
+
+namespace exitance {
+
+Hemicube::Hemicube(unsigned cells) {
+    const double h = 2.0 / cells;
+    // A face is spanned by two edges from a corner; seen from within, they run counter-clockwise.
+    const auto add_face = [&](const Vec3& corner, const Vec3& s, const Vec3& t, unsigned columns, unsigned rows) {
+        for (unsigned j = 0; j < rows; ++j)
+            for (unsigned i = 0; i < columns; ++i) {
+                const Vec3 a = corner + (i * h) * s + (j * h) * t;
+                const Vec3 cell[] = {a, a + h * s, a + h * s + h * t, a + h * t};
+                direction.push_back(a + (0.5 * h) * (s + t));
+                factor.push_back(point_to_polygon({}, {0, 0, 1}, cell));
+            }
+    };
+    const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    add_face({-1, -1, 1}, y, x, cells, cells);
+    add_face({1, -1, 0}, z, y, cells / 2, cells);
+    add_face({-1, -1, 0}, y, z, cells, cells / 2);
+    add_face({-1, 1, 0}, x, z, cells, cells / 2);
+    add_face({-1, -1, 0}, z, x, cells / 2, cells);
+}
+
+namespace {
+
+/// Rows of one thread's elements, one after the other.
+class RowMaker {
+  public:
+    RowMaker(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
+             const Hemicube& cube)
+        : stage_(stage),
+          tree_(tree),
+          locator_(locator),
+          cube_(cube),
+          directions_(cube.direction.size()),
+          hits_(cube.direction.size()),
+          sum_(numbering.leaves.size(), 0.0) {}
+
+    /// Calls add(leaf number, form factor) for every leaf that `e` sees, in their order.
+    template <class Add>
+    void make(ElementId e, const Add& add) {
+        const Patch& patch = tree_.patch(e);
+        const RegionId region = tree_.region(e);
+        const Normal n = stage_.scene.regions()[region].plane.n, u = normalized(patch.a - dot(patch.a, n) * n),
+                     v = cross(n, u);
+        const Point x = patch.at(tree_.centre(e));
+        for (std::size_t k = 0; k < directions_.size(); ++k) {
+            const Vec3& d = cube_.direction[k];
+            directions_[k] = d.x * u + d.y * v + d.z * n;
+        }
+        stage_.tracer.nearest(directions_, x, region, hits_);
+        queries_.clear(), cell_.clear(), seen_.clear();
+        for (std::size_t k = 0; k < hits_.size(); ++k) {
+            if (hits_[k].surface.is_none() || !hits_[k].front) continue;
+            const RegionId hit = stage_.scene.surfaces()[hits_[k].surface].region;
+            queries_.push_back(locator_.root_of(hit, x + hits_[k].distance * directions_[k]));
+            cell_.push_back(k);
+        }
+        locator_.leaves().find(queries_);
+        for (std::size_t i = 0; i < queries_.size(); ++i) {
+            double& sum = sum_[queries_[i].leaf];
+            if (sum == 0) seen_.push_back(queries_[i].leaf);
+            sum += cube_.factor[cell_[i]];
+        }
+        std::sort(seen_.begin(), seen_.end());
+        for (std::uint32_t leaf : seen_) add(leaf, std::exchange(sum_[leaf], 0.0));
+    }
+
+  private:
+    const Stage& stage_;
+    const ElementTree& tree_;
+    const ElementLocator& locator_;
+    const Hemicube& cube_;
+    std::vector<Vec3> directions_;
+    std::vector<RayHit> hits_;
+    std::vector<LeafFinder::Query> queries_;
+    std::vector<std::size_t> cell_;
+    std::vector<double> sum_;  ///< By leaf number.
+    std::vector<std::uint32_t> seen_;
+};
+
+}  // namespace
+
+HemicubeRows::HemicubeRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                           const ElementLocator& locator, unsigned cells) {
+    const Hemicube cube(cells);
+    const std::size_t n = numbering.leaves.size();
+    std::vector<std::vector<Entry>> rows(n);
+    parallel_ranges(n, 16,
+                    [&](std::size_t begin, std::size_t end) {
+                        RowMaker maker(stage, tree, numbering, locator, cube);
+                        for (std::size_t i = begin; i < end; ++i)
+                            maker.make(numbering.leaves[i], [&](std::uint32_t leaf, double factor) {
+                                rows[i].push_back({leaf, static_cast<float>(factor)});
+                            });
+                        note_touched("rays", (end - begin) * cube.factor.size());
+                    },
+                    {"hemicubes", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
+    rays_ = n * cube.factor.size();
+    for (std::vector<Entry>& row : rows) {
+        first_.push_back(entry_.size());
+        entry_.insert(entry_.end(), row.begin(), row.end());
+        row = {};
+    }
+    first_.push_back(entry_.size());
+}
+
+Spectrum HemicubeRows::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {
+    Spectrum sum;
+    for (std::size_t k = first_[receiver]; k < first_[receiver + 1]; ++k)
+        sum += static_cast<double>(entry_[k].factor) * radiosity[entry_[k].source];
+    return sum;
+}
+
+void HemicubeRows::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+    parallel_for(size(), 64, [&](std::size_t i) { irradiance[i] = gather_at(i, radiosity); });
+}
+
+double HemicubeRows::form_factor(std::size_t receiver, std::size_t source) const {
+    const auto begin = entry_.begin() + static_cast<std::ptrdiff_t>(first_[receiver]),
+               end = entry_.begin() + static_cast<std::ptrdiff_t>(first_[receiver + 1]);
+    const auto at = std::lower_bound(begin, end, source, [](const Entry& e, std::size_t s) { return e.source < s; });
+    return at != end && at->source == source ? static_cast<double>(at->factor) : 0;
+}
+
+}  // namespace exitance
