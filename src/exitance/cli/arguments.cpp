@@ -246,6 +246,9 @@ void declare(CLI::App& app, SolveArguments& arguments) {
         ->group("Method");
     app.add_flag("--keep-links", o.keep_links, "Put a hierarchy's links into the solution, for export --links")
         ->group("Method");
+    add_choice(app, "--oracle", oracle_names, o.oracle,
+               "By what links are cut: error of what they bring (default), form factor, or power")
+        ->group("Method");
     add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
         ->group("Method");
     add_count(app, "--hemicube-cells", o.hemicube_cells, 2, "Along an edge of a hemicube's top, even")->group("Method");

@@ -122,6 +122,7 @@ std::string options_json(const SolveOptions& o) {
         {"smoothing", value_or_null(o.smoothing)},
         {"importance", o.importance.empty() ? Json(nullptr) : Json(fingerprint(o.importance))},
         {"form_factors", name_or_null(form_factor_names, o.form_factors)},
+        {"oracle", name_in(oracle_names, o.oracle)},
         {"hemicube_cells", value_or_null(o.hemicube_cells)},
         {"keep_links", o.keep_links},
         {"seed", o.seed},

@@ -37,6 +37,8 @@ class Hierarchy {
         double demand = input_.knobs.link_error * light_norm();
         const double first = coarse * demand / std::sqrt(links_in_a_sum);
         LinkTolerance tolerance = tolerance_of(first);
+        tolerance.oracle = input_.options.oracle;
+        tolerance.strongest = first_strength(first);
         constexpr int most_rounds = 8;
         int round = 0;
         const auto state = [&](auto& a) {
@@ -64,7 +66,7 @@ class Hierarchy {
             const bool weighed = round > 0 || !somewhere;
             if (weighed && refiner_.error() <= demand) break;
             const double factor = std::clamp(0.8 * demand / refiner_.error(), 0.1, 0.8);
-            tolerance.error *= factor, tolerance.interpolation *= factor;
+            tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
         }
         if (!light_.delivers && !input_.stop.requested()) correct_by_rays();
         hand_over();
@@ -97,6 +99,13 @@ class Hierarchy {
     }
 
   private:
+    /// Where links are judged by their strength, what they may have in the first round; it falls with the error.
+    double first_strength(double error) const {
+        constexpr double of_form_factors = 10, of_light = 0.1;
+        return input_.options.oracle == LinkOracle::form_factor ? of_form_factors * error / light_norm()
+                                                                : of_light * error * std::sqrt(input_.stage.area);
+    }
+
     LinkTolerance tolerance_of(double error) const {
         return {.error = error,
                 .interpolation = error,

@@ -11,6 +11,7 @@
 #include "exitance/core/schedule.hpp"
 #include "exitance/geometry/vec.hpp"
 #include "exitance/solve/relaxation.hpp"
+#include "exitance/transport/link_oracle.hpp"
 
 namespace exitance {
 
@@ -65,6 +66,11 @@ inline constexpr std::array<std::pair<VisibilityKind, std::string_view>, 4> visi
     {VisibilityKind::fractional, "fractional"},
     {VisibilityKind::quadrature, "quadrature"},
     {VisibilityKind::exact, "exact"},
+}};
+inline constexpr std::array<std::pair<LinkOracle, std::string_view>, 3> oracle_names{{
+    {LinkOracle::transport, "transport"},
+    {LinkOracle::form_factor, "ff"},
+    {LinkOracle::power, "bf"},
 }};
 inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 3> form_factor_names{{
     {FormFactorKind::analytic, "analytic"},
@@ -122,6 +128,7 @@ struct SolveOptions {
     VisibilityKind visibility = VisibilityKind::automatic;
     std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
     bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
+    LinkOracle oracle = LinkOracle::transport;  ///< By what links are held to be good enough.
     std::optional<FormFactorKind> form_factors = {};
     std::optional<std::size_t> hemicube_cells = {};  ///< Along an edge of a hemicube's top.
     /// Deliver what the method's elements hold in place of gathering it: smoothed (true) or as it is. Empty: whatever

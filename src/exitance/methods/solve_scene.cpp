@@ -66,6 +66,8 @@ class Solver {
         has_links_ = method.id == Method::hierarchical || method.id == Method::wavelet;
         if (!options.importance.empty() && !has_links_)
             warn(fmt::format("--importance steers links, of which the method {} has none", statistics().method));
+        if (options.oracle != LinkOracle::transport && !has_links_)
+            warn(fmt::format("--oracle judges links, of which the method {} has none", statistics().method));
         statistics().converged = true;
         solution_.indirect = dark(stage_);
         // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where

@@ -121,7 +121,9 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     };
     if (ratio <= surely_near) {
         at_nodes();
-        near_ = ratio > surely_far && most * rule_error > 0.2 * allowed;
+        // Strength says nothing of the rule: there the good one is taken.
+        const bool is_rough = tolerance_.oracle != LinkOracle::transport || most * rule_error > 0.2 * allowed;
+        near_ = ratio > surely_far && is_rough;
     }
     if (ratio > surely_near || near_) {
         near_ = true;
@@ -238,6 +240,23 @@ double LinkJudge::cast(ElementId p, ElementId q, bool few, double allowed) {
     return once(static_cast<unsigned>(std::clamp(std::ceil(std::pow(error / allowed, 2)), 2.0, 16.0)));
 }
 
+/// By strength: the larger of the two, as long as the link is too strong. A source that is a leaf stays as it is; as a
+/// receiver it is judged by itself.
+LinkJudge::Cut LinkJudge::what_to_cut(ElementId p, ElementId q, bool mixed) const {
+    constexpr double partial = 0.5;  // of what is allowed, where something may stand in between
+    const double allowed = (mixed ? partial : 1) * tolerance_.strongest;
+    const double area = sites_.tree().area(p), ratio = area / sites_.tree().area(q);
+    double F = 0, power = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+        for (std::size_t l = 0; l < n_; ++l) F += sites_.weight(p, k) * rows_[k][l];
+        power += area * sites_.weight(p, k) * std::abs(node_light_[k]);
+    }
+    const bool by_power = tolerance_.oracle == LinkOracle::power;
+    const double as_receiver = by_power ? power : F * ratio, as_source = by_power ? power : F;
+    if (ratio <= 1 && as_source > allowed && !sites_.tree().is_leaf(q)) return Cut::source;
+    return as_receiver > allowed ? Cut::receiver : Cut::nothing;
+}
+
 LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool) {
     const auto [p, q] = std::pair{pair.receiver, pair.source};
     Result out;
@@ -250,7 +269,7 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     const double rule = send(p, q, allowed, out.departure);
     double light = 0;
     for (std::size_t k = 0; k < n_; ++k) light = std::max(light, std::abs(node_light_[k]));
-    const bool tiny = light < 0.3 * allowed;
+    const bool by_error = tolerance_.oracle == LinkOracle::transport, tiny = by_error && light < 0.3 * allowed;
     if (tolerance_.triage && !tiny && pair.view == View::mixed) {
         triage(pair, pool);
         if (pair.view == View::none) return out;
@@ -261,8 +280,14 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     out.link.receiver = p, out.link.source = q;
     const bool leaf = sites_.tree().is_leaf(q);
     double visibility = 0;
-    if (!leaf && rule > allowed) return out.verdict = Verdict::cut_source, out;
-    if (pair.view == View::mixed) {
+    if (!by_error) {
+        const Cut cut = what_to_cut(p, q, pair.view == View::mixed);
+        if (cut == Cut::source && allowed < HUGE_VAL) return out.verdict = Verdict::cut_source, out;
+        out.too_strong = cut == Cut::receiver;
+        if (pair.view == View::mixed) visibility = cast(p, q, out.too_strong, HUGE_VAL);
+    } else if (!leaf && rule > allowed) {
+        return out.verdict = Verdict::cut_source, out;
+    } else if (pair.view == View::mixed) {
         // With half of it hidden, would the rays' error be far too large? Then they are not worth casting.
         const double rays_a_node = n_ == 1 ? 16 : static_cast<double>(n_);
         constexpr double far_too_large = 3;

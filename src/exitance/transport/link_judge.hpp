@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/transport/link_oracle.hpp"
 #include "exitance/transport/links.hpp"
 #include "exitance/transport/near_row.hpp"
 #include "exitance/transport/shaft.hpp"
@@ -26,6 +27,8 @@ struct LinkTolerance {
     /// How much errors count on a receiver, squared, by element; null: alike everywhere.
     const Field<ElementId, double>* importance = nullptr;
     bool triage = true;  ///< Look for certain visibility before rays are cast.
+    LinkOracle oracle = LinkOracle::transport;
+    double strongest = 0;  ///< Of the other oracles: form factor or power (W) of a link.
     std::uint64_t seed = 1;
 
     double weight(ElementId receiver) const { return importance ? (*importance)[receiver] : 1; }
@@ -49,6 +52,7 @@ struct LinkPair {
 /// - interpolation: light that the link sends to points between the receiver's nodes, against the nodes' polynomial.
 ///   This is judged for all links of a receiver together: near an edge each part of a wall sends light that varies
 ///   fast, while the whole of it hardly does.
+/// Or links are judged by their strength alone (LinkOracle): where it is too large, the larger of the two is cut.
 /// Source: the oracle of [Gortler93] and [Lischinski94], by samples; certain visibility of [Haines91] is inherited.
 class LinkJudge {
   public:
@@ -59,6 +63,7 @@ class LinkJudge {
         Verdict verdict = Verdict::drop;
         Link link;
         bool near = false;         ///< The kernel stands in block().
+        bool too_strong = false;   ///< By an oracle of strength: the receiver is to be cut.
         double squared_error = 0;  ///< Of rule and visibility: area times squared error, of an accepted link.
         double light = 0;          ///< Of all of the receiver, in the open.
         Departure departure{};
@@ -93,6 +98,8 @@ class LinkJudge {
     double cast(ElementId p, ElementId q, bool few, double allowed);
     double cast_one(ElementId p, ElementId q, unsigned count);
     double cast_many(ElementId p, ElementId q, unsigned each, bool few);
+    enum class Cut { nothing, source, receiver };
+    Cut what_to_cut(ElementId p, ElementId q, bool mixed) const;
     void hand_over(bool open, Result& out);
 
     struct Checks {

@@ -178,17 +178,22 @@ struct LinkRefiner::Receivers {
 Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers, const LinkTolerance& tolerance,
                                                             std::vector<ElementId>& leaves) {
     receivers.light.resize(tree_.size()), receivers.error.resize(tree_.size(), 0.0);
-    Field<ElementId, std::uint8_t> too_much(tree_.size(), 0), gained(tree_.size(), 0);
+    enum : std::uint8_t { nothing, links, too_strong_ones };
+    Field<ElementId, std::uint8_t> too_much(tree_.size(), 0), gained(tree_.size(), nothing);
     for (; receivers.known < links_.size(); ++receivers.known) {
         const LinkJudge::Result& link = links_[receivers.known].result;
         receivers.light[link.link.receiver].add(link);
-        gained[link.link.receiver] = 1;
+        std::uint8_t& here = gained[link.link.receiver];
+        here = std::max<std::uint8_t>(here, link.too_strong ? too_strong_ones : links);
     }
     interpolation_ = 0;
     for (ElementId e : gained.ids()) {
         if (gained[e]) receivers.error[e] = weight(e) * tree_.area(e) * receivers.light[e].squared_error(sites_, e);
         interpolation_ += receivers.error[e];
-        if (!gained[e] || receivers.error[e] <= tolerance.interpolation * tolerance.interpolation) continue;
+        const bool is_good = tolerance.oracle == LinkOracle::transport
+                                 ? receivers.error[e] <= tolerance.interpolation * tolerance.interpolation
+                                 : gained[e] != too_strong_ones;
+        if (!gained[e] || is_good) continue;
         if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
         too_much[e] = 1;
         receivers.light[e] = {};  // of the links that will be left
@@ -210,6 +215,10 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
         const Found& found = links_[i];
         const ElementId p = found.result.link.receiver;
         if (!too_much[p]) return;
+        if (tolerance.oracle != LinkOracle::transport) {
+            fate[i] = found.result.too_strong ? handed_on : left;
+            return;
+        }
         const double error = weight(p) * tree_.area(p) * mean_square(found.result.departure);
         fate[i] = found.open && error < negligible * negligible ? left : handed_on;
     });
