@@ -17,6 +17,7 @@
 #include "exitance/reconstruct/interpolant.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/quick_function.hpp"
+#include "exitance/reconstruct/unlit_sides.hpp"
 #include "exitance/solve/direct_share.hpp"
 
 namespace exitance {
@@ -76,8 +77,10 @@ class Solver {
         constexpr double near = 30;  // seconds
         const bool deadline = stop.seconds_left() < near && !checkpoints_;
         const double error = deadline ? std::max(coarse, options.error_target()) : options.error_target();
-        knobs_ = knobs_for_error(error, stage_.pieces, options);
-        if (ElementGather::suits(stage_)) knobs_ = knobs_for_sums(knobs_, error, stage_.pieces, options);
+        stage_.leave_out(find_unlit_sides(stage_, options.seed));
+        const std::vector<Piece> lit = stage_.lit_pieces();
+        knobs_ = knobs_for_error(error, lit, options);
+        if (ElementGather::suits(stage_)) knobs_ = knobs_for_sums(knobs_, error, lit, options);
     }
 
     Result<Solution> run() {
@@ -287,7 +290,7 @@ class Solver {
 
     ElementFunction gather(const ReflectedLight& b, const ElementGather* elements, bool fresh) {
         progress_.phase("gather");
-        const double scale = light_->mean_reflected();
+        const double scale = light_->mean_reflected(stage_.area);
         if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
         return local_pass_->gather(b, fresh,
                                    {.rays = knobs_.gather_rays,
@@ -333,7 +336,7 @@ class Solver {
         s.link_memory_bytes = light_->link_memory_bytes;
         s.element_memory_bytes = light_->element_memory_bytes;
         if (has_links_) s.elements_by_level = count_by_level(light_->tree);
-        const double scale = light_->mean_reflected();
+        const double scale = light_->mean_reflected(stage_.area);
         if (!light_->standard_error.empty() && scale > 0)
             progress_.note(
                 fmt::format("standard error of the elements' indirect light {:.2f}% of the mean reflected light",

@@ -25,7 +25,8 @@ struct Sample {
 };
 
 /// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x expected error.
-std::vector<WeightedSample> stratified_places(const ElementTree& tree,
+/// A few lie on what is left out: should there be light, it is to be noticed.
+std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
                                               const Field<ElementId, LocalPassReport::Leaf>* known, std::size_t count,
                                               std::uint64_t seed) {
     const std::vector<ElementId> leaves = tree.leaves();
@@ -36,19 +37,23 @@ std::vector<WeightedSample> stratified_places(const ElementTree& tree,
     }
     const double mean_error = error / area;
     const auto density = [&](ElementId e) {
-        return mean_error > 0 ? 0.5 + 0.5 * (*known)[e].expected_error / mean_error : 1.0;
+        const double seldom = stage.is_left_out(tree.region(e)) ? 0.1 : 1;
+        return seldom * (mean_error > 0 ? 0.5 + 0.5 * (*known)[e].expected_error / mean_error : 1.0);
     };
+    double total = 0;
+    for (ElementId e : leaves) total += tree.area(e) * density(e);
+    const double share_of_all = total / stage.area;  // 1 where nothing is left out
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
     double before = 0;
     std::size_t leaf = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
-        const double wanted = area * (k + points(k, 0)) / static_cast<double>(count);
+        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
         const auto share = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
         while (leaf + 1 < leaves.size() && before + share() <= wanted) before += share(), ++leaf;
         const ElementId e = leaves[leaf];
-        out.push_back(
-            {{e, tree.uniform(e, points(k, 1), points(k, 2))}, 1 / (density(e) * static_cast<double>(count))});
+        out.push_back({{e, tree.uniform(e, points(k, 1), points(k, 2))},
+                       share_of_all / (density(e) * static_cast<double>(count))});
     }
     return out;
 }
@@ -114,7 +119,7 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
     const std::vector<WeightedSample> places =
-        options.places.empty() ? stratified_places(indirect.tree, options.leaves, sample_count, options.seed)
+        options.places.empty() ? stratified_places(stage, indirect.tree, options.leaves, sample_count, options.seed)
                                : in_turn(options.places, sample_count);
     std::vector<Sample> samples(places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -172,7 +177,7 @@ std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light
 Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
                     const ReflectedLight& b, const CertificateOptions& options) {
     Certificate out;
-    out.mean_reflected = light.mean_reflected();
+    out.mean_reflected = light.mean_reflected(stage.area);
     if (out.mean_reflected <= 0) return out;
 
     const ElementLocator coarse(light.tree, stage.scene.regions().size());

@@ -45,7 +45,9 @@ LocalPass::Sampled LocalPass::sample(ElementId e, const ReflectedLight& b, const
     const ElementId parent = tree_.parent(e);
     const unsigned inherited = parent.is_none() ? 0 : sampled_[parent].place_rays / 2;
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays : inherited;
-    unsigned rays = std::max({4u, demand.rays.rays(tree_.area(e), mean_area_), before});
+    const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area asks for no rays
+    const unsigned first = hopeless ? demand.rays.least : demand.rays.rays(tree_.area(e), mean_area_);
+    unsigned rays = std::max({4u, first, before});
     const auto excess_of = [&](const Sampled& s) {
         return std::sqrt(s.noise_squared) / allowed_noise(e, s.light, demand);
     };

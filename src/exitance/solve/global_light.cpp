@@ -2,13 +2,10 @@
 
 namespace exitance {
 
-double GlobalLight::mean_reflected() const {
-    double flux = 0, area = 0;
-    for (std::size_t i = 0; i < reflected.size(); ++i) {
-        flux += tree.area(numbering.leaves[i]) * mean(reflected[i]);
-        area += tree.area(numbering.leaves[i]);
-    }
-    return area > 0 ? flux / area : 0;
+double GlobalLight::mean_reflected(double surface_area) const {
+    double flux = 0;
+    for (std::size_t i = 0; i < reflected.size(); ++i) flux += tree.area(numbering.leaves[i]) * mean(reflected[i]);
+    return surface_area > 0 ? flux / surface_area : 0;
 }
 
 std::vector<Spectrum> leaf_reflectances(const Scene& scene, const ElementTree& tree, const LeafNumbering& numbering) {

@@ -45,7 +45,8 @@ struct GlobalLight {
     /// Of a hierarchy, where they are asked for: links by receiver, then by source.
     std::vector<KeptLink> kept_links = {};
 
-    double mean_reflected() const;  ///< Over all surfaces and bands, W/m^2.
+    /// Mean over all bands and a surface of `surface_area`, which is all that reflects, W/m^2.
+    double mean_reflected(double surface_area) const;
 };
 
 /// Reflectance of every leaf, by leaf number.

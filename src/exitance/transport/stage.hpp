@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include "exitance/mesh/contact_lines.hpp"
@@ -21,7 +24,7 @@ struct Stage {
           tracer(s),
           occluders(s),
           direct(s, occluders) {
-        for (const Piece& piece : pieces) area += piece.patch.area();
+        leave_out({});
     }
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
@@ -33,14 +36,35 @@ struct Stage {
     RayTracer tracer;
     Occluders occluders;
     DirectLight direct;
+    /// Sides of sheets that no light reaches are no surfaces to anybody: they do not count in `area` and are not cut
+    /// into elements in advance. Light that comes there after all is treated as everywhere.
+    void leave_out(Field<RegionId, std::uint8_t> sides) {
+        unlit = std::move(sides);
+        area = 0;
+        for (const Piece& piece : pieces)
+            if (!is_left_out(piece.region)) area += piece.patch.area();
+    }
+    bool is_left_out(RegionId region) const { return unlit.size() > 0 && unlit[region]; }
+
+    /// The pieces that are not left out.
+    std::vector<Piece> lit_pieces() const {
+        std::vector<Piece> out;
+        std::copy_if(pieces.begin(), pieces.end(), std::back_inserter(out),
+                     [&](const Piece& piece) { return !is_left_out(piece.region); });
+        return out;
+    }
+
     /// Elements over all pieces, graded towards concave edges and cut where other polygons touch them.
     ElementTree make_elements(MeshSize size) const {
-        ElementTree tree = make_mesh(pieces, concave, size);
-        cut_along_contacts(tree, tree.leaves(), contacts);
+        ElementTree tree = make_mesh(pieces, concave, size, unlit);
+        std::vector<ElementId> leaves = tree.leaves();
+        std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
+        cut_along_contacts(tree, leaves, contacts);
         return tree;
     }
 
-    double area = 0;  ///< Of all surfaces, m^2.
+    double area = 0;                      ///< Of all surfaces but those left out, m^2.
+    Field<RegionId, std::uint8_t> unlit;  ///< What is left out; empty: nothing.
 
     /// Is there anything that emits, and anything that reflects? Without either no light is indirect.
     bool has_indirect_light() const {
