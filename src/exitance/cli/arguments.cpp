@@ -236,6 +236,14 @@ void declare(CLI::App& app, SolveArguments& arguments) {
         ->type_name("on|off")
         ->group("Method");
     app.add_option_function<std::string>(
+           "--clusters",
+           [&o](const std::string& w) {
+               o.clusters = w == "auto" ? std::nullopt : std::optional(read_switch("--clusters", w));
+           },
+           "Links between clusters of polygons, too; default auto: where they are many")
+        ->type_name("auto|on|off")
+        ->group("Method");
+    app.add_option_function<std::string>(
            "--smoothing", [&o](const std::string& w) { o.smoothing = read_switch("--smoothing", w); },
            "Deliver the method's elements, smoothed or as they are, in place of gathering their light")
         ->type_name("on|off")

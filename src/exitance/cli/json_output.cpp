@@ -119,6 +119,7 @@ std::string options_json(const SolveOptions& o) {
         {"overshooting", o.overshooting},
         {"visibility", name_in(visibility_names, o.visibility)},
         {"visibility_samples", value_or_null(o.visibility_samples)},
+        {"clusters", value_or_null(o.clusters)},
         {"smoothing", value_or_null(o.smoothing)},
         {"importance", o.importance.empty() ? Json(nullptr) : Json(fingerprint(o.importance))},
         {"form_factors", name_or_null(form_factor_names, o.form_factors)},

@@ -8,9 +8,11 @@
 #include "exitance/core/memory.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/importance.hpp"
+#include "exitance/transport/cluster_refiner.hpp"
 #include "exitance/transport/leaf_links.hpp"
 #include "exitance/transport/link_refiner.hpp"
 #include "exitance/transport/ray_rows.hpp"
+#include "exitance/transport/rooms.hpp"
 
 namespace exitance {
 namespace {
@@ -28,6 +30,7 @@ class Hierarchy {
           refiner_(light_.tree, sites_) {}
 
     GlobalLight solve() {
+        if (wants_clusters()) make_clusters();
         project_direct();
         b_ = first_;
         // By the light that is reflected once, at first; then by all of it.
@@ -45,27 +48,29 @@ class Hierarchy {
             a(round, tolerance, light_.tree, light_.report, light_.delivers);
             for (NodalField* field : {&direct_, &first_, &b_}) field->archive_state(a);
             refiner_.archive_state(a);
+            if (far_) far_->archive_state(a);
         };
         SafePoints safe_points = input_.safe_points;
         if (safe_points.resume(state)) sites_.update();
         for (; round < most_rounds; ++round) {
             safe_points.pass(state);
             input_.progress.phase("link");
-            NodalField* const also[] = {&direct_, &first_};
-            refiner_.refine(b_, also, tolerance, input_.progress, input_.stop);
+            refine(tolerance);
             relax();
-            light_.delivers = is_polynomial() && refiner_.open_share() > mostly_open;
+            light_.delivers = is_polynomial() && open_share() > mostly_open;
             demand = input_.knobs.link_error * (light_.delivers || input_.options.smoothing ? 1 : gathers_forgive) *
                      light_norm();
-            input_.progress.note(fmt::format(
-                "{} links ({:.0f}% of their light in the open), {} elements, {} rays; their error {:.3f}% of {:.3f}%",
-                refiner_.size(), 100 * refiner_.open_share(), light_.tree.size(), refiner_.rays(),
-                100 * refiner_.error() / light_norm(), 100 * demand / light_norm()));
+            input_.progress.note(
+                fmt::format("{} links, {} of clusters ({:.0f}% of their light in the open), {} elements, {} rays; "
+                            "their error {:.3f}% "
+                            "of {:.3f}%",
+                            refiner_.size(), far_ ? far_->size() : 0, 100 * open_share(), light_.tree.size(), rays(),
+                            100 * error() / light_norm(), 100 * demand / light_norm()));
             light_.limited_by_memory = refiner_.is_limited();
             if (input_.stop.requested() || light_.limited_by_memory) break;
             const bool weighed = round > 0 || !somewhere;
-            if (weighed && refiner_.error() <= demand) break;
-            const double factor = std::clamp(0.8 * demand / refiner_.error(), 0.1, 0.8);
+            if (weighed && error() <= demand) break;
+            const double factor = std::clamp(0.8 * demand / error(), 0.1, 0.8);
             tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
         }
         if (!light_.delivers && !input_.stop.requested()) correct_by_rays();
@@ -99,6 +104,20 @@ class Hierarchy {
     }
 
   private:
+    /// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error.
+    bool wants_clusters() const {
+        constexpr std::size_t many_pieces = 500;
+        const SolveOptions& o = input_.options;
+        return o.clusters.value_or(light_.tree.roots().size() > many_pieces && o.oracle == LinkOracle::transport);
+    }
+
+    void make_clusters() {
+        const Rooms rooms = find_rooms(input_.stage, light_.tree, input_.options.seed);
+        light_.rays += rooms.rays;
+        clusters_.emplace(light_.tree, rooms.of_root);
+        far_.emplace(sites_, *clusters_);
+    }
+
     /// Where links are judged by their strength, what they may have in the first round; it falls with the error.
     double first_strength(double error) const {
         constexpr double of_form_factors = 10, of_light = 0.1;
@@ -170,11 +189,28 @@ class Hierarchy {
         return sum / std::sqrt(input_.stage.area);
     }
 
+    void refine(const LinkTolerance& tolerance) {
+        NodalField* const also[] = {&direct_, &first_};
+        if (!far_) return refiner_.refine(b_, also, tolerance, input_.progress, input_.stop);
+        const std::vector<LinkPair> near = far_->refine(b_, tolerance, input_.stop);
+        refiner_.refine(near, b_, also, tolerance, input_.progress, input_.stop);
+    }
+
+    /// Of links of elements and of clusters.
+    double error() const { return std::hypot(refiner_.error(), far_ ? far_->error() : 0); }
+    std::size_t rays() const { return refiner_.rays() + (far_ ? far_->rays() : 0); }
+    /// How much of the light that links carry meets nothing on its way, certainly.
+    double open_share() const {
+        const double light = refiner_.light() + (far_ ? far_->light() : 0);
+        return light > 0 ? refiner_.open_light() / light : 1;
+    }
+
     /// b = first + rho F b, from the b that there is.
     void relax() {
         input_.progress.phase("solve");
         light_.numbering = LeafNumbering(light_.tree);
         links_.emplace(refiner_.make_links());
+        if (far_) far_links_.emplace(far_->make_links());
         solve_on_links(first_, b_);
         if (!input_.options.importance.empty()) find_importance();
     }
@@ -193,8 +229,7 @@ class Hierarchy {
         const SolveReport of_light = light_.report;
         solve_on_links(source, v);
         light_.report = of_light;
-        links_->gather(v, w);
-        w.push();
+        gather_by_links(v, w);
         Field<ElementId, double> importance(light_.tree.size(), 0.0);
         double total = 0;
         for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -212,7 +247,7 @@ class Hierarchy {
 
     /// x = rhs + rho F x for what leaves the elements, from the x that there is.
     void solve_on_links(const NodalField& rhs, NodalField& x) {
-        const LinkOperator F(sites_, *links_, light_.numbering);
+        const LinkOperator F(sites_, *links_, far_links_ ? &*far_links_ : nullptr, light_.numbering);
         const std::size_t n = sites_.nodes();
         std::vector<Spectrum> rho, first, value;
         std::vector<double> area;
@@ -266,11 +301,16 @@ class Hierarchy {
         light_.rays += rows.rays();
     }
 
+    void gather_by_links(const NodalField& b, NodalField& E) const {
+        links_->gather(b, E);
+        if (far_links_) far_links_->add_to(E, b);
+        E.push();
+    }
+
     /// E_ind of leaves, by the links, and by what rays found them to miss.
     NodalField gather() const {
         NodalField E(sites_);
-        links_->gather(b_, E);
-        E.push();
+        gather_by_links(b_, E);
         for (std::size_t i = 0; i < missed_.size(); ++i) {
             const ElementId e = light_.numbering.leaves[i];
             for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, E.node(e, k) + missed_[i]);
@@ -349,11 +389,11 @@ class Hierarchy {
                 corners[static_cast<std::size_t>(i)] =
                     input_.direct.at({own, input_.direct.tree.patch(own).coordinates(patch.corner(i))});
         }
-        light_.links = links_->size();
+        light_.links = links_->size() + (far_links_ ? far_links_->size() : 0);
         if (input_.options.keep_links) light_.kept_links = links_->list();
-        light_.link_memory_bytes = links_->memory_bytes();
+        light_.link_memory_bytes = links_->memory_bytes() + (far_links_ ? far_links_->memory_bytes() : 0);
         light_.element_memory_bytes = light_.tree.memory_bytes() + sites_.memory_bytes() + 3 * b_.memory_bytes();
-        light_.rays += refiner_.rays();
+        light_.rays += rays();
         light_.form_factors = refiner_.form_factors();
     }
 
@@ -363,7 +403,10 @@ class Hierarchy {
     LinkSites sites_;
     NodalField direct_, first_, b_;  ///< E_dir, rho E_dir, and all reflected light.
     LinkRefiner refiner_;
+    std::optional<ClusterTree> clusters_;  ///< None where every piece is linked to every other to begin with.
+    std::optional<ClusterRefiner> far_;
     std::optional<Links> links_;
+    std::optional<ClusterLinks> far_links_;
     std::vector<Spectrum> missed_;  ///< By the links, of E_ind; of every leaf, or empty.
 };
 

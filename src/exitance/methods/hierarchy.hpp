@@ -8,9 +8,9 @@ namespace exitance {
 /// Radiosity over the links of a hierarchy, whatever its basis: what the methods hierarchical and wavelet share.
 ///
 /// Links are refined for an error asked for, with light from a coarser solution (multigridding), the system is solved
-/// on them, and again, until the links' own estimate is met. O(k^2 + links) for k pieces. Where the basis holds
-/// polynomials, E_ind is delivered as the links give it.
-/// Source: [Hanrahan91], [Gortler93].
+/// on them, and again, until the links' own estimate is met. O(k log k + links) for k pieces under clusters, O(k^2 +
+/// links) without. Where the basis holds polynomials, E_ind is delivered as the links give it.
+/// Source: [Hanrahan91], [Gortler93], [Smits94].
 GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind);
 
 /// The same without a hierarchy: Galerkin's method of order 1 to 3, whose basis is that of haar, multiwavelet2 or

@@ -129,6 +129,7 @@ struct SolveOptions {
     std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
     bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
     LinkOracle oracle = LinkOracle::transport;  ///< By what links are held to be good enough.
+    std::optional<bool> clusters = {};  ///< Links between clusters of pieces, too; empty: where pieces are many.
     std::optional<FormFactorKind> form_factors = {};
     std::optional<std::size_t> hemicube_cells = {};  ///< Along an edge of a hemicube's top.
     /// Deliver what the method's elements hold in place of gathering it: smoothed (true) or as it is. Empty: whatever

@@ -169,10 +169,27 @@ TEST(SolveScene, CoarseLinksBehindObstaclesTakeNoLightAway) {
     // By themselves links of a tenth leave 0.7 to 1% of the energy out; rays correct it, and leave their noise.
     const Scene scene = built_scene("complex", {{"m", "6"}});
     for (const Method method : {Method::hierarchical, Method::wavelet}) {
-        SolveOptions options{.method = method};
-        options.epsilon = 0.1;
-        EXPECT_LT(solved(scene, options).statistics.energy.defect, 2e-3);
+        for (const bool clusters : {false, true}) {
+            SolveOptions options{.method = method};
+            options.epsilon = 0.1, options.clusters = clusters;
+            EXPECT_LT(solved(scene, options).statistics.energy.defect, 2e-3);
+        }
     }
+}
+
+TEST(SolveScene, ClustersSaveLinksAndGiveTheSameLight) {
+    const Scene scene = built_scene("complex", {{"m", "12"}});
+    std::array<SolveStatistics, 2> found;
+    for (const bool clusters : {false, true}) {
+        SolveOptions options{.method = Method::hierarchical, .error = 0.05};
+        options.clusters = clusters;
+        const Solution solution = solved(scene, options);
+        EXPECT_TRUE(solution.statistics.converged);
+        found[clusters] = solution.statistics;
+    }
+    EXPECT_LT(2 * found[1].links, found[0].links);
+    const double absorbed = found[0].energy.absorbed;
+    EXPECT_NEAR(found[1].energy.absorbed, absorbed, 2e-3 * absorbed);  // the noise of the rays of either
 }
 
 TEST(SolveScene, AnInterruptedSolveStillHasAResult) {

@@ -129,6 +129,9 @@ struct RayTracer::Content {
         return true;
     }
 
+    template <class Ends>
+    std::size_t occluded(std::span<bool> blocked, const Ends& ends) const;
+
     /// Goes on past the ray's own region, where rounding let it be met.
     void retry(const Point& origin, const Vec3& direction, RegionId own, float past, RayHit& hit) const {
         for (int attempt = 0; attempt < retries; ++attempt) {
@@ -191,25 +194,39 @@ std::size_t RayTracer::nearest(std::span<const Vec3> directions, const Point& or
     return nearest(std::span(&origin, 1), directions, own, hits);
 }
 
+/// ends(i): where ray i begins and ends, off its surfaces.
+template <class Ends>
+std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& ends) const {
+    RTCIntersectContext context = make_context();
+    alignas(64) RTCRay16 packet;
+    alignas(64) std::array<int, width> valid;
+    for (std::size_t first = 0; first < blocked.size(); first += width) {
+        const std::size_t count = std::min(width, blocked.size() - first);
+        for (std::size_t i = 0; i < width; ++i) {
+            valid[i] = i < count ? -1 : 0;
+            if (i >= count) continue;
+            const auto [a, b] = ends(first + i);
+            set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
+        }
+        rtcOccluded16(valid.data(), rtc, &context, &packet);
+        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+    }
+    return blocked.size();
+}
+
 std::size_t RayTracer::occluded(std::span<const Point> from, std::span<const Point> to, RegionId receiver,
                                 RegionId source, std::span<bool> blocked) const {
     EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
     const Vec3 near = content_->offset(receiver), far = content_->offset(source);
-    RTCIntersectContext context = make_context();
-    alignas(64) RTCRay16 packet;
-    alignas(64) std::array<int, width> valid;
-    for (std::size_t first = 0; first < to.size(); first += width) {
-        const std::size_t count = std::min(width, to.size() - first);
-        for (std::size_t i = 0; i < width; ++i) {
-            valid[i] = i < count ? -1 : 0;
-            if (i >= count) continue;
-            const Point a = from[first + i] + near, b = to[first + i] + far;
-            set_ray(packet, i, content_->local(a), content_->local_direction(b - a), 0, 1);
-        }
-        rtcOccluded16(valid.data(), content_->rtc, &context, &packet);
-        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
-    }
-    return to.size();
+    return content_->occluded(blocked, [&](std::size_t i) { return std::pair{from[i] + near, to[i] + far}; });
+}
+
+std::size_t RayTracer::occluded(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
+                                std::span<bool> blocked) const {
+    EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
+    return content_->occluded(blocked, [&](std::size_t i) {
+        return std::pair{from[i].at + content_->offset(from[i].region), to[i].at + content_->offset(to[i].region)};
+    });
 }
 
 }  // namespace exitance

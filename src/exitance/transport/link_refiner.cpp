@@ -1,6 +1,7 @@
 #include "exitance/transport/link_refiner.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
@@ -8,15 +9,26 @@
 
 namespace exitance {
 
+LinkRefiner::Found::Found(const LinkJudge::Result& result, bool is_open)
+    : link(result.link),
+      squared_error(static_cast<float>(result.squared_error)),
+      light(static_cast<float>(result.light)),
+      near(result.near),
+      open(is_open),
+      too_strong(result.too_strong) {
+    for (std::size_t c = 0; c < departure.size(); ++c) departure[c] = static_cast<float>(result.departure[c]);
+}
+
 struct LinkRefiner::Block {
     std::vector<Found> links;
-    std::vector<float> blocks;
+    std::vector<float> blocks, shadows;
     std::vector<LinkPair> cut;        ///< Their sources are to be cut.
     std::vector<PieceId> candidates;  ///< Of those.
     std::size_t rays = 0, form_factors = 0;
 
     std::size_t bytes() const {
-        return links.size() * sizeof(Found) + blocks.size() * 4 + cut.size() * sizeof(LinkPair) + candidates.size() * 4;
+        return links.size() * sizeof(Found) + (blocks.size() + shadows.size()) * 4 + cut.size() * sizeof(LinkPair) +
+               candidates.size() * 4;
     }
 };
 
@@ -24,35 +36,12 @@ namespace {
 
 constexpr std::size_t block_size = 128;
 
-double mean_square(const LinkJudge::Departure& d) {
+template <class Departure>
+double mean_square(const Departure& d) {
     double sum = 0;
     for (double v : d) sum += v * v;
     return sum / static_cast<double>(d.size());
 }
-
-/// What all links of a receiver bring to it.
-struct ReceivedLight {
-    LinkJudge::Departure departure{};
-    std::array<double, 9> shadowed{}, variance{};
-
-    void add(const LinkJudge::Result& link) {
-        for (std::size_t c = 0; c < departure.size(); ++c) departure[c] += link.departure[c];
-        for (std::size_t k = 0; k < shadowed.size(); ++k)
-            shadowed[k] += link.shadowed[k], variance[k] += link.variance[k];
-    }
-
-    /// Of interpolation, mean square: the departure from a polynomial, and where shadowed light varies over the
-    /// receiver by more than the rays' errors, a part of that, (W/m^2)^2.
-    double squared_error(const LinkSites& sites, ElementId e) const {
-        double mean = 0, square = 0, noise = 0;
-        for (std::size_t k = 0; k < sites.nodes(); ++k) {
-            const double w = sites.weight(e, k);
-            mean += w * shadowed[k], square += w * shadowed[k] * shadowed[k], noise += w * variance[k];
-        }
-        constexpr double share = 0.5;
-        return mean_square(departure) + share * share * std::max(0.0, square - mean * mean - noise);
-    }
-};
 
 /// An element takes its parent's function.
 void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalField& field) {
@@ -68,23 +57,57 @@ void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalFie
 
 }  // namespace
 
+struct LinkRefiner::ReceivedLight {
+    LinkJudge::Departure departure{};
+    std::array<double, 9> shadowed{}, variance{};
+
+    /// `shadow`: light at the nodes where something stands in between, then its variance; null: none.
+    void add(const Found& link, const float* shadow, std::size_t nodes) {
+        for (std::size_t c = 0; c < departure.size(); ++c) departure[c] += static_cast<double>(link.departure[c]);
+        for (std::size_t k = 0; shadow && k < nodes; ++k) {
+            shadowed[k] += static_cast<double>(shadow[k]);
+            variance[k] += static_cast<double>(shadow[nodes + k]);
+        }
+    }
+
+    /// Of interpolation, mean square: the departure from a polynomial, and where shadowed light varies over the
+    /// receiver by more than the rays' errors, a part of that, (W/m^2)^2.
+    double squared_error(const LinkSites& sites, ElementId e) const {
+        double mean = 0, square = 0, noise = 0;
+        for (std::size_t k = 0; k < sites.nodes(); ++k) {
+            const double w = sites.weight(e, k);
+            mean += w * shadowed[k], square += w * shadowed[k] * shadowed[k], noise += w * variance[k];
+        }
+        constexpr double share = 0.5;
+        return mean_square(departure) + share * share * std::max(0.0, square - mean * mean - noise);
+    }
+};
+
 LinkPair LinkRefiner::pair_of(const Found& found) {
-    return {found.result.link.receiver, found.result.link.source, found.open ? View::open : View::mixed};
+    return {found.link.receiver, found.link.source, found.open ? View::open : View::mixed};
 }
 
-std::vector<LinkPair> LinkRefiner::pairs_to_begin_with() const {
-    std::vector<LinkPair> out;
-    if (begun_) {
-        for (const Found& found : links_) out.push_back(pair_of(found));
-        return out;
-    }
+/// Some receivers at a time: k^2 pairs together would take more memory than the links that come of them.
+void LinkRefiner::judge_all_pieces(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop) {
+    constexpr std::size_t at_a_time = 1 << 20;
     const Scene& scene = sites_.stage().scene;
-    for (ElementId p : tree_.roots())
+    std::vector<LinkPair> pairs;
+    for (ElementId p : tree_.roots()) {
         for (ElementId q : tree_.roots()) {
             if (tree_.region(p) == tree_.region(q) || max(scene.material(tree_.region(q)).reflectance) <= 0) continue;
-            out.push_back({p, q});
+            pairs.push_back({p, q});
         }
-    return out;
+        if (pairs.size() >= at_a_time) judge(std::exchange(pairs, {}), b, tolerance, stop);
+    }
+    judge(std::move(pairs), b, tolerance, stop);
+}
+
+/// The links that were found before, as pairs.
+void LinkRefiner::judge_again(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop) {
+    std::vector<LinkPair> pairs;
+    for (const Found& found : links_) pairs.push_back(pair_of(found));
+    links_.clear(), blocks_.clear(), shadows_.clear();
+    judge(std::move(pairs), b, tolerance, stop);
 }
 
 void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalField& b,
@@ -138,6 +161,11 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
                         block.blocks.insert(block.blocks.end(), judge.block().begin(), judge.block().end());
                     }
                     block.links.push_back({result, pair.view == View::open});
+                    if (pair.view == View::open || sites_.nodes() == 1) continue;
+                    block.links.back().shadow = static_cast<std::uint32_t>(block.shadows.size());
+                    for (const auto& at_nodes : {result.shadowed, result.variance})
+                        block.shadows.insert(block.shadows.end(), at_nodes.begin(),
+                                             at_nodes.begin() + static_cast<std::ptrdiff_t>(sites_.nodes()));
                 }
                 block.rays = judge.rays(), block.form_factors = judge.form_factors();
                 note_touched("rays", block.rays), note_touched("links", block.links.size());
@@ -148,10 +176,12 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
         std::vector<PieceId> next_pool;
         for (Block& block : blocks) {
             for (Found& found : block.links) {
-                if (found.result.near) found.result.link.block += static_cast<std::uint32_t>(blocks_.size());
+                if (found.near) found.link.block += static_cast<std::uint32_t>(blocks_.size());
+                if (found.shadow != none) found.shadow += static_cast<std::uint32_t>(shadows_.size());
                 links_.push_back(found);
             }
             blocks_.insert(blocks_.end(), block.blocks.begin(), block.blocks.end());
+            shadows_.insert(shadows_.end(), block.shadows.begin(), block.shadows.end());
             rays_ += block.rays, form_factors_ += block.form_factors;
             for (LinkPair pair : block.cut) {
                 pair.first += static_cast<std::uint32_t>(next_pool.size());
@@ -181,10 +211,10 @@ Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers
     enum : std::uint8_t { nothing, links, too_strong_ones };
     Field<ElementId, std::uint8_t> too_much(tree_.size(), 0), gained(tree_.size(), nothing);
     for (; receivers.known < links_.size(); ++receivers.known) {
-        const LinkJudge::Result& link = links_[receivers.known].result;
-        receivers.light[link.link.receiver].add(link);
-        std::uint8_t& here = gained[link.link.receiver];
-        here = std::max<std::uint8_t>(here, link.too_strong ? too_strong_ones : links);
+        const Found& found = links_[receivers.known];
+        receivers.light[found.link.receiver].add(found, shadow_of(found), sites_.nodes());
+        std::uint8_t& here = gained[found.link.receiver];
+        here = std::max<std::uint8_t>(here, found.too_strong ? too_strong_ones : links);
     }
     interpolation_ = 0;
     for (ElementId e : gained.ids()) {
@@ -213,26 +243,27 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     std::vector<std::uint8_t> fate(links_.size());
     parallel_for(links_.size(), 4096, [&](std::size_t i) {
         const Found& found = links_[i];
-        const ElementId p = found.result.link.receiver;
+        const ElementId p = found.link.receiver;
         if (!too_much[p]) return;
         if (tolerance.oracle != LinkOracle::transport) {
-            fate[i] = found.result.too_strong ? handed_on : left;
+            fate[i] = found.too_strong ? handed_on : left;
             return;
         }
-        const double error = weight(p) * tree_.area(p) * mean_square(found.result.departure);
+        const double error = weight(p) * tree_.area(p) * mean_square(found.departure);
         fate[i] = found.open && error < negligible * negligible ? left : handed_on;
     });
     std::vector<LinkPair> pairs;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < links_.size(); ++i) {
         if (fate[i] == handed_on) {
-            for (ElementId child : tree_.children(links_[i].result.link.receiver)) {
+            for (ElementId child : tree_.children(links_[i].link.receiver)) {
                 pairs.push_back(pair_of(links_[i]));
                 pairs.back().receiver = child;
             }
             continue;
         }
-        if (fate[i] == left) receivers.light[links_[i].result.link.receiver].add(links_[i].result);
+        if (fate[i] == left)
+            receivers.light[links_[i].link.receiver].add(links_[i], shadow_of(links_[i]), sites_.nodes());
         if (kept != i) links_[kept] = links_[i];
         ++kept;
     }
@@ -246,15 +277,29 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
 void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,
                          Progress& progress, const StopRequest& stop) {
     roughness_ = b.roughness();
-    std::vector<LinkPair> pairs = pairs_to_begin_with();
-    begun_ = true;
-    links_.clear(), blocks_.clear();
+    if (std::exchange(begun_, true))
+        judge_again(b, tolerance, stop);
+    else
+        judge_all_pieces(b, tolerance, stop);
+    cut_until_good(b, also, tolerance, progress, stop);
+}
+
+void LinkRefiner::refine(const std::vector<LinkPair>& fresh, NodalField& b, std::span<NodalField* const> also,
+                         const LinkTolerance& tolerance, Progress& progress, const StopRequest& stop) {
+    roughness_ = b.roughness();
+    judge_again(b, tolerance, stop);
+    judge(fresh, b, tolerance, stop);
+    cut_until_good(b, also, tolerance, progress, stop);
+}
+
+void LinkRefiner::cut_until_good(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,
+                                 Progress& progress, const StopRequest& stop) {
     Receivers receivers;
-    for (int round = 0; !pairs.empty(); ++round) {
-        judge(std::move(pairs), b, tolerance, stop);
-        if (stop.requested() || limited_) break;
-        pairs = cut_receivers(b, also, tolerance, receivers);
+    for (int round = 0; !stop.requested() && !limited_; ++round) {
+        std::vector<LinkPair> pairs = cut_receivers(b, also, tolerance, receivers);
+        if (pairs.empty()) break;
         progress.advance(1 - std::ldexp(1.0, -round));
+        judge(std::move(pairs), b, tolerance, stop);
     }
     sum_up();
 }
@@ -269,10 +314,11 @@ void LinkRefiner::sum_up() {
     };
     const Sums sums = parallel_sum<Sums>(links_.size(), [&](std::size_t i) {
         const Found& found = links_[i];
-        return Sums{found.result.squared_error, found.result.light, found.open ? found.result.light : 0};
+        const double light = static_cast<double>(found.light);
+        return Sums{static_cast<double>(found.squared_error), light, found.open ? light : 0};
     });
     error_ = std::sqrt(interpolation_ + sums.squared_error);
-    open_share_ = sums.light > 0 ? sums.open / sums.light : 1;
+    light_ = sums.light, open_light_ = sums.open;
 }
 
 Links LinkRefiner::make_links() const {
@@ -281,9 +327,9 @@ Links LinkRefiner::make_links() const {
     std::vector<float> blocks;  // those of links that are still there
     links.reserve(links_.size());
     for (const Found& found : links_) {
-        links.push_back(found.result.link);
-        if (!found.result.near) continue;
-        const auto block = blocks_.begin() + found.result.link.block;
+        links.push_back(found.link);
+        if (!found.near) continue;
+        const auto block = blocks_.begin() + found.link.block;
         links.back().block = static_cast<std::uint32_t>(blocks.size());
         blocks.insert(blocks.end(), block, block + static_cast<long>(size));
     }

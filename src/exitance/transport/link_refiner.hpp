@@ -7,12 +7,12 @@
 
 namespace exitance {
 
-/// Finds the links of a hierarchy. Every piece begins as a receiver that is linked to all pieces; a source is cut until
-/// its link is good enough; a receiver is cut where the light of all its links together is no polynomial over it, and
-/// hands on to its parts those links that are to blame. Source: [Hanrahan91].
+/// Finds the links of a hierarchy. Pairs of elements are given, or every piece begins as a receiver that is linked to
+/// all pieces; a source is cut until its link is good enough; a receiver is cut where the light of all its links
+/// together is no polynomial over it, and hands on to its parts those links that are to blame. Source: [Hanrahan91].
 ///
 /// Rounds: all pairs of a round are judged on all threads against a tree that stands still; elements are cut in the
-/// order of their ids. So the result does not depend on threads. O(pieces^2 + links).
+/// order of their ids. So the result does not depend on threads. O(pairs + links).
 class LinkRefiner {
   public:
     LinkRefiner(ElementTree& tree, LinkSites& sites) : tree_(tree), sites_(sites) {}
@@ -21,6 +21,9 @@ class LinkRefiner {
     /// reflect, at the nodes of all of them; elements that are cut hand on theirs, here and in each of `also`.
     void refine(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance, Progress& progress,
                 const StopRequest& stop);
+    /// The same, with the pairs that are given beside the links that it found before.
+    void refine(const std::vector<LinkPair>& fresh, NodalField& b, std::span<NodalField* const> also,
+                const LinkTolerance& tolerance, Progress& progress, const StopRequest& stop);
 
     /// How much errors count on each element as a receiver, squared and relative to the mean, from the next refinement
     /// on; parts take it from their wholes. Empty: alike everywhere.
@@ -34,16 +37,17 @@ class LinkRefiner {
     /// Did the number of links end the refinement?
     bool is_limited() const { return limited_; }
     /// Bytes that a link takes while links are refined, with its block.
-    static constexpr std::size_t bytes_a_link = 400;
-    /// How much of the light that links carry meets nothing on its way, certainly.
-    double open_share() const { return open_share_; }
+    static constexpr std::size_t bytes_a_link = 150;
+    /// What links carry in the open, by mean bands, W, and how much of that meets nothing on its way, certainly.
+    double light() const { return light_; }
+    double open_light() const { return open_light_; }
     std::size_t size() const { return links_.size(); }
     Links make_links() const;
 
     /// What was found so far, for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(importance_, links_, blocks_, interpolation_, rays_, form_factors_, begun_, limited_);
+        a(importance_, links_, blocks_, shadows_, interpolation_, rays_, form_factors_, begun_, limited_);
     }
 
     std::size_t rays() const { return rays_; }
@@ -52,15 +56,32 @@ class LinkRefiner {
   private:
     /// A link, and what refining needs to know of it.
     struct Found {
-        LinkJudge::Result result;
-        bool open = false;  ///< Is its view certain?
+        Found(const LinkJudge::Result& result, bool is_open);
+        Found() = default;
+
+        Link link;
+        std::array<float, 5> departure{};
+        float squared_error = 0, light = 0;
+        std::uint32_t shadow = none;  ///< Where shadowed light and its variance at the nodes stand in shadows_.
+        bool near = false;            ///< Has it a block?
+        bool open = false;            ///< Is its view certain?
+        bool too_strong = false;      ///< For its receiver, in the eyes of an oracle of strength.
     };
+    static constexpr std::uint32_t none = 0xffffffffu;
+    /// What all links of a receiver bring to it.
+    struct ReceivedLight;
     /// What a block of pairs came to.
     struct Block;
     static LinkPair pair_of(const Found& found);
-    std::vector<LinkPair> pairs_to_begin_with() const;
+    const float* shadow_of(const Found& found) const {
+        return found.shadow == none ? nullptr : &shadows_[found.shadow];
+    }
+    void judge_all_pieces(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop);
+    void judge_again(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop);
     void judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                const StopRequest& stop);
+    void cut_until_good(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,
+                        Progress& progress, const StopRequest& stop);
     /// Cuts receivers whose light departs too much from a polynomial; returns the pairs that their parts inherit.
     struct Receivers;
     Field<ElementId, std::uint8_t> judge_receivers(Receivers& receivers, const LinkTolerance& tolerance,
@@ -75,9 +96,9 @@ class LinkRefiner {
     double weight(ElementId receiver) const { return importance_.empty() ? 1 : importance_[receiver]; }
     Field<ElementId, double> roughness_, importance_;
     std::vector<Found> links_;
-    std::vector<float> blocks_;
+    std::vector<float> blocks_, shadows_;
     double interpolation_ = 0;  ///< Squared, as in error().
-    double error_ = 0, open_share_ = 1;
+    double error_ = 0, light_ = 0, open_light_ = 0;
     std::size_t rays_ = 0, form_factors_ = 0;
     bool begun_ = false, limited_ = false;
 };

@@ -163,8 +163,9 @@ std::vector<KeptLink> Links::list() const {
     return out;
 }
 
-LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const LeafNumbering& numbering)
-    : sites_(&sites), links_(&links), numbering_(&numbering), b_(sites), E_(sites) {}
+LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far,
+                           const LeafNumbering& numbering)
+    : sites_(&sites), links_(&links), far_(far), numbering_(&numbering), b_(sites), E_(sites) {}
 
 void LinkOperator::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
     const std::size_t n = sites_->nodes();
@@ -173,6 +174,7 @@ void LinkOperator::gather(std::span<const Spectrum> radiosity, std::span<Spectru
     });
     b_.pull();
     links_->gather(b_, E_);
+    if (far_) far_->add_to(E_, b_);
     E_.push();
     parallel_for(numbering_->leaves.size(), 256, [&](std::size_t i) {
         for (std::size_t k = 0; k < n; ++k) irradiance[i * n + k] = E_.node(numbering_->leaves[i], k);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/transport/cluster_links.hpp"
 #include "exitance/transport/kept_link.hpp"
 #include "exitance/transport/link_sites.hpp"
 #include "exitance/transport/transport_operator.hpp"
@@ -72,17 +73,19 @@ class Links {
 /// Links as an operator on what the leaves hold: unknown i n + k is node k of leaf number i. Pull, links, push.
 class LinkOperator final : public TransportOperator {
   public:
-    LinkOperator(const LinkSites& sites, const Links& links, const LeafNumbering& numbering);
+    /// `far`: those of clusters; may be null.
+    LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const LeafNumbering& numbering);
 
     std::size_t size() const override { return numbering_->leaves.size() * sites_->nodes(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
     /// No cheaper than gathering for all of them.
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
-    std::size_t memory_bytes() const override { return links_->memory_bytes(); }
+    std::size_t memory_bytes() const override { return links_->memory_bytes() + (far_ ? far_->memory_bytes() : 0); }
 
   private:
     const LinkSites* sites_;
     const Links* links_;
+    const ClusterLinks* far_;
     const LeafNumbering* numbering_;
     mutable NodalField b_, E_;
 };

@@ -15,6 +15,12 @@ struct RayHit {
     bool front = false;                                         ///< Is it the surface's front that is met?
 };
 
+/// A point of a region; of free space where that is none.
+struct SurfacePoint {
+    Point at;
+    RegionId region;
+};
+
 /// Rays through a scene, many at a time: single precision inside, on coordinates relative to the scene's middle. Rays
 /// that start on a region are lifted off its plane by a few roundings (2^-20 of the scene's size), so neither it nor
 /// its coplanar neighbours are ever in the way. Which surface is met is decided in single precision, so within about
@@ -41,6 +47,10 @@ class RayTracer {
     /// none)? Both regions must face each other there. All three spans are of one length. Returns how many rays were
     /// traced. Rays that share their ends' neighbourhood, as those of one link do, are fastest.
     std::size_t occluded(std::span<const Point> from, std::span<const Point> to, RegionId receiver, RegionId source,
+                         std::span<bool> blocked) const;
+
+    /// The same between points of any regions.
+    std::size_t occluded(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
                          std::span<bool> blocked) const;
 
     std::size_t triangle_count() const;
