@@ -46,7 +46,8 @@ class Links {
     std::size_t size() const { return source_.size(); }
     std::size_t memory_bytes() const;
 
-    /// E of every element that links lead to, at its nodes; of the others: zero. O(links).
+    /// E of every element that links lead to, at its nodes; of the others: zero. O(links). Kernels are made, and added
+    /// up within a link, in single precision: 1e-6 of what arrives.
     void gather(const NodalField& b, NodalField& E) const;
 
     /// All of them, by receiver, then by source. O(links).
@@ -55,16 +56,19 @@ class Links {
   private:
     template <std::size_t groups>
     double mean_form_factor(std::size_t row, std::size_t link) const;
-    void gather_constants(std::size_t row, const NodalField& b, NodalField& E) const;
-    template <std::size_t groups>
-    void gather_kernels(std::size_t row, const NodalField& b, NodalField& E) const;
+    void lay_out(const Link& link);
+    void gather_constants(const NodalField& b, NodalField& E) const;
+    template <class Layout>
+    void gather_kernels(const NodalField& b, NodalField& E) const;
+    template <class Row>
+    void for_rows(const Row& gather_row) const;
 
     const LinkSites* sites_;
     std::vector<ElementId> receiver_;  ///< Of each row.
     std::vector<std::size_t> first_;   ///< Row i stands in [first_[i], first_[i + 1]).
     std::vector<ElementId> source_;
     std::vector<float> factor_;           ///< Order 1.
-    std::vector<std::uint32_t> visible_;  ///< Higher orders: `words_` a link.
+    std::vector<std::uint32_t> visible_;  ///< Higher orders: `words_` a link, bits as LinkLayout has them.
     std::vector<std::uint32_t> block_;    ///< Higher orders.
     std::vector<float> blocks_;
     std::size_t words_ = 0;

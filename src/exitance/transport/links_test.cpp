@@ -107,6 +107,24 @@ TEST(Links, HigherOrdersNeedFewerOfThem) {
     EXPECT_LT(count[2], count[1]);
 }
 
+TEST(Links, BringInSinglePrecisionWhatTheyAreListedWith) {
+    const Scene scene = built_scene("cornell");
+    for (const HierarchyBasis kind : all_kinds) {
+        const Linked linked(scene, kind, 0.003, [](const Point&) { return 1.0; });
+        const Links links = linked.refiner.make_links();
+        NodalField E(linked.sites);
+        links.gather(linked.b, E);
+        Field<ElementId, double> listed(linked.tree.size(), 0.0);
+        for (const KeptLink& link : links.list()) listed[link.receiver] += static_cast<double>(link.form_factor);
+        for (ElementId e : linked.tree.ids()) {
+            double mean = 0;
+            for (std::size_t k = 0; k < linked.sites.nodes(); ++k) mean += linked.sites.weight(e, k) * E.node(e, k)[0];
+            // Sums of some hundred floats; the list's kernels are double.
+            EXPECT_NEAR(mean, listed[e], 3e-6 * std::max(listed[e], 0.01)) << static_cast<int>(kind);
+        }
+    }
+}
+
 TEST(Links, AreTheSameOnAnyNumberOfThreads) {
     const Scene scene = built_scene("cornell");
     std::vector<double> before;
