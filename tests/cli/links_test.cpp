@@ -50,6 +50,17 @@ TEST(ProgramLinks, OfAPlaceBringItAllThatItSees) {
         const std::string drawn = read_text(lines);
         EXPECT_NE(drawn.find("o receiver_" + receivers.front() + "\n"), std::string::npos);
         EXPECT_NE(drawn.find("\nl "), std::string::npos);
+        const std::string glb = folder / "links.glb";
+        ASSERT_EQ(run_program({"export", solution, "--links", receivers.front(), "-o", glb}).status, 0);
+        const std::string bytes = read_text(glb);
+        const auto of_json = static_cast<std::size_t>(static_cast<unsigned char>(bytes[12])) +
+                             256 * static_cast<std::size_t>(static_cast<unsigned char>(bytes[13]));
+        const auto scene_of_lines = nlohmann::json::parse(bytes.substr(20, of_json));
+        ASSERT_EQ(scene_of_lines["meshes"].size(), 3u);  // receivers, sources, links
+        for (const auto& mesh : scene_of_lines["meshes"]) EXPECT_EQ(mesh["primitives"][0]["mode"], 1) << "lines";
+        std::size_t drawn_lines = 0;
+        for (std::size_t at = 0; (at = drawn.find("\nl ", at)) != std::string::npos; ++at) ++drawn_lines;
+        EXPECT_EQ(scene_of_lines["accessors"][2]["count"], 2 * drawn_lines) << method;
         EXPECT_EQ(run_program({"export", solution, "--links", "99999999", "-o", table}).status, 2);
         EXPECT_EQ(run_program({"export", solution, "--links", "lamp", "-o", table}).status, 2);
     }

@@ -318,7 +318,7 @@ void declare(CLI::App& app, ExportArguments& arguments) {
     app.add_option(
            "--links", arguments.links,
            "Of a solution with --keep-links: the links to an element, by its number, or, with those to all that "
-           "it is part of, to the one at x,y,z; as .csv or .obj")
+           "it is part of, to the one at x,y,z; as .csv, .obj or .glb")
         ->type_name("ELEMENT");
 }
 

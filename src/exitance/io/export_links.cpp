@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "exitance/io/atomic_file.hpp"
+#include "exitance/io/export_links_glb.hpp"
 
 namespace exitance {
 namespace {
@@ -79,6 +80,15 @@ std::string as_table(const ElementTree& tree, std::span<const KeptLink> links) {
     return out;
 }
 
+/// Of links, each once.
+std::vector<ElementId> sources_of(std::span<const KeptLink> links) {
+    std::vector<ElementId> out;
+    for (const KeptLink& link : links) out.push_back(link.source);
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+}
+
 /// Elements as polygons, each once, and links as lines.
 std::string as_lines(const ElementTree& tree, std::span<const ElementId> path, std::span<const KeptLink> links) {
     std::string out = "# Links of a hierarchy; metres\n";
@@ -94,11 +104,7 @@ std::string as_lines(const ElementTree& tree, std::span<const ElementId> path, s
         out += face + "\n";
     };
     for (ElementId e : path) polygon("receiver", e);
-    std::vector<ElementId> sources;
-    for (const KeptLink& link : links) sources.push_back(link.source);
-    std::sort(sources.begin(), sources.end());
-    sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
-    for (ElementId e : sources) polygon("source", e);
+    for (ElementId e : sources_of(links)) polygon("source", e);
     out += "o links\n";
     for (const KeptLink& link : links) {
         const std::size_t from = vertex(middle(tree, link.source)), to = vertex(middle(tree, link.receiver));
@@ -121,8 +127,9 @@ Result<void> export_links(const Solution& solution, const std::string& which, co
         if (std::find(to->begin(), to->end(), link.receiver) != to->end()) chosen.push_back(link);
     if (path.ends_with(".csv")) return write_file(path, as_table(tree, chosen));
     if (path.ends_with(".obj")) return write_file(path, as_lines(tree, *to, chosen));
+    if (path.ends_with(".glb")) return write_links_glb(tree, *to, sources_of(chosen), chosen, path);
     return Error{ErrorCode::usage, "the ending of " + path + " names no format to export links to", path,
-                 "endings known: .csv, .obj"};
+                 "endings known: .csv, .obj, .glb"};
 }
 
 }  // namespace exitance
