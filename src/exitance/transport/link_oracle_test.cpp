@@ -23,7 +23,7 @@ struct Room {
 
     double light(RegionId region) const { return region.value == 2 ? bright : dark; }
 
-    Outcome linked(LinkOracle oracle, double threshold) const {
+    Outcome linked(LinkOracle oracle, double threshold, std::size_t most_links) const {
         ElementTree tree = stage.make_elements({10, 0});
         const NodalBasis basis(HierarchyBasis::haar);
         LinkSites sites(stage, tree, basis);
@@ -35,6 +35,7 @@ struct Room {
         refiner.refine(b, {},
                        {.error = threshold,
                         .interpolation = threshold,
+                        .most_links = most_links,
                         .least_area = 0.05,
                         .oracle = oracle,
                         .strongest = threshold},
@@ -58,11 +59,12 @@ struct Room {
     /// As the threshold falls, the last one of at most `links` links and the first one of more.
     std::pair<Outcome, Outcome> around(LinkOracle oracle, std::size_t links) const {
         Outcome before;
-        for (double threshold = 1;; threshold *= 0.7) {
-            const Outcome now = linked(oracle, threshold);
+        for (double threshold = 0.5; threshold > 1e-3; threshold *= 0.6) {
+            const Outcome now = linked(oracle, threshold, 3 * links);
             if (now.links > links) return {before, now};
             before = now;
         }
+        return {before, before};
     }
 };
 
