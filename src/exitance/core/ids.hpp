@@ -73,6 +73,7 @@ class Field {
     AnyId add(T value) { return values_.push_back(std::move(value)), AnyId(values_.size() - 1); }
     void resize(std::size_t n, const T& value = T()) { values_.resize(n, value); }
     void reserve(std::size_t n) { values_.reserve(n); }
+    void shrink_to_fit() { values_.shrink_to_fit(); }
     std::size_t size() const { return values_.size(); }
     bool empty() const { return values_.empty(); }
     IdRange<AnyId> ids() const { return {0, values_.size()}; }

@@ -30,6 +30,7 @@ class BvhBuilder {
             tasks.push_back({middle, task.last, task.depth + 1, at});
             tasks.push_back({task.first, middle, task.depth + 1, nobody});
         }
+        bvh_.nodes_.shrink_to_fit();
     }
 
   private:

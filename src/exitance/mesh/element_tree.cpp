@@ -30,7 +30,7 @@ std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut way, doubl
     return {(u < 0.5 ? 0u : 1u) + (v < 0.5 ? 0u : 2u), {half(u, 0.5), half(v, 0.5)}};
 }
 
-double polygon_area(const std::vector<Vec2>& p) {
+double polygon_area(std::span<const Vec2> p) {
     double sum = 0;
     for (std::size_t i = 2; i < p.size(); ++i) sum += cross(p[i - 1] - p[0], p[i] - p[0]);
     return 0.5 * sum;
@@ -92,28 +92,31 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
     return {Patch{p.origin, a, b}, Patch{p.origin + a, a, b}, Patch{p.origin + b, a, b}, Patch{p.origin + a + b, a, b}};
 }
 
-void ElementTree::add(RegionId region, ElementId parent, const Patch& shape, double area) {
-    patch_.add(shape);
-    nodes_.add({.children = {}, .shape = shape.shape});
-    parent_.add(parent);
-    region_.add(region);
-    area_.add(area);
-    cell_.add(none);
+void ElementTree::Content::add(RegionId in, ElementId above, const Patch& shape, double of_domain) {
+    patch.add(shape);
+    nodes.add({.children = {}, .shape = shape.shape});
+    parent.add(above);
+    region.add(in);
+    area.add(of_domain);
+    cell.add(none);
 }
 
 ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
-    add(region, ElementId(), shape, shape.area());
-    roots_.push_back(ElementId(patch_.size() - 1));
-    return roots_.back();
+    Content& c = content_.change();
+    c.add(region, ElementId(), shape, shape.area());
+    c.roots.push_back(ElementId(c.patch.size() - 1));
+    return c.roots.back();
 }
 
 ElementId ElementTree::split(ElementId leaf, Cut way, double ratio) {
     EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && way != Cut::none && way != Cut::line);
-    const std::size_t first = patch_.size();
-    for (const Patch& piece : cut(patch_[leaf], way, ratio)) add(RegionId(region_[leaf]), leaf, piece, piece.area());
-    Node& node = nodes_[leaf];
-    node.children = {first, patch_.size()};
-    node.way = patch_[leaf].is_triangle() ? Cut::both : way;
+    Content& c = content_.change();
+    const std::size_t first = c.patch.size();
+    for (const Patch& piece : cut(c.patch[leaf], way, ratio))
+        c.add(RegionId(c.region[leaf]), leaf, piece, piece.area());
+    Node& node = c.nodes[leaf];
+    node.children = {first, c.patch.size()};
+    node.way = c.patch[leaf].is_triangle() ? Cut::both : way;
     node.ratio = ratio;
     return ElementId(first);
 }
@@ -125,8 +128,9 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
     const std::array<std::vector<Vec2>, 2> side = {side_of_line(whole, line, -1), side_of_line(whole, line, +1)};
     for (const std::vector<Vec2>& polygon : side)
         if (polygon.size() < 3 || std::abs(polygon_area(polygon)) < least * whole_area) return ElementId();
-    const std::size_t first = patch_.size();
-    const Patch parent = patch_[leaf];
+    Content& c = content_.change();
+    const std::size_t first = c.patch.size();
+    const Patch parent = c.patch[leaf];
     LineCut record{line, {}, {}};
     for (std::size_t i = 0; i < 2; ++i) {
         std::vector<Vec2> polygon = side[i];
@@ -138,36 +142,40 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
         const Patch frame{parent.at(lo), (hi.x - lo.x) * parent.a, (hi.y - lo.y) * parent.b,
                           Patch::Shape::parallelogram};
         for (Vec2& p : polygon) p = {(p.x - lo.x) / (hi.x - lo.x), (p.y - lo.y) / (hi.y - lo.y)};
-        add(RegionId(region_[leaf]), leaf, frame, frame.area() * std::abs(polygon_area(polygon)));
+        c.add(RegionId(c.region[leaf]), leaf, frame, frame.area() * std::abs(polygon_area(polygon)));
         record.origin[i] = lo;
         record.size[i] = hi - lo;
-        cell_[ElementId(patch_.size() - 1)] = static_cast<std::uint32_t>(cells_.size());
-        cells_.push_back(std::move(polygon));
+        c.cell[ElementId(c.patch.size() - 1)] = static_cast<std::uint32_t>(c.first_corner.size() - 1);
+        c.corners.insert(c.corners.end(), polygon.begin(), polygon.end());
+        c.first_corner.push_back(static_cast<std::uint32_t>(c.corners.size()));
     }
-    Node& node = nodes_[leaf];
-    node.children = {first, patch_.size()};
+    Node& node = c.nodes[leaf];
+    node.children = {first, c.patch.size()};
     node.way = Cut::line;
-    node.line = static_cast<std::uint32_t>(cuts_.size());
-    cuts_.push_back(record);
+    node.line = static_cast<std::uint32_t>(c.cuts.size());
+    c.cuts.push_back(record);
     return ElementId(first);
 }
 
 std::vector<Vec2> ElementTree::domain(ElementId e) const {
-    if (is_cell(e)) return cells_[cell_[e]];
+    if (is_cell(e)) {
+        const std::span<const Vec2> corners = cell_domain(e);
+        return {corners.begin(), corners.end()};
+    }
     std::vector<Vec2> out;
-    for (int i = 0; i < patch_[e].corner_count(); ++i) out.push_back(patch_[e].corner_uv(i));
+    for (int i = 0; i < patch(e).corner_count(); ++i) out.push_back(patch(e).corner_uv(i));
     return out;
 }
 
 std::vector<Point> ElementTree::outline(ElementId e) const {
     std::vector<Point> out;
-    for (const Vec2 p : domain(e)) out.push_back(patch_[e].at(p));
+    for (const Vec2 p : domain(e)) out.push_back(patch(e).at(p));
     return out;
 }
 
 Vec2 ElementTree::centre(ElementId e) const {
-    if (!is_cell(e)) return patch_[e].is_triangle() ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0.5, 0.5};
-    const std::vector<Vec2>& p = cells_[cell_[e]];
+    if (!is_cell(e)) return patch(e).is_triangle() ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0.5, 0.5};
+    const std::span<const Vec2> p = cell_domain(e);
     Vec2 moment;
     for (std::size_t i = 2; i < p.size(); ++i)
         moment = moment + (cross(p[i - 1] - p[0], p[i] - p[0]) / 6) * ((p[i - 1] - p[0]) + (p[i] - p[0]));
@@ -175,9 +183,9 @@ Vec2 ElementTree::centre(ElementId e) const {
 }
 
 Vec2 ElementTree::uniform(ElementId e, double s, double t) const {
-    if (!is_cell(e)) return uniform_in_shape(patch_[e].shape, s, t);
+    if (!is_cell(e)) return uniform_in_shape(patch(e).shape, s, t);
     // A triangle of the fan around the first corner, chosen by its area with the first number, which is then stretched.
-    const std::vector<Vec2>& p = cells_[cell_[e]];
+    const std::span<const Vec2> p = cell_domain(e);
     double rest = s * polygon_area(p);
     for (std::size_t i = 2;; ++i) {
         const double area = 0.5 * cross(p[i - 1] - p[0], p[i] - p[0]);
@@ -198,10 +206,10 @@ std::vector<ElementId> ElementTree::leaves() const {
 }
 
 ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
-    uv = into_shape(uv, patch_[e].shape);
-    for (const Node* node = &nodes_[e]; !node->children.empty(); node = &nodes_[e]) {
+    uv = into_shape(uv, patch(e).shape);
+    for (const Node* node = &content_->nodes[e]; !node->children.empty(); node = &content_->nodes[e]) {
         if (node->way == Cut::line) {
-            const LineCut& cut = cuts_[node->line];
+            const LineCut& cut = content_->cuts[node->line];
             const std::size_t side = cut.line.distance(uv) <= 0 ? 0 : 1;
             const Vec2 from = uv - cut.origin[side];
             uv = {from.x / cut.size[side].x, from.y / cut.size[side].y};
@@ -212,12 +220,20 @@ ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
             e = node->children[child];
         }
     }
-    return {e, into_shape(uv, nodes_[e].shape)};
+    return {e, into_shape(uv, content_->nodes[e].shape)};
+}
+
+void ElementTree::shrink_to_fit() {
+    Content& c = content_.change();
+    c.patch.shrink_to_fit(), c.nodes.shrink_to_fit(), c.parent.shrink_to_fit(), c.region.shrink_to_fit();
+    c.area.shrink_to_fit(), c.cell.shrink_to_fit();
+    c.first_corner.shrink_to_fit(), c.corners.shrink_to_fit(), c.cuts.shrink_to_fit();
 }
 
 std::size_t ElementTree::memory_bytes() const {
-    return patch_.size() * (sizeof(Patch) + sizeof(Node) + 3 * sizeof(ElementId) + sizeof(double)) +
-           cuts_.size() * sizeof(LineCut) + cells_.size() * (sizeof(std::vector<Vec2>) + 5 * sizeof(Vec2));
+    const Content& c = *content_;
+    return c.patch.size() * (sizeof(Patch) + sizeof(Node) + 3 * sizeof(ElementId) + sizeof(double)) +
+           c.cuts.size() * sizeof(LineCut) + 4 * c.first_corner.size() + c.corners.size() * sizeof(Vec2);
 }
 
 }  // namespace exitance

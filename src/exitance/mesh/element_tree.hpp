@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/core/copy_on_write.hpp"
 #include "exitance/core/ids.hpp"
 #include "exitance/scene/scene.hpp"
 
@@ -60,7 +61,7 @@ std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
 
 /// Elements from whole pieces of a region (roots) to leaves, in one growing pool. Children lie side by side and after
 /// their parent. Hence one forward sweep pushes light down, one backward sweep pulls it up, and neither recurses.
-/// Ids survive growth; spans and references do not.
+/// Ids survive growth; spans and references do not. Copies share their memory until one of them is cut.
 ///
 /// Where other polygons touch an element (a box on a floor), light jumps along a straight line that follows none of its
 /// directions. There an element is cut along that line into cells: convex parts of a parallelogram, their frame. A
@@ -74,23 +75,28 @@ class ElementTree {
     /// done, when less than `least` of the leaf's area would lie on one side.
     ElementId split_by_line(ElementId leaf, CutLine line, double least = 1e-6);
 
-    std::size_t size() const { return patch_.size(); }
-    IdRange<ElementId> ids() const { return patch_.ids(); }  ///< Parents before children.
-    const std::vector<ElementId>& roots() const { return roots_; }
-    IdRange<ElementId> children(ElementId e) const { return nodes_[e].children; }  ///< Empty for a leaf.
-    bool is_leaf(ElementId e) const { return nodes_[e].children.empty(); }
-    Cut way(ElementId e) const { return nodes_[e].way; }         ///< How an element was cut; none for a leaf.
-    double ratio(ElementId e) const { return nodes_[e].ratio; }  ///< Where; meaningful for cuts across one direction.
-    ElementId parent(ElementId e) const { return parent_[e]; }   ///< None for a root.
-    RegionId region(ElementId e) const { return region_[e]; }
-    const Patch& patch(ElementId e) const { return patch_[e]; }
-    double area(ElementId e) const { return area_[e]; }                            ///< Of its domain, m^2.
-    const CutLine& line(ElementId e) const { return cuts_[nodes_[e].line].line; }  ///< Of an element cut along a line.
+    std::size_t size() const { return content_->patch.size(); }
+    IdRange<ElementId> ids() const { return content_->patch.ids(); }  ///< Parents before children.
+    const std::vector<ElementId>& roots() const { return content_->roots; }
+    IdRange<ElementId> children(ElementId e) const { return content_->nodes[e].children; }  ///< Empty for a leaf.
+    bool is_leaf(ElementId e) const { return content_->nodes[e].children.empty(); }
+    Cut way(ElementId e) const { return content_->nodes[e].way; }  ///< How an element was cut; none for a leaf.
+    double ratio(ElementId e) const {
+        return content_->nodes[e].ratio;
+    }  ///< Where; meaningful for cuts across one direction.
+    ElementId parent(ElementId e) const { return content_->parent[e]; }  ///< None for a root.
+    RegionId region(ElementId e) const { return content_->region[e]; }
+    const Patch& patch(ElementId e) const { return content_->patch[e]; }
+    double area(ElementId e) const { return content_->area[e]; }  ///< Of its domain, m^2.
+    const CutLine& line(ElementId e) const {
+        return content_->cuts[content_->nodes[e].line].line;
+    }  ///< Of an element cut along a line.
     /// Of an element cut along a line: the frame of its cell on a side, origin and size in the element's coordinates.
     std::array<Vec2, 2> cell_frame(ElementId e, std::size_t side) const {
-        return {cuts_[nodes_[e].line].origin[side], cuts_[nodes_[e].line].size[side]};
+        const LineCut& cut = content_->cuts[content_->nodes[e].line];
+        return {cut.origin[side], cut.size[side]};
     }
-    bool is_cell(ElementId e) const { return cell_[e] != none; }  ///< Is its domain less than its patch?
+    bool is_cell(ElementId e) const { return content_->cell[e] != none; }  ///< Is its domain less than its patch?
     /// What the element covers, as a convex polygon in its own coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
     /// The same in space, metres.
@@ -110,6 +116,8 @@ class ElementTree {
     Place leaf_at(ElementId e, Vec2 uv) const;
 
     std::size_t memory_bytes() const;
+    /// Gives back memory kept for growth.
+    void shrink_to_fit();
 
   private:
     static constexpr std::uint32_t none = 0xffffffffu;
@@ -126,17 +134,27 @@ class ElementTree {
         CutLine line;
         std::array<Vec2, 2> origin, size;
     };
-    void add(RegionId region, ElementId parent, const Patch& shape, double area);
+    struct Content {
+        void add(RegionId region, ElementId parent, const Patch& shape, double area);
 
-    Field<ElementId, Patch> patch_;
-    Field<ElementId, Node> nodes_;
-    Field<ElementId, ElementId> parent_;
-    Field<ElementId, RegionId> region_;
-    Field<ElementId, double> area_;
-    Field<ElementId, std::uint32_t> cell_;  ///< Of a cell: where its domain stands in `cells_`.
-    std::vector<LineCut> cuts_;
-    std::vector<std::vector<Vec2>> cells_;
-    std::vector<ElementId> roots_;
+        Field<ElementId, Patch> patch;
+        Field<ElementId, Node> nodes;
+        Field<ElementId, ElementId> parent;
+        Field<ElementId, RegionId> region;
+        Field<ElementId, double> area;
+        Field<ElementId, std::uint32_t>
+            cell;  ///< Of a cell: its domain is [first_corner[cell], first_corner[cell + 1])
+        std::vector<std::uint32_t> first_corner = {0};
+        std::vector<Vec2> corners;  ///< of these.
+        std::vector<LineCut> cuts;
+        std::vector<ElementId> roots;
+    };
+    std::span<const Vec2> cell_domain(ElementId e) const {
+        const std::uint32_t* const first = &content_->first_corner[content_->cell[e]];
+        return std::span(content_->corners).subspan(first[0], first[1] - first[0]);
+    }
+
+    CopyOnWrite<Content> content_;  ///< Many functions stand on one tree.
 };
 
 }  // namespace exitance

@@ -107,6 +107,7 @@ LeafFinder::LeafFinder(const ElementTree& tree) {
             }
         grids_.push_back(grid);
     }
+    nodes_.shrink_to_fit(), start_.shrink_to_fit();
 }
 
 /// The last part on the way down from `part` that holds a whole box.

@@ -185,6 +185,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         if (depth == demand.max_depth || report.interrupted) break;
         active = split_where_needed(active, demand);
     }
+    tree_.shrink_to_fit(), sampled_.shrink_to_fit();
     return finished(report);
 }
 

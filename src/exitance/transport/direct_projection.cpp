@@ -137,6 +137,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         }
         active = std::move(fresh);
     }
+    out.tree.shrink_to_fit(), out.fit.shrink_to_fit();
     return out;
 }
 
