@@ -76,6 +76,7 @@ std::string statistics_json(const SolveStatistics& s) {
         {"relative_error_estimate", s.relative_error_estimate},
         {"relative_error_bound", s.relative_error_bound},
         {"relative_error_estimate_interpolant", s.relative_error_estimate_interpolant},
+        {"standard_error", s.standard_error > 0 ? Json(s.standard_error) : Json(nullptr)},
         {"energy", {{"emitted", s.energy.emitted}, {"absorbed", s.energy.absorbed}, {"defect", s.energy.defect}}},
         {"seconds", seconds},
         {"peak_memory_bytes", s.peak_memory_bytes},

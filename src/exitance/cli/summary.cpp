@@ -56,6 +56,8 @@ std::string summary(const SolveStatistics& s) {
                                       static_cast<double>(s.element_memory_bytes) / all));
     }
     line("solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
+    if (s.standard_error > 0)
+        line("noise", fmt::format("standard error {} of the light that the method found", percent(s.standard_error)));
     line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {} apart", s.energy.emitted, s.energy.absorbed,
                                percent(s.energy.defect)));
     line("time", fmt::format("{} on {} thread{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s"));

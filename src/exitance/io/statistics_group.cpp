@@ -22,6 +22,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("relative_error_estimate", s.relative_error_estimate);
     visit("relative_error_bound", s.relative_error_bound);
     visit("relative_error_estimate_interpolant", s.relative_error_estimate_interpolant);
+    visit("standard_error", s.standard_error);
     visit("energy_emitted", s.energy.emitted);
     visit("energy_absorbed", s.energy.absorbed);
     visit("energy_defect", s.energy.defect);

@@ -95,15 +95,14 @@ void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> va
     }
 }
 
-double rms_standard_error(const Scene& scene, const GlobalLight& light) {
-    double sum = 0, area = 0;
+double rms_standard_error(const Stage& stage, const GlobalLight& light) {
+    double sum = 0;
     for (std::size_t i = 0; i < light.standard_error.size(); ++i) {
         const ElementId e = light.numbering.leaves[i];
-        const Spectrum& rho = scene.material(light.tree.region(e)).reflectance;
+        const Spectrum& rho = stage.scene.material(light.tree.region(e)).reflectance;
         sum += light.tree.area(e) * squared(rho * light.standard_error[i]) / static_cast<double>(bands);
-        area += light.tree.area(e);
     }
-    return area > 0 ? std::sqrt(sum / area) : 0;
+    return std::sqrt(sum / stage.area);
 }
 
 }  // namespace exitance

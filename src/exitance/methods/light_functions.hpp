@@ -40,6 +40,6 @@ class DeliveredLight final : public ReflectedLight {
 };
 
 /// RMS over the surfaces of the standard error of rho E_ind, where a method is a random one, W/m^2.
-double rms_standard_error(const Scene& scene, const GlobalLight& light);
+double rms_standard_error(const Stage& stage, const GlobalLight& light);
 
 }  // namespace exitance

@@ -337,10 +337,7 @@ class Solver {
         s.element_memory_bytes = light_->element_memory_bytes;
         if (has_links_) s.elements_by_level = count_by_level(light_->tree);
         const double scale = light_->mean_reflected(stage_.area);
-        if (!light_->standard_error.empty() && scale > 0)
-            progress_.note(
-                fmt::format("standard error of the elements' indirect light {:.2f}% of the mean reflected light",
-                            100 / scale * rms_standard_error(stage_.scene, *light_)));
+        s.standard_error = scale > 0 ? rms_standard_error(stage_, *light_) / scale : 0;
     }
 
     void record_certificate() {

@@ -39,6 +39,8 @@ struct SolveStatistics {
     double relative_error_estimate = 0;              ///< Of what `probe` evaluates.
     double relative_error_bound = 0;                 ///< The same, as an upper bound.
     double relative_error_estimate_interpolant = 0;  ///< Of what `export` writes.
+    /// Relative RMS standard error of the light that a random method found on its elements; 0 for other methods.
+    double standard_error = 0;
     EnergyBalance energy;
     std::map<std::string, double> seconds;  ///< total, read, mesh, link, solve, certify, reconstruct, write
     std::size_t peak_memory_bytes = 0, link_memory_bytes = 0;
