@@ -1,10 +1,12 @@
 // exitance-fuzz READER [--seconds N] [--rounds N] [--seed N] [FILE...]
 //
 // Gives a reader damaged files until the time is over, or the files named. Ends with status 1 and the path of the file
-// when one makes the reader crash, hang for more than 5 s, or ask at a time for more memory than ten times the file's
-// size and 64 MiB, or makes a copy of the process, in which a reader tries a file out, hold as much.
+// when one makes the reader crash, run for more than 5 s (of its own: it may have to wait for the processor), or ask at
+// a time for more memory than ten times the file's size and 64 MiB, or makes a copy of the process, in which a reader
+// tries a file out, hold as much.
 
 #include <signal.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,11 +27,12 @@
 namespace exitance::fuzz {
 namespace {
 
-constexpr unsigned longest = 5;  // seconds
-char current[256] = "";          // where the file being read stands
+constexpr unsigned longest = 5;         // seconds of processor time
+constexpr unsigned longest_wait = 600;  // seconds: for a file that is never there
+char current[256] = "";                 // where the file being read stands
 
 void die(int signal) {
-    const char* what = signal == SIGALRM ? "hangs: " : "crashes: ";
+    const char* what = signal == SIGALRM || signal == SIGPROF ? "hangs: " : "crashes: ";
     (void)!::write(STDERR_FILENO, what, std::strlen(what));
     (void)!::write(STDERR_FILENO, current, std::strlen(current));
     (void)!::write(STDERR_FILENO, "\n", 1);
@@ -40,9 +43,14 @@ void read_watched(const Target& target, const std::string& bytes) {
     static std::size_t most = 0;
     const std::size_t limit = 10 * bytes.size() + (std::size_t(64) << 20);
     limit_memory(limit);
-    ::alarm(longest);
+    const auto watch_time = [](unsigned own, unsigned wall) {
+        const itimerval time = {{0, 0}, {own, 0}};
+        ::setitimer(ITIMER_PROF, &time, nullptr);
+        ::alarm(wall);
+    };
+    watch_time(longest, longest_wait);
     target.read(bytes);
-    ::alarm(0);
+    watch_time(0, 0);
     if (most_held_by_copies() <= most) return;
     most = most_held_by_copies();
     if (most <= limit) return;
@@ -111,7 +119,7 @@ int run(int count, char** words) {
             return usage();
     }
     set_threads(1);
-    for (const int signal : {SIGALRM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, die);
+    for (const int signal : {SIGALRM, SIGPROF, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, die);
     for (const std::string& file : options.files) {
         std::snprintf(current, sizeof current, "%s", file.c_str());
         std::ifstream in(file, std::ios::binary);

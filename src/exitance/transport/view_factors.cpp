@@ -7,6 +7,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/geometry/quadrature.hpp"
+#include "exitance/transport/cluttered_pair.hpp"
 #include "exitance/transport/form_factor_batch.hpp"
 #include "exitance/transport/occluded_pair.hpp"
 #include "exitance/transport/pair_form_factor.hpp"
@@ -17,7 +18,13 @@ namespace {
 
 constexpr double smallest_entry = 1e-6;  ///< Entries below it need no digits of their own.
 constexpr double large_entry = 3e-4;     ///< Entries above it may be among the largest of their rows.
-constexpr int most_points = 8;           ///< Gauss points a side; nearer pairs take the contour integral.
+constexpr std::size_t few_blockers = 8;  ///< With more, errors are relative to the row's largest entry.
+constexpr double largest_share = 0.25;   ///< Of the tolerance: many such entries make a row.
+constexpr double much_larger = 16;       ///< Than another face.
+/// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance some were wrong by 0.9%.
+constexpr double contour_share = 1e-4;
+constexpr double usual_largest = 0.25;  ///< Entry of a row that is not being computed.
+constexpr int most_points = 8;          ///< Gauss points a side; nearer pairs take the contour integral.
 
 /// Computes rows, one after the other, with scratch memory of its own.
 class RowWorker {
@@ -29,6 +36,7 @@ class RowWorker {
   private:
     int points_for(const ViewFace& receiver, const ViewFace& source) const;
     double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
+    void add_cluttered(std::size_t i, std::span<double> row);
     double occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                            std::span<const Point> s, bool& unoccluded);
     void add_unoccluded(std::size_t i, std::size_t j, bool cut);
@@ -53,8 +61,13 @@ class RowWorker {
     std::vector<double> values_;
     std::vector<const ConvexBlocker*> standing_between_;
     std::deque<ConvexBlocker> clipped_;
-    std::vector<Point> front_r_, front_s_, scratch_;
+    std::vector<Point> front_r_, front_s_;
     OccludedExchange exchange_;
+    ClutteredExchange cluttered_exchange_;
+    std::vector<std::uint32_t> cluttered_;  ///< Sources behind much that may hide them.
+    /// The largest entry of the row, about, which errors of cluttered pairs are relative to; HUGE_VAL: not known yet.
+    double largest_ = HUGE_VAL;
+    bool is_cluttered_ = false;  ///< Is the pair at hand one of those?
 };
 
 /// How many Gauss points a side an unoccluded receiver takes; more than most_points when the pair is too near. What
@@ -63,7 +76,10 @@ int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) cons
     const Vec3 apart = max(max(source.box.lo - receiver.box.hi, receiver.box.lo - source.box.hi), Vec3{});
     const double g = norm(apart) / receiver.diameter, rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
     if (rho < 1.5) return most_points + 1;
-    return std::max(2, static_cast<int>(std::ceil(-std::log(0.01 * tolerance_) / (2 * std::log(rho)))));
+    // A source that is near to a large receiver is brighter somewhere than on average, by about the receiver's area
+    // over the square of their distance: so many digits more.
+    const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), 1e-300));
+    return std::max(2, static_cast<int>(std::ceil(std::log(peak / (0.01 * tolerance_)) / (2 * std::log(rho)))));
 }
 
 void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {
@@ -118,13 +134,24 @@ void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
         batch.faces.clear();
     }
     for (std::uint32_t j : exact_)
-        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, 0.1 * tolerance_) / receiver.area;
+        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, contour_share * tolerance_) / receiver.area;
     exact_.clear();
 }
 
 /// One convex piece of the receiver and one of the source, both before each other's plane.
 double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                                   std::span<const Point> s, bool& unoccluded) {
+    // What a large face sees of a small one changes within the size of the small one: there the small one looks back,
+    // from points of this row's own.
+    const double allowed = largest_share * tolerance_;
+    if (source.area < receiver.area && (is_cluttered_ || much_larger * source.area < receiver.area))
+        return cluttered_exchange_(
+            {s, r, source.plane, receiver.plane, standing_between_},
+            is_cluttered_ && largest_ == HUGE_VAL ? HUGE_VAL : allowed * usual_largest * source.area, tolerance_, 0.45,
+            unoccluded);
+    if (is_cluttered_)
+        return cluttered_exchange_({r, s, receiver.plane, source.plane, standing_between_},
+                                   allowed * largest_ * receiver.area, tolerance_, 0.5, unoccluded);
     const Demand demand{tolerance_, tolerance_ * smallest_entry * receiver.area, large_entry * receiver.area};
     return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
 }
@@ -176,11 +203,34 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
                 part = occluded_pieces(receiver, source, front_r_, front_s_, free);
             standing_between_ = between;
             all &= free;
-            if (free) part = exchange_area(front_r_, front_s_, 0.1 * tolerance_);
+            if (free) part = exchange_area(front_r_, front_s_, contour_share * tolerance_);
             total += part;
         }
     unoccluded = all;
     return total / receiver.area;
+}
+
+/// What is known of the row and a first guess of the rest tell its largest entry, and that how well the rest must be
+/// known.
+void RowWorker::add_cluttered(std::size_t i, std::span<double> row) {
+    if (cluttered_.empty()) return;
+    double largest = *std::max_element(row.begin(), row.end());
+    largest_ = HUGE_VAL;
+    is_cluttered_ = true;
+    bool unoccluded = false;
+    for (std::uint32_t j : cluttered_) {
+        pairs_.find_blockers(i, j, of_row_, of_pair_);
+        largest = std::max(largest, occluded(i, j, of_pair_, unoccluded = false));
+    }
+    largest_ = largest;
+    for (std::uint32_t j : cluttered_) {
+        pairs_.find_blockers(i, j, of_row_, of_pair_);
+        row[j] = occluded(i, j, of_pair_, unoccluded = false);
+        if (unoccluded) exact_.push_back(j);
+    }
+    is_cluttered_ = false;
+    cluttered_.clear();
+    flush_batches(i, row);
 }
 
 void RowWorker::compute(std::size_t i, std::span<double> row) {
@@ -189,6 +239,10 @@ void RowWorker::compute(std::size_t i, std::span<double> row) {
         bool cut = false;
         if (j == i || !pairs_.face_each_other(i, j, cut)) continue;
         pairs_.find_blockers(i, j, of_row_, of_pair_);
+        if (of_pair_.size() > few_blockers) {
+            cluttered_.push_back(static_cast<std::uint32_t>(j));
+            continue;
+        }
         bool unoccluded = of_pair_.empty();
         if (!unoccluded) row[j] = occluded(i, j, of_pair_, unoccluded);
         if (!unoccluded) continue;
@@ -196,6 +250,7 @@ void RowWorker::compute(std::size_t i, std::span<double> row) {
         add_unoccluded(i, j, cut);
     }
     flush_batches(i, row);
+    add_cluttered(i, row);
     for (double& F : row) F = std::clamp(F, 0.0, 1.0);
 }
 

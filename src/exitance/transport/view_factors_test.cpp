@@ -82,6 +82,25 @@ TEST(ViewFactors, RowsOfARoomWithBlocksSumToOneThoughNothingForcesThem) {
     EXPECT_LT(fine.reciprocity_defect, 2e-6);
 }
 
+TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
+    // Ten blocks, one on the floor: walls see each other past all of them.
+    std::vector<Outline> faces;
+    add_box(faces, {0, 0, 0}, {2, 2, 1}, true, 1);
+    for (int i = 0; i < 9; ++i) {
+        const Point lo{0.2 + 0.6 * (i % 3), 0.22 + 0.58 * (i / 3), 0.2 + 0.06 * i};
+        add_box(faces, lo, lo + Vec3{0.2, 0.24, 0.1}, false, 1);
+    }
+    add_box(faces, {0.5, 0.5, 0}, {0.6, 0.62, 0.5}, false, 1);
+    const double tolerance = 1e-3;
+    const ViewFactors table = factors_of(scene_of(faces), tolerance);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const bool covered = std::abs(table.row_sums[i]) < 1e-12;  // the foot of the block on the floor
+        const double stands = i == 4 ? 0.1 * 0.12 / 4 : 0;         // which covers that much of the floor
+        EXPECT_NEAR(table.row_sums[i], covered ? 0 : 1 - stands, 2 * tolerance) << i;  // several entries err in a sum
+    }
+    EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // as both rows err
+}
+
 TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
     std::vector<Outline> whole, cut;
     add_box(whole, {0, 0, 0}, {4, 3, 2.5}, true, 1);

@@ -151,10 +151,16 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
         const Vec3 r = whole.at(whole.count - 1);
         size_ = std::max(size_, std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
     }
+    const bool many = blockers_.size() > 3;
     for (const ConvexBlocker* blocker : blockers_) {
         bool inside = false;
-        if (!add_pyramid(*blocker, x, inside)) pyramids_.pop_back();
+        const bool opens = add_pyramid(*blocker, x, inside);
         if (inside) return seen = Seen::nothing, 0;
+        // What misses the source as a whole would miss every part of it, and most of many blockers do.
+        const bool touches = opens && (!many || find_cuts(whole, pyramids_.back()));
+        if (many && touches && cuts_.empty()) return seen = Seen::nothing, 0;
+        if (!touches) planes_.resize(pyramids_.back().first), pyramids_.pop_back();
+        cuts_.clear();
     }
     subtract(whole, 0, true);
     seen = !anything_lit_     ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several)
