@@ -104,12 +104,11 @@ LeafLinks link_leaves(const LinkSites& sites, const NodalField& b, const LinkTol
     parallel_for(
         found.size(), 1,
         [&](std::size_t i) {
-            LinkTolerance now = tolerance;
-            if (stop.requested()) now.error = HUGE_VAL;  // what is left is linked as fast as may be
-            LinkJudge judge(sites, b, roughness, now);
+            LinkJudge judge(sites, b, roughness, tolerance);
             PieceViews views(sites);
             Block& block = found[i];
-            for (std::size_t k = i * block_size; k < std::min(leaves.size(), (i + 1) * block_size); ++k)
+            const std::size_t end = std::min(leaves.size(), (i + 1) * block_size);
+            for (std::size_t k = i * block_size; k < end && !stop.requested(); ++k)
                 link_leaf(sites, leaves[k], leaves, views, judge, block);
             block.rays = judge.rays(), block.form_factors = judge.form_factors();
             note_touched("rays", block.rays), note_touched("links", block.links.size());

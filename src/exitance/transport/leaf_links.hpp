@@ -21,8 +21,8 @@ struct LeafLinks {
 /// by Gauss's rule on the receiver, and on the source by Gauss's rule or, where it is near, by cuts (NearRow). A block
 /// is kept as a link is (Links): what may be made anew is. `b`: reflected light, W/m^2, by whose amount `tolerance`
 /// decides which blocks want the dearer rule and more rays. What stands between two pieces is looked up once for all
-/// pairs of their leaves. O(leaves^2) time and links; the same on any number of threads.
-/// Source: [Zatz93].
+/// pairs of their leaves. Once a stop is asked for, what is left stays without links. O(leaves^2)
+/// time and links; the same on any number of threads. Source: [Zatz93].
 LeafLinks link_leaves(const LinkSites& sites, const NodalField& b, const LinkTolerance& tolerance,
                       const StopRequest& stop);
 

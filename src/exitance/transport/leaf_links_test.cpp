@@ -121,6 +121,16 @@ TEST(LeafLinks, AgreeWithExactLightBehindOccluders) {
     }
 }
 
+TEST(LeafLinks, AreNoMoreMadeOnceAStopIsAskedFor) {
+    const Scene box = box_scene(1, 2, 3, 0.8, 1);
+    const Gathered g(box, HierarchyBasis::multiwavelet2, {0.7, 0}, 1e-3, [](RegionId, const Point&) { return 1.0; });
+    StopRequest stop;
+    stop.interrupt();
+    const LeafLinks stopped = link_leaves(g.sites, g.b, {.error = 1e-3}, stop);
+    EXPECT_GT(g.found.links.size(), 0u);
+    EXPECT_EQ(stopped.links.size(), 0u);
+}
+
 TEST(LeafLinks, AreTheSameOnAnyNumberOfThreads) {
     const Scene scene = built_scene("cornell");
     std::vector<double> before;
