@@ -6,6 +6,7 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/methods/choice.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light_functions.hpp"
 #include "exitance/methods/memory_plan.hpp"
@@ -23,10 +24,7 @@
 namespace exitance {
 namespace {
 
-/// What `auto` stands for. Reflections are counted by `matrix` alone, whose iterations are reflections.
-const MethodEntry& find_method(const SolveOptions& options) {
-    const bool counts_bounces = options.bounces > 0;
-    const Method id = options.method == Method::automatic || counts_bounces ? Method::matrix : options.method;
+const MethodEntry& entry_of(Method id) {
     const auto table = method_table();
     return *std::find_if(table.begin(), table.end(), [&](const MethodEntry& m) { return m.id == id; });
 }
@@ -44,18 +42,16 @@ std::vector<std::size_t> count_by_level(const ElementTree& tree) {
 
 class Solver {
   public:
-    Solver(const Scene& scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
+    Solver(const Scene& scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
            CheckpointStore* checkpoints)
-        : options_(options),
-          progress_(progress),
-          stop_(stop),
-          checkpoints_(checkpoints),
-          solution_{.scene = scene},
-          stage_(scene) {
-        const MethodEntry& method = find_method(options);
-        if (options.method != Method::automatic && options.method != method.id)
+        : progress_(progress), stop_(stop), checkpoints_(checkpoints), solution_{.scene = scene}, stage_(scene) {
+        const auto [options, why] = choose_method(stage_, asked);
+        options_ = options;
+        const MethodEntry& method = entry_of(options.method);
+        if (!why.empty()) progress.note(fmt::format("method {}: {}", name_in(method_names, method.id), why));
+        if (asked.method != Method::automatic && asked.method != method.id)
             warn(fmt::format("--bounces is counted by the method matrix, which solves in place of {}",
-                             name_in(method_names, options.method)));
+                             name_in(method_names, asked.method)));
         solution_.bounces = options.bounces;
         statistics().method = name_in(method_names, method.id);
         const bool chosen =
@@ -242,7 +238,8 @@ class Solver {
     void find_light() {
         const Stopwatch watch;
         if (fresh_) {
-            light_ = find_method(options_).solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points()});
+            light_ =
+                entry_of(options_.method).solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points()});
             record_method();
             share_ = direct_share();
         }
@@ -381,7 +378,7 @@ class Solver {
         statistics().seconds["reconstruct"] += watch.seconds();
     }
 
-    const SolveOptions& options_;
+    SolveOptions options_;  ///< As asked for, with the method that was chosen.
     Progress& progress_;
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;

@@ -21,7 +21,7 @@ constexpr double large_entry = 3e-4;     ///< Entries above it may be among the 
 constexpr std::size_t few_blockers = 8;  ///< With more, errors are relative to the row's largest entry.
 constexpr double largest_share = 0.25;   ///< Of the tolerance: many such entries make a row.
 constexpr double much_larger = 16;       ///< Than another face.
-/// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance some were wrong by 0.9%.
+/// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance one was wrong by 0.6%.
 constexpr double contour_share = 1e-4;
 constexpr double usual_largest = 0.25;  ///< Entry of a row that is not being computed.
 constexpr int most_points = 8;          ///< Gauss points a side; nearer pairs take the contour integral.

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/methods/solve_options.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// The options with the method that solves in place of `auto`, its basis, and why that.
+struct MethodChoice {
+    SolveOptions options;
+    std::string why;  ///< Empty where the user chose.
+};
+
+/// By what is asked for, what stands in the scene, and the error.
+MethodChoice choose_method(const Stage& stage, const SolveOptions& options);
+
+}  // namespace exitance
