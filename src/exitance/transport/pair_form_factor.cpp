@@ -57,8 +57,7 @@ class OuterIntegral {
     double part(double a, double b, double allowed, int depth) const {
         const double better = sum(better_, a, b);
         const double error = std::abs(better - sum(coarse_, a, b));
-        if (depth == max_depth || error <= std::max(allowed, rounding * (b - a) * width_ * inner_.length))
-            return better;
+        if (depth == max_depth || error <= std::max(allowed, rounding() * (b - a) * width_)) return better;
         const double middle = 0.5 * (a + b);
         return part(a, middle, 0.5 * allowed, depth + 1) + part(middle, b, 0.5 * allowed, depth + 1);
     }
@@ -78,8 +77,11 @@ class OuterIntegral {
         return (b - a) * total;
     }
 
+    /// Of the inner integral: a difference of primitives of order one, however short the edge. Below it rules differ
+    /// for ever.
+    double rounding() const { return 1e-15 * inner_.length + 5e-16; }
+
     static constexpr int max_depth = 24;
-    static constexpr double rounding = 1e-15;  // of sums of values of order one
     const Edge& outer_;
     const Edge& inner_;
     double first_, width_;

@@ -101,6 +101,18 @@ TEST(PairFormFactorProperties, ExchangeIsTheSameBothWaysAndAddsUpUnderCuts) {
     });
 }
 
+TEST(PairFormFactor, OfPolygonsWithTinyEdgesIsFoundAtOnce) {
+    // The contour sums of an edge of a micrometre are differences of numbers of order one: asked for more digits than
+    // these have, bisection would go on for hours.
+    for (const double tiny : {1e-3, 1e-5, 1e-7}) {
+        const Outline receiver = {{0, 0, 0}, {1, 0.1, 0}, {1, 0.1 + tiny, 0}, {0.3, 1.1, 0}, {0, 1, 0}};
+        const Outline source = {{0.1, 1, 1.2}, {0.8 + tiny, 0.9, 1.2}, {0.8, 0.9, 1.2}, {0.9, 0, 1.2}, {0.2, 0.1, 1.2}};
+        const double area = exchange_area(receiver, source, 1e-14);
+        EXPECT_GT(area, 0.05);
+        EXPECT_NEAR(area, exchange_area(source, receiver, 1e-14), 1e-11 * area);
+    }
+}
+
 Outline outline_of(const nlohmann::json& json) {
     Outline outline;
     for (const auto& v : json) outline.push_back({v[0], v[1], v[2]});
