@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "exitance/core/disjoint_sets.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/scene/border.hpp"
@@ -16,23 +17,6 @@ namespace exitance {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
-
-/// Sets of faces; the root of a set is its smallest face.
-class UnionFind {
-  public:
-    explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    std::uint32_t root(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void unite(std::uint32_t i, std::uint32_t j) {
-        i = root(i), j = root(j);
-        parent_[std::max(i, j)] = std::min(i, j);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// The first unpaired edge between two points under one of the keys of its line.
 struct LineEntry {
@@ -98,7 +82,7 @@ class Joiner {
     const FaceMesh& mesh_;
     const Tolerances& tol_;
     std::vector<std::uint32_t> faces_;
-    UnionFind sets_;
+    DisjointSets sets_;
     std::vector<Edge> edges_;
     std::vector<std::uint32_t> first_edge_;
     std::vector<Split> splits_;

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace exitance {
+
+/// Sets of the numbers [0, n) that grow together; each is known by its least member. Amortised O(log n) a call.
+/// Source: [Tarjan75], paths halved.
+class DisjointSets {
+  public:
+    explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+    std::uint32_t root(std::uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void unite(std::uint32_t i, std::uint32_t j) {
+        i = root(i), j = root(j);
+        parent_[std::max(i, j)] = std::min(i, j);
+    }
+
+  private:
+    std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace exitance
