@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 
-#include "exitance/io/atomic_file.hpp"
 #include "exitance/io/conforming_mesh.hpp"
 #include "exitance/io/export_formats.hpp"
+#include "exitance/io/glb_container.hpp"
 #include "exitance/io/glb_nodes.hpp"
 #include "exitance/io/tone_map.hpp"
 
@@ -195,34 +194,15 @@ std::string make_json(const Scene& scene, const Triangles& triangles, const Tone
 }  // namespace
 
 Result<void> write_glb(const Solution& solution, const std::string& path) {
-    static_assert(std::endian::native == std::endian::little);
     const ToneMap tone = make_tone_map(solution);
     const Triangles triangles = make_triangles(solution, tone);
     const std::string json = make_json(solution.scene, triangles, tone);
-    const std::size_t binary = triangles.position.size() * sizeof(Float3) * attributes + triangles.index.size() * 4;
-    const std::size_t total = 12 + 8 + json.size() + 8 + binary;
-    if (total > 0xffffffffu)
-        return Error{ErrorCode::cannot_write,
-                     "cannot write " + path + ": a .glb file holds at most 4 GiB, this mesh needs " +
-                         std::to_string(total >> 20) + " MiB",
-                     path, "export .vtkhdf, or solve with a larger --error"};
-
-    Result<AtomicFile> file = AtomicFile::create(path);
-    if (!file) return file.error();
-    const auto words = [&](std::initializer_list<std::size_t> values) {
-        for (const std::size_t value : values) {
-            const auto word = static_cast<std::uint32_t>(value);
-            file->write(std::as_bytes(std::span(&word, 1)));
-        }
-    };
-    words({0x46546c67, 2, total, json.size(), 0x4e4f534a});  // "glTF", version, length; "JSON"
-    file->write(json);
-    words({binary, 0x004e4942});  // "BIN"
+    std::vector<std::span<const std::byte>> parts;
     for (const auto* array :
          {&triangles.position, &triangles.normal, &triangles.radiosity, &triangles.irradiance, &triangles.colour})
-        file->write(std::as_bytes(std::span(*array)));
-    file->write(std::as_bytes(std::span(triangles.index)));
-    return file->commit();
+        parts.push_back(std::as_bytes(std::span(*array)));
+    parts.push_back(std::as_bytes(std::span(triangles.index)));
+    return write_glb_container(path, json, parts, "export .vtkhdf, or solve with a larger --error");
 }
 
 }  // namespace exitance

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <bit>
-
-#include "exitance/io/atomic_file.hpp"
 #include "exitance/io/export_links_glb.hpp"
+#include "exitance/io/glb_container.hpp"
 
 namespace exitance {
 namespace {
@@ -83,7 +81,6 @@ std::vector<Point> outlines(const ElementTree& tree, std::span<const ElementId> 
 Result<void> write_links_glb(const ElementTree& tree, std::span<const ElementId> receivers,
                              std::span<const ElementId> sources, std::span<const KeptLink> links,
                              const std::string& path) {
-    static_assert(std::endian::native == std::endian::little);
     std::vector<Point> ends;
     for (const KeptLink& link : links)
         for (const ElementId e : {link.source, link.receiver}) ends.push_back(tree.patch(e).at(tree.centre(e)));
@@ -93,23 +90,8 @@ Result<void> write_links_glb(const ElementTree& tree, std::span<const ElementId>
     lines.add("links", ends, {0.9f, 0.6f, 0.05f});
 
     const std::string json = lines.json();
-    const std::size_t binary = lines.vertices().size() * sizeof(Float3), total = 12 + 8 + json.size() + 8 + binary;
-    if (total > 0xffffffffu)
-        return Error{ErrorCode::cannot_write, "cannot write " + path + ": a .glb file holds at most 4 GiB", path,
-                     "export .csv"};
-    Result<AtomicFile> file = AtomicFile::create(path);
-    if (!file) return file.error();
-    const auto words = [&](std::initializer_list<std::size_t> values) {
-        for (const std::size_t value : values) {
-            const auto word = static_cast<std::uint32_t>(value);
-            file->write(std::as_bytes(std::span(&word, 1)));
-        }
-    };
-    words({0x46546c67, 2, total, json.size(), 0x4e4f534a});  // "glTF", version, length; "JSON"
-    file->write(json);
-    words({binary, 0x004e4942});  // "BIN"
-    file->write(std::as_bytes(std::span(lines.vertices())));
-    return file->commit();
+    const std::span<const std::byte> vertices = std::as_bytes(std::span(lines.vertices()));
+    return write_glb_container(path, json, std::span(&vertices, 1), "export .csv");
 }
 
 }  // namespace exitance
