@@ -199,41 +199,32 @@ void declare_bent(CLI::App& app, BentFaces& bent) {
         "--split-bent", [&bent] { bent = BentFaces::split; }, "Faces that are out of plane become triangles");
 }
 
-void declare(CLI::App& app, SolveArguments& arguments) {
-    SolveOptions& o = arguments.options;
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
-    declare_bent(app, arguments.bent);
-    app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
-    add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
-    add_choice(app, "--basis", basis_names, o.basis,
-               "Of matrix: constant, linear, galerkin1 to 3; of wavelet: the others");
-    app.callback([&o] {
-        if (o.basis && !fits(*o.basis, o.method))
-            throw CLI::ValidationError("--basis",
-                                       fmt::format("method {} has no basis {}", name_in(method_names, o.method),
-                                                   name_in(basis_names, *o.basis)));
-    });
-    add_positive(app, "--epsilon", o.epsilon, "R", "Error of all links of a hierarchy together, relative RMS")
-        ->group("Accuracy");
-    app.add_option_function<std::string>(
-           "--bounces", [&o](const std::string& w) { o.bounces = read_bounces(w); },
-           "0: direct light alone; default all")
-        ->type_name("N|all");
+/// on or off, into a bool or an optional one.
+template <class Switch>
+CLI::Option* add_switch(CLI::App& app, const std::string& name, Switch& value, const std::string& help) {
+    return app
+        .add_option_function<std::string>(
+            name, [name, &value](const std::string& w) { value = read_switch(name.c_str(), w); }, help)
+        ->type_name("on|off");
+}
 
+void declare_accuracy(CLI::App& app, SolveOptions& o) {
     add_positive(app, "--error", o.error, "R", "Relative RMS error asked for; default 0.02")->group("Accuracy");
     add_positive(app, "--mesh-size", o.mesh_size, "METRES", "Longest edge of an element")->group("Accuracy");
     add_positive(app, "--min-area", o.min_area, "M2", "No element is cut smaller, m^2")->group("Accuracy");
     add_positive(app, "--residual", o.residual, "R", "Of the system, relative to its right side")->group("Accuracy");
     add_count(app, "--max-iterations", o.max_iterations, 1, "Sweeps, Krylov steps or shots")->group("Accuracy");
+    add_positive(app, "--epsilon", o.epsilon, "R", "Error of all links of a hierarchy together, relative RMS")
+        ->group("Accuracy");
+}
 
+void declare_method(CLI::App& app, SolveArguments& arguments) {
+    SolveOptions& o = arguments.options;
     add_choice(app, "--relaxation", relaxation_names, o.relaxation, "How the system is solved")->group("Method");
     app.add_flag("--overshooting", o.overshooting, "Shoot ahead what will come back")->group("Method");
     add_choice(app, "--visibility", visibility_names, o.visibility, "Default auto")->group("Method");
     add_count(app, "--visibility-samples", o.visibility_samples, 1, "Rays a pair of elements")->group("Method");
-    app.add_option_function<std::string>(
-           "--triage", [&o](const std::string& w) { o.triage = read_switch("--triage", w); },
-           "Links look for certain visibility before they cast rays; default on")
-        ->type_name("on|off")
+    add_switch(app, "--triage", o.triage, "Links look for certain visibility before they cast rays; default on")
         ->group("Method");
     app.add_option_function<std::string>(
            "--clusters",
@@ -243,10 +234,8 @@ void declare(CLI::App& app, SolveArguments& arguments) {
            "Links between clusters of polygons, too; default auto: where they are many")
         ->type_name("auto|on|off")
         ->group("Method");
-    app.add_option_function<std::string>(
-           "--smoothing", [&o](const std::string& w) { o.smoothing = read_switch("--smoothing", w); },
-           "Deliver the method's elements, smoothed or as they are, in place of gathering their light")
-        ->type_name("on|off")
+    add_switch(app, "--smoothing", o.smoothing,
+               "Deliver the method's elements, smoothed or as they are, in place of gathering their light")
         ->group("Method");
     app.add_option("--importance", arguments.importance,
                    "Refine links for the light at these points (.csv or .pts, as of probe)")
@@ -261,7 +250,10 @@ void declare(CLI::App& app, SolveArguments& arguments) {
         ->group("Method");
     add_count(app, "--hemicube-cells", o.hemicube_cells, 2, "Along an edge of a hemicube's top, even")->group("Method");
     add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");
+}
 
+void declare_limits(CLI::App& app, SolveArguments& arguments) {
+    SolveOptions& o = arguments.options;
     add_positive(app, "--time-limit", arguments.time_limit, "SECONDS", "Stop then and write what there is")
         ->group("Limits");
     app.add_option_function<std::string>(
@@ -275,6 +267,29 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     app.add_flag("--resume", arguments.resume, "Go on from that state, if there is one")->group("Limits");
     app.add_flag("--dry-run", arguments.dry_run, "Counts and a forecast; nothing is solved or written")
         ->group("Limits");
+}
+
+void declare(CLI::App& app, SolveArguments& arguments) {
+    SolveOptions& o = arguments.options;
+    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
+    declare_bent(app, arguments.bent);
+    app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
+    add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
+    add_choice(app, "--basis", basis_names, o.basis,
+               "Of matrix: constant, linear, galerkin1 to 3; of wavelet: the others");
+    app.callback([&o] {
+        if (o.basis && !fits(*o.basis, o.method))
+            throw CLI::ValidationError("--basis",
+                                       fmt::format("method {} has no basis {}", name_in(method_names, o.method),
+                                                   name_in(basis_names, *o.basis)));
+    });
+    app.add_option_function<std::string>(
+           "--bounces", [&o](const std::string& w) { o.bounces = read_bounces(w); },
+           "0: direct light alone; default all")
+        ->type_name("N|all");
+    declare_accuracy(app, o);
+    declare_method(app, arguments);
+    declare_limits(app, arguments);
     declare_json(app, arguments);
     declare_work(app, arguments, o.threads);
     add_choice(app, "--schedule", schedule_names, o.schedule,
