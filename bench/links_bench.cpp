@@ -96,22 +96,6 @@ static void stream_triad(benchmark::State& state) {
 }
 BENCHMARK(stream_triad)->Arg(1)->Arg(2)->UseRealTime();
 
-static void stream_copy(benchmark::State& state) {
-    set_threads(static_cast<int>(state.range(0)));
-    const std::size_t n = 16'000'000;
-    std::vector<double> a(n), b(n, 1.0);
-    for (auto _ : state) {
-        parallel_ranges(n, 1 << 18, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) a[i] = b[i];
-        });
-        benchmark::DoNotOptimize(a.data());
-        benchmark::ClobberMemory();
-    }
-    state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(16 * n));
-    set_threads(0);
-}
-BENCHMARK(stream_copy)->Arg(1)->Arg(2)->UseRealTime();
-
 /// Stored constant links: bytes of the links themselves against those of stream_triad, 8 each.
 static void gather_constant_links(benchmark::State& state) {
     Linked linked(HierarchyBasis::haar, 1.0 / static_cast<double>(state.range(2)),
