@@ -7,34 +7,23 @@
 #include "exitance/transport/link_refiner.hpp"
 #include "exitance/transport/rooms.hpp"
 #include "support/built_scene.hpp"
+#include "support/lit_elements.hpp"
 
 namespace exitance {
 namespace {
 
 /// The links of a scene and its clusters whose elements reflect b(x), refined until their errors are below `tolerance`.
-struct Clustered {
-    Stage stage;
-    ElementTree tree;
-    NodalBasis basis;
-    LinkSites sites;
-    NodalField b;
+struct Clustered : LitElements {
     ClusterTree clusters;
     ClusterRefiner far;
     LinkRefiner near;
 
     template <class Light>
     Clustered(const Scene& scene, HierarchyBasis kind, double tolerance, const Light& light)
-        : stage(scene),
-          tree(stage.make_elements({0.5, 0})),
-          basis(kind),
-          sites(stage, tree, basis),
-          b(sites),
+        : LitElements(scene, kind, light),
           clusters(tree, find_rooms(stage, tree, 1).of_root),
           far(sites, clusters),
           near(tree, sites) {
-        for (ElementId e : tree.leaves())
-            for (std::size_t k = 0; k < sites.nodes(); ++k) b.set_node(e, k, Spectrum(light(sites.node(e, k))));
-        b.pull();
         Progress silent;
         StopRequest never;
         const LinkTolerance allowed{.error = tolerance, .interpolation = tolerance, .least_area = 1e-6};

@@ -5,6 +5,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/transport/link_refiner.hpp"
 #include "support/built_scene.hpp"
+#include "support/lit_elements.hpp"
 
 namespace exitance {
 namespace {
@@ -13,25 +14,12 @@ constexpr HierarchyBasis all_kinds[] = {HierarchyBasis::haar, HierarchyBasis::fl
                                         HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3};
 
 /// Links over a scene whose elements reflect b(x), refined until their errors are below `tolerance` each.
-struct Linked {
-    Stage stage;
-    ElementTree tree;
-    NodalBasis basis;
-    LinkSites sites;
-    NodalField b;
+struct Linked : LitElements {
     LinkRefiner refiner;
 
     template <class Light>
     Linked(const Scene& scene, HierarchyBasis kind, double tolerance, const Light& light)
-        : stage(scene),
-          tree(stage.make_elements({0.5, 0})),
-          basis(kind),
-          sites(stage, tree, basis),
-          b(sites),
-          refiner(tree, sites) {
-        for (ElementId e : tree.leaves())
-            for (std::size_t k = 0; k < sites.nodes(); ++k) b.set_node(e, k, Spectrum(light(sites.node(e, k))));
-        b.pull();
+        : LitElements(scene, kind, light), refiner(tree, sites) {
         Progress silent;
         StopRequest never;
         refiner.refine(b, {}, {.error = tolerance, .interpolation = tolerance, .least_area = 1e-6}, silent, never);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "exitance/transport/link_sites.hpp"
+
+namespace exitance {
+
+/// The elements of a scene, half a metre at most, as links see them, and light b(x) that they reflect.
+struct LitElements {
+    Stage stage;
+    ElementTree tree;
+    NodalBasis basis;
+    LinkSites sites;
+    NodalField b;
+
+    template <class Light>
+    LitElements(const Scene& scene, HierarchyBasis kind, const Light& light)
+        : stage(scene), tree(stage.make_elements({0.5, 0})), basis(kind), sites(stage, tree, basis), b(sites) {
+        for (ElementId e : tree.leaves())
+            for (std::size_t k = 0; k < sites.nodes(); ++k) b.set_node(e, k, Spectrum(light(sites.node(e, k))));
+        b.pull();
+    }
+};
+
+}  // namespace exitance
