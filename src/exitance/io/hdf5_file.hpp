@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exitance/core/result.hpp"
+#include "exitance/io/rehearsal.hpp"
 
 namespace exitance {
 
@@ -90,7 +91,7 @@ class Hdf5Writer {
 /// before using what was read. One thread at a time.
 class Hdf5Reader {
   public:
-    static Result<Hdf5Reader> open(const std::string& path);
+    static Result<Hdf5Reader> open(const std::string& path, Rehearsed rehearsed = Rehearsed::not_yet);
 
     Hdf5Reader(Hdf5Reader&& other) noexcept
         : path_(std::move(other.path_)),

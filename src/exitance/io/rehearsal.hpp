@@ -16,9 +16,11 @@ namespace exitance {
 /// memory   bytes of address space that it may take beyond what the process has now; not watched under the address
 ///          sanitizer, whose shadow lies there, nor where /proc is not to be seen
 /// returns  how it failed ("fails", "crashes", "takes more than 2 s", "asks for more than 65 MiB"), or nothing when
-/// `work`
-///          returned. Where no process can be made there is no rehearsal.
+///          `work` returned. Where no process can be made there is no rehearsal.
 std::optional<std::string> rehearse(const std::function<bool()>& work, double seconds,
                                     std::size_t memory = std::numeric_limits<std::size_t>::max());
+
+/// Has the library read a file before, where nothing is lost? Only who has seen to that himself says `already`.
+enum class Rehearsed { not_yet, already };
 
 }  // namespace exitance

@@ -31,8 +31,8 @@ Result<void> write_solution(const std::string& path, const Solution& solution) {
     return file.write_file(path);
 }
 
-Result<Solution> load_solution(const std::string& path) {
-    Result<Hdf5Reader> opened = Hdf5Reader::open(path);
+Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed) {
+    Result<Hdf5Reader> opened = Hdf5Reader::open(path, rehearsed);
     if (!opened) return opened.error();
     Hdf5Reader& file = *opened;
     const auto wrong = [&](const std::string& what) {

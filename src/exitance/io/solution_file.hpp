@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "exitance/io/rehearsal.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
 namespace exitance {
@@ -12,6 +13,6 @@ Result<void> write_solution(const std::string& path, const Solution& solution);
 
 /// Reads what write_solution wrote. A file that is damaged, or made up, is an error (ErrorCode::bad_input, or
 /// ErrorCode::cannot_read when it cannot be opened) that names the file and the data set.
-Result<Solution> load_solution(const std::string& path);
+Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed = Rehearsed::not_yet);
 
 }  // namespace exitance
