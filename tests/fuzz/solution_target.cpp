@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "exitance/io/hdf5_checksum.hpp"
+#include "exitance/io/hdf5_rehearsal.hpp"
 #include "exitance/io/solution_file.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/reconstruct/surface_light.hpp"
@@ -58,6 +59,18 @@ void put_checksum(std::string& bytes, std::size_t from, std::size_t to) {
     for (std::size_t k = 0; k < 4; ++k) bytes[to + k] = static_cast<char>(sum >> 8 * k & 0xff);
 }
 
+void use(const Result<Solution>& solution) {
+    if (!solution) return;
+    const std::array<ProbePoint, 2> points{{{{0.5, 0.5, 0}, {0, 0, 1}}, {{0.5, 0.5, 0.5}, {1, 0, 0}}}};
+    (void)RadiosityFunction(*solution).at(points);
+    (void)mean_light(*solution);
+}
+
+std::string& rehearsed_path() {
+    static std::string path;
+    return path;
+}
+
 }  // namespace
 
 std::vector<std::string> solution_corpus() {
@@ -78,21 +91,28 @@ void mend_solution(std::string& bytes) {
 }
 
 void read_solution_bytes(const std::string& bytes) {
-    const Result<Solution> solution = load_solution(file_with(bytes, "s.h5"));
-    if (!solution) return;
-    const std::array<ProbePoint, 2> points{{{{0.5, 0.5, 0}, {0, 0, 1}}, {{0.5, 0.5, 0.5}, {1, 0, 0}}}};
-    (void)RadiosityFunction(*solution).at(points);
-    (void)mean_light(*solution);
+    use(load_solution(file_with(bytes, "s.h5")));
+}
+
+bool rehearse_solution_bytes(const std::string& bytes) {
+    return read_all_of_hdf5(rehearsed_path() = file_with(bytes, "s.h5"), bytes.size());
+}
+
+void read_rehearsed_solution() {
+    use(load_solution(rehearsed_path(), Rehearsed::already));
 }
 
 std::vector<std::string> value_corpus() {
     return {std::string("\x10\x27\x00\x00\x01", 5), std::string(40, '\x03'), "values of a solution, five bytes each"};
 }
 
-void read_solution_with_values(const std::string& script) {
+namespace {
+
+/// The solution that a script makes.
+std::string with_values(const std::string& script) {
     static const std::vector<std::string> good = solution_corpus();
     static const std::vector<std::vector<Range>> values = {values_in(good.at(0)), values_in(good.at(1))};
-    if (script.size() < 5) return;
+    if (script.size() < 5) return {};
     const std::size_t which = static_cast<unsigned char>(script[0]) & 1;
     std::string bytes = good[which];
     for (std::size_t i = 0; i + 5 <= script.size() && i < 40; i += 5) {
@@ -110,7 +130,17 @@ void read_solution_with_values(const std::string& script) {
         for (std::size_t k = 0; k < written.size() && aligned + k < range.end; ++k) bytes[aligned + k] = written[k];
     }
     mend_solution(bytes);
-    read_solution_bytes(bytes);
+    return bytes;
+}
+
+}  // namespace
+
+void read_solution_with_values(const std::string& script) {
+    read_solution_bytes(with_values(script));
+}
+
+bool rehearse_solution_with_values(const std::string& script) {
+    return rehearse_solution_bytes(with_values(script));
 }
 
 }  // namespace exitance::fuzz

@@ -18,4 +18,9 @@ void mend_solution(std::string& bytes);
 std::vector<std::string> value_corpus();
 void read_solution_with_values(const std::string& script);
 
+/// The same in two steps (Target::rehearse): what the library reads in a copy of the process, here, and the rest.
+bool rehearse_solution_bytes(const std::string& bytes);
+bool rehearse_solution_with_values(const std::string& script);
+void read_rehearsed_solution();
+
 }  // namespace exitance::fuzz

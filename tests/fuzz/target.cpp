@@ -1,5 +1,8 @@
 #include "fuzz/target.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +11,15 @@
 #include "support/temporary_folder.hpp"
 
 namespace exitance::fuzz {
+namespace {
+
+/// A disk is kept waiting for, thousands of small files a second.
+std::filesystem::path folder_in_memory() {
+    constexpr const char* shared_memory = "/dev/shm";
+    return ::access(shared_memory, W_OK | X_OK) == 0 ? shared_memory : std::filesystem::temp_directory_path();
+}
+
+}  // namespace
 
 const Target* find_target(std::string_view name) {
     const auto all = targets();
@@ -31,9 +43,12 @@ std::vector<std::string> corpus_folder(std::string_view name) {
 }
 
 std::string file_with(const std::string& bytes, const std::string& name) {
-    static const TemporaryFolder folder;
+    static const TemporaryFolder folder(folder_in_memory());
     const std::string path = folder / name;
-    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    ::unlink(path.c_str());  // who has the last one open keeps it
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
+    if (file < 0 || ::write(file, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) std::abort();
+    ::close(file);
     return path;
 }
 

@@ -19,6 +19,12 @@ struct Target {
     void (*mend)(std::string& bytes) = nullptr;
     /// Good files that between them use all of the format; null: those of tests/fuzz/corpus/NAME.
     std::vector<std::string> (*make_corpus)() = nullptr;
+    /// For a reader that lets a library read a file in a copy of the process first: that first reading, in this very
+    /// process. Whatever happens in it is no fault of the reader's. Returns whether the reader would go on; null: it
+    /// needs no such thing.
+    bool (*rehearse)(const std::string& bytes) = nullptr;
+    /// What follows it: reads the file that was rehearsed last.
+    void (*read_rehearsed)() = nullptr;
 
     std::vector<std::string> corpus() const { return make_corpus ? make_corpus() : corpus_folder(name); }
 };
@@ -27,8 +33,8 @@ struct Target {
 std::span<const Target> targets();
 const Target* find_target(std::string_view name);
 
-/// A file that holds the bytes, for readers that take a path. The same path every time, in a folder of this process
-/// alone, which goes with it; `name` decides the ending.
+/// A new file that holds the bytes, for readers that take a path. The same path every time, in a folder of this process
+/// alone, which goes with it and lies in memory where the system has such a place; `name` decides the ending.
 std::string file_with(const std::string& bytes, const std::string& name);
 
 }  // namespace exitance::fuzz

@@ -11,8 +11,7 @@ namespace exitance::fuzz {
 namespace {
 
 void read_obj_bytes(const std::string& bytes) {
-    static const std::string library = corpus_folder("mtl").at(0);
-    file_with(library, "m.mtl");
+    static const std::string library = file_with(corpus_folder("mtl").at(0), "m.mtl");
     (void)load_scene(file_with(bytes, "s.obj"));
 }
 
@@ -46,8 +45,9 @@ void read_gltf_bytes(const std::string& bytes) {
 }
 
 void read_rad_bytes(const std::string& bytes) {
-    file_with("void light l 0 0 3 1 1 1\nl polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n!xform -t 0 0 1 leaf.rad\n", "part.rad");
-    file_with("l ring r 0 0 8 0 0 0 0 0 1 0 .5\n", "leaf.rad");
+    static const std::string part = file_with(
+        "void light l 0 0 3 1 1 1\nl polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n!xform -t 0 0 1 leaf.rad\n", "part.rad");
+    static const std::string leaf = file_with("l ring r 0 0 8 0 0 0 0 0 1 0 .5\n", "leaf.rad");
     (void)load_scene(file_with(bytes, "s.rad"));
 }
 
@@ -75,8 +75,10 @@ std::span<const Target> targets() {
         Target{"csv", read_csv_bytes},
         Target{"pts", read_pts_bytes},
         Target{"reference", read_reference_bytes},
-        Target{"solution", read_solution_bytes, mend_solution, solution_corpus},
-        Target{"values", read_solution_with_values, nullptr, value_corpus},
+        Target{"solution", read_solution_bytes, mend_solution, solution_corpus, rehearse_solution_bytes,
+               read_rehearsed_solution},
+        Target{"values", read_solution_with_values, nullptr, value_corpus, rehearse_solution_with_values,
+               read_rehearsed_solution},
     };
     return all;
 }
