@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "exitance/io/gltf_accessor.hpp"
 #include "exitance/io/gltf_model.hpp"
+#include "exitance/io/json_shape.hpp"
 #include "exitance/io/text_lines.hpp"
 #include "exitance/io/texture_mean.hpp"
 #include "exitance/io/whole_file.hpp"
@@ -23,36 +25,6 @@ constexpr std::array known_extensions = {"KHR_lights_punctual",      "KHR_materi
                                          "KHR_materials_sheen",      "KHR_materials_iridescence",
                                          "KHR_materials_anisotropy", "KHR_materials_variants",
                                          "KHR_materials_dispersion"};
-
-/// The bounds of JSON that tinygltf is trusted with: it recurses over nested values, and copies the binary chunk for
-/// every buffer without a name of its own.
-struct JsonShape {
-    std::size_t depth = 0, buffers = 0;
-};
-
-JsonShape shape_of(std::string_view json) {
-    JsonShape out;
-    std::size_t depth = 0, list = 0;  // the depth at which a list of buffers stands, 0 outside one
-    bool named = false;               // was the last string "buffers"?
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        const char c = json[i];
-        if (c == '"') {
-            const std::size_t first = ++i;
-            while (i < json.size() && json[i] != '"') i += json[i] == '\\' ? 2 : 1;
-            // Names may be written with escapes, so that whatever has one counts.
-            const std::string_view name = json.substr(first, std::min(i, json.size()) - first);
-            named = name == "buffers" || name.find('\\') != name.npos;
-        } else if (c == '[' || c == '{') {
-            out.depth = std::max(out.depth, ++depth);
-            if (c == '[' && named && list == 0) list = depth;
-            if (c == '{' && list != 0) ++out.buffers;
-        } else if (c == ']' || c == '}') {
-            if (depth == list) list = 0;
-            if (depth > 0) --depth;
-        }
-    }
-    return out;
-}
 
 /// Files beside the scene, and how many bytes of them there may be in all.
 struct Folder {
@@ -104,8 +76,7 @@ class GltfReader {
     GltfModel::Colour texture_mean(int texture, const ByteCurve& decode, const std::string& material);
     std::optional<std::span<const std::uint8_t>> view_bytes(int view) const;
     bool rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out);
-    bool fill_sparse(const tinygltf::Accessor& a, std::size_t width, GltfRows::Number number, const GltfRows& base,
-                     const std::string& what, GltfRows& out);
+    GltfAccessor accessor_of(const tinygltf::Accessor& in) const;
     void read_views_and_lamps();
     bool read_nodes();
     bool read_node(const tinygltf::Node& in, std::size_t number);
@@ -129,7 +100,7 @@ class GltfReader {
     std::vector<Finding>& findings_;
     tinygltf::Model in_;
     GltfModel out_;
-    std::uint64_t file_bytes_ = 0, sparse_bytes_ = 0;
+    std::optional<GltfAccessorCheck> accessors_;
 };
 
 std::optional<Error> GltfReader::parse(const std::string& bytes) {
@@ -149,7 +120,7 @@ std::optional<Error> GltfReader::parse(const std::string& bytes) {
             return bad(fmt::format("has a JSON chunk of {} bytes, of {} left", length, bytes.size() - header));
         json = json.substr(header, length);
     }
-    const JsonShape shape = shape_of(json);
+    const JsonShape shape = shape_of_json(json);
     if (shape.depth > 100) return bad(fmt::format("has JSON nested {} deep", shape.depth));
     if (binary && shape.buffers * (bytes.size() - header - json.size()) > 4 * bytes.size() + (std::size_t(32) << 20))
         return bad(fmt::format("has {} buffers", shape.buffers));
@@ -197,89 +168,32 @@ std::optional<std::span<const std::uint8_t>> GltfReader::view_bytes(int view) co
     return std::span(bytes).subspan(v.byteOffset, v.byteLength);
 }
 
-std::optional<GltfRows::Number> number_of(int component) {
-    switch (component) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-            return GltfRows::Number::int8;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return GltfRows::Number::uint8;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-            return GltfRows::Number::int16;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return GltfRows::Number::uint16;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return GltfRows::Number::uint32;
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
-            return GltfRows::Number::float32;
-        default:
-            return std::nullopt;
+/// What an accessor says about itself.
+GltfAccessor GltfReader::accessor_of(const tinygltf::Accessor& in) const {
+    GltfAccessor a;
+    a.component = in.componentType, a.count = in.count, a.normalized = in.normalized;
+    a.view = in.bufferView, a.first = in.byteOffset;
+    a.bytes = view_bytes(in.bufferView);
+    if (a.bytes) a.stride = in_.bufferViews[static_cast<std::size_t>(in.bufferView)].byteStride;
+    if (in.sparse.isSparse) {
+        const auto& places = in.sparse.indices;
+        const auto& values = in.sparse.values;
+        a.sparse = GltfAccessor::Sparse{
+            in.sparse.count,   places.componentType, view_bytes(places.bufferView), view_bytes(values.bufferView),
+            places.byteOffset, values.byteOffset};
     }
-}
-
-/// Do `count` rows of `row` bytes, `stride` apart, fit into what is left of `bytes` after `offset`?
-bool fits(std::size_t bytes, std::size_t offset, std::size_t stride, std::size_t row, std::size_t count) {
-    if (count == 0) return true;
-    if (offset > bytes || row > bytes - offset || stride == 0) return false;
-    return count - 1 <= (bytes - offset - row) / stride;
+    return a;
 }
 
 /// What an accessor holds; false, with an error that calls it `what`, unless all of it is there.
 bool GltfReader::rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out) {
     if (!names_one(accessor, in_.accessors))
         return error(fmt::format("{} name accessor {} of {}", what, accessor, in_.accessors.size()));
-    const tinygltf::Accessor& a = in_.accessors[static_cast<std::size_t>(accessor)];
-    const auto number = number_of(a.componentType);
-    if (!number || a.type != type) return error(fmt::format("{} are not of the type that is expected there", what));
-    const bool whole = *number == GltfRows::Number::uint8 || *number == GltfRows::Number::uint16 ||
-                       *number == GltfRows::Number::uint32;
-    if (is_index && !whole) return error(fmt::format("{} are not whole numbers", what));
-    const std::size_t width = is_index ? 1 : 3, row = width * GltfRows::bytes(*number);
-    if (a.bufferView >= 0) {
-        const auto bytes = view_bytes(a.bufferView);
-        if (!bytes)
-            return error(fmt::format("{} lie in bytes that are not there (buffer view {})", what, a.bufferView));
-        const std::size_t given = in_.bufferViews[static_cast<std::size_t>(a.bufferView)].byteStride;
-        const std::size_t stride = given == 0 ? row : given;
-        if (stride < row || !fits(bytes->size(), a.byteOffset, stride, row, a.count))
-            return error(fmt::format("{} are {} rows from byte {} of {} bytes: they are not all there", what, a.count,
-                                     a.byteOffset, bytes->size()));
-        out = GltfRows(bytes->data() + a.byteOffset, stride, a.count, *number, a.normalized);
-    } else if (!a.sparse.isSparse) {
-        return error(fmt::format("{} have no data", what));
-    } else if (a.count > file_bytes_) {
-        return error(fmt::format("{} are {} rows of zeros", what, a.count));
-    }
-    return !a.sparse.isSparse || fill_sparse(a, width, *number, GltfRows(out), what, out);
-}
-
-/// Rows of which some are replaced: a copy of them, bounded by the file's size.
-bool GltfReader::fill_sparse(const tinygltf::Accessor& a, std::size_t width, GltfRows::Number number,
-                             const GltfRows& base, const std::string& what, GltfRows& out) {
-    const auto& places = a.sparse.indices;
-    const auto& values = a.sparse.values;
-    const auto count = static_cast<std::size_t>(std::max(a.sparse.count, 0));
-    const auto place_bytes = view_bytes(places.bufferView), value_bytes = view_bytes(values.bufferView);
-    const auto place_number = number_of(places.componentType);
-    const std::size_t row = width * GltfRows::bytes(number);
-    if (!place_bytes || !value_bytes || !place_number || places.byteOffset < 0 || values.byteOffset < 0)
-        return error(fmt::format("{} are sparse, and what replaces them is not there", what));
-    const auto first_place = static_cast<std::size_t>(places.byteOffset),
-               first_value = static_cast<std::size_t>(values.byteOffset);
-    const std::size_t place_size = GltfRows::bytes(*place_number);
-    if (!fits(place_bytes->size(), first_place, place_size, place_size, count) ||
-        !fits(value_bytes->size(), first_value, row, row, count))
-        return error(fmt::format("{} are sparse, and what replaces them is not all there", what));
-    sparse_bytes_ += row * a.count;
-    if (sparse_bytes_ > 8 * file_bytes_) return error(fmt::format("{} are sparse, and too many for the file", what));
-    std::vector<std::uint8_t>& bytes = out_.bytes.emplace_back(row * a.count);
-    const GltfRows place(place_bytes->data() + first_place, place_size, count, *place_number, false);
-    if (a.bufferView >= 0) base.copy_to(bytes.data(), row);
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t at = place.index(i);
-        if (at >= a.count) return error(fmt::format("{} are sparse, and row {} of {} is replaced", what, at, a.count));
-        std::memcpy(bytes.data() + at * row, value_bytes->data() + first_value + i * row, row);
-    }
-    out = GltfRows(bytes.data(), row, a.count, number, a.normalized);
+    const tinygltf::Accessor& in = in_.accessors[static_cast<std::size_t>(accessor)];
+    if (in.type != type) return error(fmt::format("{} are not of the type that is expected there", what));
+    const Result<GltfRows> held = accessors_->rows(accessor_of(in), is_index ? 1 : 3, is_index, what);
+    if (!held) return error(held.error().message);
+    out = *held;
     return true;
 }
 
@@ -417,35 +331,10 @@ void GltfReader::read_views_and_lamps() {
     }
 }
 
-/// Translation, rotation and scale, or a matrix, as one map.
-std::optional<Affine> transform_of(const tinygltf::Node& in) {
-    Affine m;
-    if (in.matrix.size() == 16) {
-        const auto column = [&](std::size_t c) {
-            return Vec3{in.matrix[4 * c], in.matrix[4 * c + 1], in.matrix[4 * c + 2]};
-        };
-        m = {column(0), column(1), column(2), column(3)};
-    } else {
-        if (in.rotation.size() == 4) {
-            double x = in.rotation[0], y = in.rotation[1], z = in.rotation[2], w = in.rotation[3];
-            const double length = std::sqrt(x * x + y * y + z * z + w * w);
-            if (!(length > 0)) return std::nullopt;
-            x /= length, y /= length, z /= length, w /= length;
-            m.x = {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)};
-            m.y = {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)};
-            m.z = {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
-        }
-        if (in.scale.size() == 3) m.x *= in.scale[0], m.y *= in.scale[1], m.z *= in.scale[2];
-        if (in.translation.size() == 3) m.origin = {in.translation[0], in.translation[1], in.translation[2]};
-    }
-    if (!is_finite(m.x) || !is_finite(m.y) || !is_finite(m.z) || !is_finite(m.origin)) return std::nullopt;
-    return m;
-}
-
 bool GltfReader::read_node(const tinygltf::Node& in, std::size_t number) {
     GltfModel::Node node;
     node.name = shown(in.name);
-    const std::optional<Affine> transform = transform_of(in);
+    const std::optional<Affine> transform = gltf_transform(in.matrix, in.rotation, in.scale, in.translation);
     if (!transform) return error(fmt::format("node {} ('{}') has a transform that is none", number, node.name));
     node.to_parent = *transform;
     const double lamp = number_in(in.extensions, "KHR_lights_punctual", "light", -1);
@@ -488,14 +377,16 @@ bool GltfReader::read_nodes() {
 }
 
 Result<GltfModel> GltfReader::read() {
+    std::uint64_t file_bytes = 0;
     {
         const Result<std::string> bytes = read_whole_file(path_);
         if (!bytes) return bytes.error();
-        file_bytes_ = bytes->size();
+        file_bytes = bytes->size();
         if (std::optional<Error> refused = parse(*bytes)) return std::move(*refused);
     }
     for (const tinygltf::Buffer& buffer : in_.buffers)
-        file_bytes_ = std::max<std::uint64_t>(file_bytes_, buffer.data.size());
+        file_bytes = std::max<std::uint64_t>(file_bytes, buffer.data.size());
+    accessors_.emplace(file_bytes, out_.bytes);
     read_views_and_lamps();
     if (check_extensions() && read_meshes()) {
         read_materials();

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -105,6 +107,11 @@ struct GltfModel {
     GltfModel(GltfModel&&) = default;
     GltfModel& operator=(GltfModel&&) = default;
 };
+
+/// Translation, rotation (a quaternion: x, y, z, w) and scale of a node, or the 16 numbers of its matrix by columns, as
+/// one map; what is empty changes nothing. Nothing where numbers are not finite or a quaternion is 0.
+std::optional<Affine> gltf_transform(std::span<const double> matrix, std::span<const double> rotation,
+                                     std::span<const double> scale, std::span<const double> translation);
 
 /// Reads the model out of glTF's JSON or binary container; buffers and pictures beside the file are read too. What can
 /// be done without goes to `findings`. Every index, count, offset and stride is checked against the data before use,
