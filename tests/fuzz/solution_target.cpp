@@ -78,6 +78,12 @@ std::vector<std::string> solution_corpus() {
     for (const int cuts : {3, 60}) {
         Solution solution = sample_solution(cuts);
         if (cuts == 3) solution.options.clear(), solution.statistics.warnings.clear();
+        if (cuts == 60) {
+            solution.statistics.elements_by_level = {12, 40, 71};
+            solution.links.elements = solution.indirect;
+            for (const ElementId e : solution.indirect.tree.leaves())
+                solution.links.links.push_back({e, solution.indirect.tree.leaves().front(), 0.25f});
+        }
         const std::string path = file_with("", "corpus.h5");
         if (!write_solution(path, solution)) continue;
         std::ifstream in(path, std::ios::binary);

@@ -41,6 +41,9 @@ void mend_glb(std::string& bytes) {
 }
 
 void read_gltf_bytes(const std::string& bytes) {
+    static constexpr std::array<float, 9> triangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    static const std::string buffer =
+        file_with(std::string(reinterpret_cast<const char*>(triangle.data()), sizeof triangle), "data.bin");
     (void)load_scene(file_with(bytes, "s.gltf"));
 }
 
