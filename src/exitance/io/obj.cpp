@@ -196,10 +196,12 @@ void ObjReader::resolve_materials() {
 
 ReadScene read_obj(const std::string& path) {
     const Result<std::string> text = read_whole_file(path);
-    if (text) return ObjReader(path, *text).read();
+    const bool wide = text && (text->starts_with("\xff\xfe") || text->starts_with("\xfe\xff"));
+    if (text && !wide) return ObjReader(path, *text).read();
     ReadScene out;
     out.description.file = path;
-    out.findings.push_back({Finding::Kind::error, path, 0, text.error().message, ""});
+    out.findings.push_back({Finding::Kind::error, path, 0, wide ? "is text in UTF-16" : text.error().message,
+                            wide ? "save it as UTF-8 or plain ASCII" : ""});
     return out;
 }
 

@@ -133,6 +133,11 @@ TEST_F(ObjFiles, FilesThatAreMissingOrUnknownAreRefused) {
     EXPECT_EQ(load_obj(folder_ + "/none.obj").error().where, folder_ + "/none.obj");
 }
 
+TEST_F(ObjFiles, TextInUtf16IsRefusedByName) {
+    const std::string wide("\xff\xfev\0 \0\x31\0", 10);
+    EXPECT_EQ(first_error(wide), "s.obj: is text in UTF-16");
+}
+
 TEST_F(ObjFiles, MessagesShowNamesAsTextWhateverTheirBytes) {
     EXPECT_EQ(first_error("mtllib m.mtl\nusemtl w\xc3\xa4nde\n" + points + "f 1 2 3\n"),
               "s.obj:2: material 'w\xc3\xa4nde' is in no material file");

@@ -102,6 +102,13 @@ class SceneBuilder {
 };
 
 constexpr std::size_t most_listed = 20;
+constexpr std::size_t most_corners = 10'000;  ///< Of a face: triangulations take their square.
+constexpr double farthest = 1e15;             ///< Metres from the origin: powers of areas stay finite.
+constexpr double brightest = 1e30;            ///< W/m^2, cd, lx: float holds 3e38, and light is added up in it.
+
+bool is_near(const Point& p) {
+    return std::abs(p.x) <= farthest && std::abs(p.y) <= farthest && std::abs(p.z) <= farthest;
+}
 
 std::string SceneBuilder::name_of(const SceneDescription::Face& face) const {
     if (face.line > 0 || face.group >= in_.groups.size()) return fmt::format("the face of line {}", face.line);
@@ -146,18 +153,18 @@ void SceneBuilder::check_materials() {
                 error(0,
                       fmt::format("material '{}' has reflectance {:g} in band {}", m.name, m.reflectance[b], band(b)),
                       "reflectances lie in [0, 1): at 1 light would never die out");
-            if (!(m.exitance[b] >= 0 && std::isfinite(m.exitance[b])))
+            if (!(m.exitance[b] >= 0 && m.exitance[b] <= brightest))
                 error(0, fmt::format("material '{}' has exitance {:g} in band {}", m.name, m.exitance[b], band(b)),
-                      "emission is finite and not negative");
+                      fmt::format("emission is not negative, and at most {:g} W/m^2", brightest));
         }
 }
 
 void SceneBuilder::check_lights() {
     for (const PunctualLight& light : in_.lights) {
-        if (!is_finite(light.intensity) ||
-            std::any_of(light.intensity.value.begin(), light.intensity.value.end(), [](double v) { return v < 0; }))
-            error(0, fmt::format("light '{}' has an intensity that is negative or not finite", light.name));
-        if (!is_finite(light.position) || !(std::abs(norm(light.direction) - 1) < 1e-6))
+        if (!std::all_of(light.intensity.value.begin(), light.intensity.value.end(),
+                         [](double v) { return v >= 0 && v <= brightest; }))
+            error(0, fmt::format("light '{}' has an intensity that is negative, too large or not finite", light.name));
+        if (!is_near(light.position) || !(std::abs(norm(light.direction) - 1) < 1e-6))
             error(0, fmt::format("light '{}' has no place or no direction", light.name));
         if (light.kind == PunctualLight::Kind::spot &&
             !(light.inner_cone >= 0 && light.inner_cone < light.outer_cone && light.outer_cone <= pi / 2))
@@ -174,7 +181,7 @@ void SceneBuilder::place_corners() {
     for (const auto& face : in_.faces) {
         const Point* before = nullptr;
         for (std::uint32_t c : face.corners) {
-            if (c >= in_.points.size() || !is_finite(in_.points[c])) continue;
+            if (c >= in_.points.size() || !is_near(in_.points[c])) continue;
             const Point& p = in_.points[c];
             box_.add(p);
             if (before && p != *before) lengths.push_back(static_cast<float>(norm(p - *before)));
@@ -203,11 +210,19 @@ void SceneBuilder::check_face(std::uint32_t f) {
     const SceneDescription::Face& face = in_.faces[f];
     if (face.material >= in_.materials.size() || face.group >= in_.groups.size())
         return error(face, "face has no material or no group");
+    if (face.corners.size() > most_corners)
+        return error(face, fmt::format("face has {} corners; {} are the most", face.corners.size(), most_corners),
+                     "make its outline simpler, or cut it up");
     std::vector<std::uint32_t> outline = face.corners;
     for (std::uint32_t& c : outline) {
         if (c >= in_.points.size())
             return error(face, fmt::format("face names corner {} of {} points", c + 1, in_.points.size()));
         if (!is_finite(in_.points[c])) return error(face, "a corner of the face is not a finite point");
+        if (!is_near(in_.points[c]))
+            return error(face,
+                         fmt::format("a corner of the face lies at ({:g}, {:g}, {:g}) m", in_.points[c].x,
+                                     in_.points[c].y, in_.points[c].z),
+                         fmt::format("mend it, or scale the scene: coordinates go up to {:g} m", farthest));
         c = place_[c];
     }
     const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);

@@ -312,6 +312,27 @@ TEST(Checks, ValuesThatAreNotNumbersOrPlacesAreErrors) {
     EXPECT_FALSE(cold.make().scene);
 }
 
+TEST(Checks, WhatLiesBeyondTheUniverseIsAnErrorAndSpoilsNothingElse) {
+    const auto s = Sketch().rectangle(0, 0, 1, 1).light().add({{1e30, 0, 0}, {1e30, 1e30, 0}, {0, 1e30, 0}}).make();
+    ASSERT_FALSE(s.scene);
+    EXPECT_EQ(s.scene.error().message, "a corner of the face lies at (1e+30, 0, 0) m");
+    EXPECT_EQ(s.findings.size(), 1u);  // the small faces were not taken for points
+    Sketch blinding = Sketch().rectangle(0, 0, 1, 1).light();
+    blinding.d.materials[1].exitance[0] = 1e300;
+    EXPECT_FALSE(blinding.make().scene);
+}
+
+TEST(Checks, AFaceOfTooManyCornersIsAnErrorThatSaysHowMany) {
+    std::vector<Point> circle(10'001);
+    for (std::size_t i = 0; i < circle.size(); ++i) {
+        const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(circle.size());
+        circle[i] = {std::cos(angle), std::sin(angle), 0};
+    }
+    const auto s = Sketch().add(circle).light().make();
+    ASSERT_FALSE(s.scene);
+    EXPECT_EQ(s.scene.error().message, "face has 10001 corners; 10000 are the most");
+}
+
 TEST(Checks, ScenesMayBeTinyHugeAndFarAway) {
     for (double scale : {1e-6, 1.0, 1e8})
         for (double shift : {0.0, 1e6}) {
