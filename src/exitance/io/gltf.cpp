@@ -143,7 +143,8 @@ std::optional<Error> GltfReader::parse(const std::string& bytes) {
     }
     if (!done) {
         const std::string first = problem.substr(0, problem.find('\n'));
-        return bad(first.empty() ? "is no glTF" : fmt::format("cannot be read as glTF: {}", shown(first)));
+        return bad(first.empty() ? "is no glTF" : fmt::format("cannot be read as glTF: {}", shown(first)),
+                   first.starts_with("File not found") ? "put the files that it names beside it" : "");
     }
     if (!in_.asset.version.starts_with("2"))
         return bad(fmt::format("is glTF of version '{}'; version 2 is read", shown(in_.asset.version)));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/path_reference.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
@@ -196,6 +198,20 @@ TEST(SolveScene, ClustersSaveLinksAndGiveTheSameLight) {
     EXPECT_LT(2 * found[1].links, found[0].links);
     const double absorbed = found[0].energy.absorbed;
     EXPECT_NEAR(found[1].energy.absorbed, absorbed, 2e-3 * absorbed);  // the noise of the rays of either
+}
+
+TEST(SolveScene, WarnsWhereAllLightFallsOnBacks) {
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), {}}, {"light", {}, Spectrum(1)}};
+    d.points = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
+    d.faces = {{.corners = {0, 1, 2, 3}, .material = 0}, {.corners = {4, 5, 6, 7}, .material = 1}};  // both look down
+    const CheckedScene scene = make_scene(d);
+    ASSERT_TRUE(scene.scene);
+    EXPECT_EQ(solved(*scene.scene, {.error = 0.05}).statistics.warnings,
+              (std::vector<std::string>{"no light reaches the front of any face: they may be turned inside out"}));
+    std::reverse(d.faces[0].corners.begin(), d.faces[0].corners.end());
+    EXPECT_TRUE(solved(*make_scene(d).scene, {.error = 0.05}).statistics.warnings.empty());
 }
 
 TEST(SolveScene, AnInterruptedSolveStillHasAResult) {

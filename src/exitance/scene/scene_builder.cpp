@@ -200,7 +200,7 @@ void SceneBuilder::check_faces() {
     for (std::uint32_t f = 0; f < in_.faces.size(); ++f) check_face(f);
     report_bent();
     if (in_.faces.empty())
-        error(1, "there are no polygons", "a scene needs at least one face ('f' line)");
+        error(1, "there are no polygons", "a scene needs at least one face");
     else if (mesh_.size() == 0 && !has_errors())
         error(in_.faces[0].line, "no polygon is left once faces without area are taken out");
 }
