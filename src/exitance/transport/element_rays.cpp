@@ -6,15 +6,15 @@
 
 namespace exitance {
 
-void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves) {
+void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first) {
     const std::size_t count = leaves.size();
     const Patch& patch = tree_.patch(e);
     const Frame frame(stage_.scene.regions()[tree_.region(e)].plane.n);
     const ScrambledSobol points(key);
     origins_.resize(count), directions_.resize(count), hits_.resize(count);
     for (std::uint32_t k = 0; k < count; ++k) {
-        origins_[k] = patch.at(tree_.uniform(e, points(k, 2), points(k, 3)));
-        directions_[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+        origins_[k] = patch.at(tree_.uniform(e, points(first + k, 2), points(first + k, 3)));
+        directions_[k] = cosine_direction(frame, points(first + k, 0), points(first + k, 1));
     }
     stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_);
     queries_.clear(), of_ray_.clear();

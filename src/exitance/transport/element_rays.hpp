@@ -18,8 +18,9 @@ class ElementRays {
     ElementRays(const Stage& stage, const ElementTree& tree, const ElementLocator& locator)
         : stage_(stage), tree_(tree), locator_(locator) {}
 
-    /// Writes for each ray the number of the leaf whose front it hits, or `missed`. The rays are named by `key`.
-    void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves);
+    /// Writes for each ray the number of the leaf whose front it hits, or `missed`. The rays are named by `key`; they
+    /// are as many of its points from number `first` on.
+    void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0);
 
   private:
     const Stage& stage_;

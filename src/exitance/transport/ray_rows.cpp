@@ -15,22 +15,61 @@ unsigned RayBudget::rays(double area, double mean_area) const {
     return std::bit_floor(static_cast<unsigned>(clamped * std::numbers::sqrt2));  // to the nearer power of two
 }
 
+namespace {
+
+/// Which points of which sequence the rays of a leaf are.
+struct Deal {
+    std::uint64_t key;
+    std::uint32_t first = 0;
+};
+
+/// A leaf's points begin at a multiple of their number, so that they are stratified by themselves, too.
+std::vector<Deal> deal(const ElementTree& tree, const LeafNumbering& numbering, const std::vector<std::size_t>& first,
+                       std::uint64_t seed, Dealing dealing) {
+    const auto key = [&](std::size_t i) { return hash(seed, static_cast<std::uint64_t>(Stream::rows), i); };
+    std::vector<Deal> out(numbering.leaves.size());
+    if (dealing == Dealing::by_element) {
+        for (std::size_t i = 0; i < out.size(); ++i) out[i].key = key(i);
+        return out;
+    }
+    std::vector<ElementId> open;
+    for (ElementId root : tree.roots()) {
+        std::uint32_t next = 0;
+        for (open.assign(1, root); !open.empty();) {
+            const ElementId e = open.back();
+            open.pop_back();
+            const IdRange<ElementId> children = tree.children(e);
+            for (std::size_t k = children.size(); k-- > 0;) open.push_back(children[k]);
+            if (!tree.is_leaf(e)) continue;
+            const std::uint32_t leaf = numbering.number[e];
+            const auto count = static_cast<std::uint32_t>(first[leaf + 1] - first[leaf]);
+            next = (next + count - 1) / count * count;
+            out[leaf] = {key(root.value), next};
+            next += count;
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
 RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                 const ElementLocator& locator, RayBudget budget, std::uint64_t seed) {
+                 const ElementLocator& locator, RayBudget budget, std::uint64_t seed, Dealing dealing) {
     const std::size_t n = numbering.leaves.size();
     const double mean_area = stage.area / static_cast<double>(n);
     first_.assign(n + 1, 0);
     for (std::size_t i = 0; i < n; ++i)
         first_[i + 1] = first_[i] + budget.rays(tree.area(numbering.leaves[i]), mean_area);
     hits_.assign(first_[n], missed);
+    const std::vector<Deal> dealt = deal(tree, numbering, first_, seed, dealing);
 
     parallel_ranges(n, 16,
                     [&](std::size_t begin, std::size_t end) {
                         ElementRays rays(stage, tree, locator);
                         for (std::size_t i = begin; i < end; ++i) {
                             const std::size_t count = first_[i + 1] - first_[i];
-                            rays.cast(numbering.leaves[i], hash(seed, static_cast<std::uint64_t>(Stream::rows), i),
-                                      std::span(hits_).subspan(first_[i], count));
+                            rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count),
+                                      dealt[i].first);
                             note_touched("rays", count);
                         }
                     },

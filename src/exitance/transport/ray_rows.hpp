@@ -19,6 +19,11 @@ struct RayBudget {
     unsigned rays(double area, double mean_area) const;
 };
 
+/// Where the points of rays come from: every element has a sequence of its own; or each piece has one, which is dealt
+/// out over its leaves in the order of the tree. Then rays of neighbours fill each other's gaps, and what all leaves
+/// below an element gather is nearly as good as if it had cast all of their rays; of much use where an element has few.
+enum class Dealing : std::uint8_t { by_element, by_piece };
+
 /// Transport by rays: row i holds the elements that n_i rays, spread over element i with density cos / pi around its
 /// normal, hit first on their fronts: F_ij is the share of them that hits j. Unbiased; a row of a closed scene sums to
 /// 1 exactly. The points (four dimensions: place and direction) are scrambled Sobol points, so that the error of what
@@ -26,18 +31,22 @@ struct RayBudget {
 class RayRows final : public TransportOperator {
   public:
     RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
-            RayBudget budget, std::uint64_t seed);
+            RayBudget budget, std::uint64_t seed, Dealing dealing = Dealing::by_element);
 
     std::size_t size() const override { return first_.size() - 1; }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
     std::size_t memory_bytes() const override { return 4 * hits_.size() + 8 * first_.size(); }
     std::size_t rays() const { return hits_.size(); }
+    static constexpr std::uint32_t missed = 0xffffffffu;
+    /// Of row i: leaf numbers, `missed` where a ray met nothing or a back.
+    std::span<const std::uint32_t> hits(std::size_t i) const {
+        return std::span(hits_).subspan(first_[i], first_[i + 1] - first_[i]);
+    }
 
   private:
-    static constexpr std::uint32_t missed = 0xffffffffu;
-    std::vector<std::size_t> first_;   ///< Row i stands in hits_[first_[i], first_[i + 1]).
-    std::vector<std::uint32_t> hits_;  ///< Leaf numbers; `missed` where a ray met nothing or a back.
+    std::vector<std::size_t> first_;  ///< Row i stands in hits_[first_[i], first_[i + 1]).
+    std::vector<std::uint32_t> hits_;
 };
 
 }  // namespace exitance

@@ -52,6 +52,23 @@ TEST(RayRows, BringWhatTheClosedFormSays) {
     for (std::size_t wall = 2; wall < 6; ++wall) EXPECT_NEAR(face[wall], (1 - opposite) / 4, 0.003);
 }
 
+/// What faces gather as wholes, of light that varies over the ceiling.
+TEST(RayRows, DealtOutOverAPieceAreBetterTogether) {
+    const Cube cube;
+    const auto square_error = [&](Dealing dealing) {
+        std::vector<double> squares(6, 0.0);
+        for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+            const RayRows F(cube.stage, cube.tree, cube.numbering, cube.locator, {.average = 8, .least = 8, .most = 8},
+                            seed, dealing);
+            const std::vector<double> face = light_from_the_ceiling(cube.stage, F, cube.tree, cube.numbering);
+            squares[0] += std::pow(face[0] - opposite, 2);
+            for (std::size_t wall = 2; wall < 6; ++wall) squares[1] += std::pow(face[wall] - (1 - opposite) / 4, 2);
+        }
+        return squares[0] + squares[1];
+    };
+    EXPECT_LT(square_error(Dealing::by_piece), 0.7 * square_error(Dealing::by_element));
+}
+
 TEST(RayRows, AreTheSameOnAnyNumberOfThreads) {
     const Cube cube;
     std::vector<Spectrum> b(cube.numbering.leaves.size());
