@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/methods/constant_elements.hpp"
 #include "exitance/methods/hierarchy.hpp"
 #include "exitance/methods/methods.hpp"
-#include "exitance/solve/direct_share.hpp"
 #include "exitance/transport/hemicube_rows.hpp"
 #include "exitance/transport/linear_rows.hpp"
 #include "exitance/transport/patch_transfer.hpp"
@@ -13,63 +13,6 @@ namespace exitance {
 namespace {
 
 constexpr unsigned default_visibility_samples = 16;
-
-/// b = first + rho F b to convergence, starting from `light.reflected`.
-void solve(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
-           std::span<const Spectrum> first, GlobalLight& light) {
-    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
-    light.report = solve_radiosity(
-        {F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres), light.reflected,
-        {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop});
-}
-
-/// Where surfaces glow all over, the direct light that F finds by its own rays, F M, takes the share c of the exact
-/// one's place: E_ind = F (b + c M) - c E_dir. Then the noise of F meets only what varies of b + c M.
-void agree_with_direct_share(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
-                             GlobalLight& light) {
-    const ElementLocator locator(light.tree, input.stage.scene.regions().size());
-    const Spectrum c = find_direct_share(input.stage, light, locator, input.options.seed);
-    if (squared(c) == 0 || input.stop.requested()) return;
-    const std::size_t n = rho.size();
-    std::vector<Spectrum> M(n), correction(n), first(n);
-    for (std::size_t i = 0; i < n; ++i)
-        M[i] = input.stage.scene.material(light.tree.region(light.numbering.leaves[i])).exitance;
-    F.gather(M, correction);
-    for (std::size_t i = 0; i < n; ++i) {
-        correction[i] = c * (correction[i] - light.direct[i]);
-        first[i] = rho[i] * (light.direct[i] + correction[i]);
-    }
-    const std::size_t before = light.report.iterations;
-    solve(input, F, rho, first, light);
-    light.report.iterations += before;
-    F.gather(light.reflected, light.indirect);
-    for (std::size_t i = 0; i < n; ++i) light.indirect[i] += correction[i];
-    light.direct_share = c;
-}
-
-/// All reflections of the direct light, or as many as were asked for; writes the light that
-/// arrives before the last of them to `light.indirect`.
-void relax(const MethodInput& input, const TransportOperator& F, GlobalLight& light) {
-    input.progress.phase("solve");
-    const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
-    std::vector<Spectrum> first(rho.size());
-    for (std::size_t i = 0; i < rho.size(); ++i) first[i] = rho[i] * light.direct[i];
-    light.reflected = first;
-    light.indirect.resize(rho.size());
-    if (input.options.bounces > 0) {
-        // So many terms of the series first + rho F first + ...
-        for (int bounce = 1; bounce < input.options.bounces; ++bounce) {
-            F.gather(light.reflected, light.indirect);
-            for (std::size_t i = 0; i < rho.size(); ++i) light.reflected[i] = first[i] + rho[i] * light.indirect[i];
-        }
-        light.report = {.iterations = static_cast<std::size_t>(input.options.bounces), .converged = true};
-    } else {
-        solve(input, F, rho, first, light);
-        F.gather(light.reflected, light.indirect);
-        agree_with_direct_share(input, F, rho, light);
-    }
-    light.link_memory_bytes = F.memory_bytes();
-}
 
 /// Linear elements: collocation at the nodes of every leaf, E = first + H rho E, unknowns E_ind.
 void solve_linear(const MethodInput& input, GlobalLight& light) {
@@ -130,12 +73,12 @@ GlobalLight solve_matrix(const MethodInput& input) {
     } else if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
         const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed);
-        relax(input, F, light);
+        relax_constant_elements(input, F, light);
         light.rays = light.links = F.rays();
     } else if (*options.form_factors == FormFactorKind::hemicube) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
         const HemicubeRows F(stage, light.tree, light.numbering, locator, hemicube_cells(input));
-        relax(input, F, light);
+        relax_constant_elements(input, F, light);
         light.rays = F.rays();
         light.links = light.form_factors = F.entries();
     } else {
@@ -143,7 +86,7 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const auto samples = options.visibility_samples.value_or(default_visibility_samples);
         const PatchTransfer transfer(stage, light.tree, static_cast<unsigned>(samples), options.seed);
         const DenseTransport F(transfer, light.numbering, patches, progress, stop);
-        relax(input, F, light);
+        relax_constant_elements(input, F, light);
         light.rays = transfer.rays();
         light.form_factors = transfer.form_factors();
         light.links = F.entries();

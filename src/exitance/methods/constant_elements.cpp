@@ -1,0 +1,65 @@
+#include "exitance/methods/constant_elements.hpp"
+
+#include "exitance/solve/direct_share.hpp"
+
+namespace exitance {
+namespace {
+
+/// b = first + rho F b to convergence, starting from `light.reflected`.
+void solve(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
+           std::span<const Spectrum> first, GlobalLight& light) {
+    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
+    light.report = solve_radiosity(
+        {F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres), light.reflected,
+        {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop});
+}
+
+/// Where surfaces glow all over, the direct light that F finds by its own rays, F M, takes the share c of the exact
+/// one's place: E_ind = F (b + c M) - c E_dir. Then the noise of F meets only what varies of b + c M.
+void agree_with_direct_share(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
+                             GlobalLight& light) {
+    const ElementLocator locator(light.tree, input.stage.scene.regions().size());
+    const Spectrum c = find_direct_share(input.stage, light, locator, input.options.seed);
+    if (squared(c) == 0 || input.stop.requested()) return;
+    const std::size_t n = rho.size();
+    std::vector<Spectrum> M(n), correction(n), first(n);
+    for (std::size_t i = 0; i < n; ++i)
+        M[i] = input.stage.scene.material(light.tree.region(light.numbering.leaves[i])).exitance;
+    F.gather(M, correction);
+    for (std::size_t i = 0; i < n; ++i) {
+        correction[i] = c * (correction[i] - light.direct[i]);
+        first[i] = rho[i] * (light.direct[i] + correction[i]);
+    }
+    const std::size_t before = light.report.iterations;
+    solve(input, F, rho, first, light);
+    light.report.iterations += before;
+    F.gather(light.reflected, light.indirect);
+    for (std::size_t i = 0; i < n; ++i) light.indirect[i] += correction[i];
+    light.direct_share = c;
+}
+
+}  // namespace
+
+void relax_constant_elements(const MethodInput& input, const TransportOperator& F, GlobalLight& light) {
+    input.progress.phase("solve");
+    const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
+    std::vector<Spectrum> first(rho.size());
+    for (std::size_t i = 0; i < rho.size(); ++i) first[i] = rho[i] * light.direct[i];
+    light.indirect.resize(rho.size());
+    if (light.reflected.empty() || input.options.bounces > 0) light.reflected = first;
+    if (input.options.bounces > 0) {
+        // So many terms of the series first + rho F first + ...
+        for (int bounce = 1; bounce < input.options.bounces; ++bounce) {
+            F.gather(light.reflected, light.indirect);
+            for (std::size_t i = 0; i < rho.size(); ++i) light.reflected[i] = first[i] + rho[i] * light.indirect[i];
+        }
+        light.report = {.iterations = static_cast<std::size_t>(input.options.bounces), .converged = true};
+    } else {
+        solve(input, F, rho, first, light);
+        F.gather(light.reflected, light.indirect);
+        agree_with_direct_share(input, F, rho, light);
+    }
+    light.link_memory_bytes = F.memory_bytes();
+}
+
+}  // namespace exitance
