@@ -48,8 +48,11 @@ TEST(ProgramSchedule, AllSchedulesGiveTheSameLightAndSayTheirName) {
 TEST(ProgramTrace, TasksHaveParentsAndThoseOfOneWorkerFollowOneAnother) {
     const TemporaryFolder folder;
     const std::string file = folder / "trace.json";
-    solve_small_room(folder, "traced", {"--threads", "2", "--trace", file, "--method", "wavelet"});
-    solve_small_room(folder, "plain", {"--threads", "2", "--method", "wavelet"});
+    const std::vector<std::string> options = {"--threads", "2", "--method", "wavelet", "--epsilon", "0.02"};
+    std::vector<std::string> traced = options;
+    traced.insert(traced.end(), {"--trace", file});
+    solve_small_room(folder, "traced", traced);
+    solve_small_room(folder, "plain", options);
     EXPECT_EQ(light_of(folder, "traced"), light_of(folder, "plain"));
 
     const Json trace = Json::parse(read_text(file));

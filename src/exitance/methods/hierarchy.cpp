@@ -4,10 +4,11 @@
 
 #include <cmath>
 
-#include "exitance/basis/element_fit.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/importance.hpp"
+#include "exitance/methods/linked_by_rays.hpp"
+#include "exitance/methods/nodal_light.hpp"
 #include "exitance/transport/cluster_refiner.hpp"
 #include "exitance/transport/leaf_links.hpp"
 #include "exitance/transport/link_refiner.hpp"
@@ -17,10 +18,20 @@
 namespace exitance {
 namespace {
 
+/// Where so much light passes in the open, links give it as exactly as it is asked for. Elsewhere they only find what
+/// the elements reflect, and rays gather that: from a place that sees many things in part, rays over the hemisphere say
+/// more than as many between pairs.
+constexpr double mostly_open = 0.9;
+
+bool is_polynomial(HierarchyBasis kind) {
+    return kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
+}
+
 class Hierarchy {
   public:
     Hierarchy(const MethodInput& input, HierarchyBasis kind)
         : input_(input),
+          is_polynomial_(is_polynomial(kind)),
           basis_(kind),
           light_{.tree = input.direct.tree},
           sites_(input.stage, light_.tree, basis_),
@@ -57,7 +68,7 @@ class Hierarchy {
             input_.progress.phase("link");
             refine(tolerance);
             relax();
-            light_.delivers = is_polynomial() && open_share() > mostly_open;
+            light_.delivers = is_polynomial_ && open_share() > mostly_open;
             demand = input_.knobs.link_error * (light_.delivers || input_.options.smoothing ? 1 : gathers_forgive) *
                      light_norm();
             input_.progress.note(
@@ -96,7 +107,7 @@ class Hierarchy {
                         100 * found.error / light_norm()));
         light_.rays += found.rays;
         light_.form_factors += found.form_factors;
-        light_.delivers = is_polynomial() && found.open_share > mostly_open;
+        light_.delivers = is_polynomial_ && found.open_share > mostly_open;
         input_.progress.phase("solve");
         solve_on_links(first_, b_);
         hand_over();
@@ -137,14 +148,8 @@ class Hierarchy {
                 .seed = input_.options.seed};
     }
 
-    /// Where most light passes in the open, links give it as exactly as it is asked for. Elsewhere they only find what
-    /// the elements reflect, and rays gather that: from a place that sees many things in part, rays over the hemisphere
-    /// say more than as many between pairs.
-    static constexpr double mostly_open = 0.9;
     /// How much larger the error of light may be that is gathered once more.
     static constexpr double gathers_forgive = 4;
-    bool is_polynomial() const { return basis_.order() > 1 && !basis_.is_flat(); }
-
     const Material& material(ElementId e) const { return input_.stage.scene.material(light_.tree.region(e)); }
 
     /// As many as there is room for.
@@ -233,7 +238,7 @@ class Hierarchy {
         Field<ElementId, double> importance(light_.tree.size(), 0.0);
         double total = 0;
         for (std::size_t i = 0; i < leaves.size(); ++i) {
-            const double here = mean(points[i] + mean_over(w, leaves[i]));
+            const double here = mean(points[i] + mean_over(sites_, w, leaves[i]));
             importance[leaves[i]] = light_.tree.area(leaves[i]) * std::max(0.0, here);
             total += importance[leaves[i]];
         }
@@ -287,11 +292,12 @@ class Hierarchy {
         NodalField first = first_;
         constexpr int steps = 2;
         for (int step = 0; step < steps && !input_.stop.requested(); ++step) {
-            for (std::size_t i = 0; i < leaves.size(); ++i) b[i] = mean_over(b_, leaves[i]);
+            for (std::size_t i = 0; i < leaves.size(); ++i) b[i] = mean_over(sites_, b_, leaves[i]);
             rows.gather(b, E);
             const NodalField found = gather();
             for (std::size_t i = 0; i < leaves.size(); ++i) {
-                const Spectrum missed = E[i] - mean_over(found, leaves[i]), rho = material(leaves[i]).reflectance;
+                const Spectrum missed = E[i] - mean_over(sites_, found, leaves[i]),
+                               rho = material(leaves[i]).reflectance;
                 missed_[i] += missed;
                 for (std::size_t k = 0; k < sites_.nodes(); ++k)
                     first.set_node(leaves[i], k, first.node(leaves[i], k) + rho * missed);
@@ -318,49 +324,13 @@ class Hierarchy {
         return E;
     }
 
-    /// The mean of a function over an element.
-    Spectrum mean_over(const NodalField& field, ElementId e) const {
-        Spectrum sum;
-        for (std::size_t k = 0; k < sites_.nodes(); ++k) sum += sites_.weight(e, k) * field.node(e, k);
-        return sum;
-    }
-
-    /// The leaf of the direct projection that `e` is part of, or is.
-    ElementId projected(ElementId e) const {
-        while (e.value >= input_.direct.tree.size()) e = light_.tree.parent(e);
-        return e;
-    }
-
-    /// The polynomial of an element as files and rays hold it: linear or bilinear, nearest in the mean square.
-    ElementFit fit(ElementId e, const NodalField& E) const {
-        const Patch& patch = light_.tree.patch(e);
-        std::vector<WeightedPlace> places;
-        std::vector<Spectrum> values;
-        for (std::size_t k = 0; k < sites_.nodes(); ++k) {
-            if (sites_.weight(e, k) == 0) continue;
-            places.push_back({patch.coordinates(sites_.node(e, k)), sites_.weight(e, k)});
-            values.push_back(E.node(e, k));
-        }
-        return ElementFit(light_.tree, e, places, values);
-    }
-
     /// Cuts leaves, for the sake of what is handed on, until linear functions hold what quadratic ones have found.
     void cut_for_delivery(NodalField& E) {
         const double allowed = 0.3 * input_.knobs.link_error * light_norm() / std::sqrt(input_.stage.area);
         std::vector<ElementId> active = light_.tree.leaves();
         constexpr int most_levels = 3;
         for (int level = 0; level < most_levels && !active.empty(); ++level) {
-            std::vector<ElementId> rough;
-            for (ElementId e : active) {
-                const ElementFit bilinear = fit(e, E);
-                double sum = 0;
-                for (std::size_t k = 0; k < sites_.nodes(); ++k) {
-                    const Spectrum off =
-                        E.node(e, k) - bilinear.at(light_.tree.patch(e).coordinates(sites_.node(e, k)));
-                    sum += sites_.weight(e, k) * squared(light_weight(material(e)) * off) / static_cast<double>(bands);
-                }
-                if (sum > allowed * allowed) rough.push_back(e);
-            }
+            const std::vector<ElementId> rough = rough_elements(sites_, E, active, allowed);
             NodalField* const also[] = {&b_, &direct_, &first_};
             refiner_.cut_elements(rough, E, also);
             active.clear();
@@ -373,22 +343,7 @@ class Hierarchy {
     void hand_over() {
         NodalField E = gather();
         if (basis_.order() > 2) cut_for_delivery(E);
-        for (ElementId e : light_.numbering.leaves) {
-            const Spectrum direct = mean_over(direct_, e), indirect = mean_over(E, e);
-            light_.direct.push_back(direct);
-            light_.indirect.push_back(indirect);
-            light_.reflected.push_back(material(e).reflectance * (direct + indirect));
-            const ElementFit polynomial = fit(e, E);
-            std::array<Spectrum, 4>& indirect_corners = light_.indirect_corners.emplace_back();
-            for (int i = 0; i < light_.tree.patch(e).corner_count(); ++i)
-                indirect_corners[static_cast<std::size_t>(i)] = polynomial.corner(i);
-            const ElementId own = projected(e);
-            const Patch& patch = light_.tree.patch(e);
-            std::array<Spectrum, 4>& corners = light_.direct_corners.emplace_back();
-            for (int i = 0; i < patch.corner_count(); ++i)
-                corners[static_cast<std::size_t>(i)] =
-                    input_.direct.at({own, input_.direct.tree.patch(own).coordinates(patch.corner(i))});
-        }
+        write_nodal_light(sites_, direct_, E, input_.direct, light_);
         light_.links = links_->size() + (far_links_ ? far_links_->size() : 0);
         if (input_.options.keep_links) light_.kept_links = links_->list();
         light_.link_memory_bytes = links_->memory_bytes() + (far_links_ ? far_links_->memory_bytes() : 0);
@@ -398,6 +353,7 @@ class Hierarchy {
     }
 
     const MethodInput& input_;
+    bool is_polynomial_;
     NodalBasis basis_;
     GlobalLight light_;
     LinkSites sites_;
@@ -412,7 +368,21 @@ class Hierarchy {
 
 }  // namespace
 
+namespace {
+
+/// Does what was asked for say how links are to be found or judged, or deliver what they hold?
+bool asks_for_judged_links(const SolveOptions& o) {
+    return o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing || !o.triage ||
+           o.visibility != VisibilityKind::automatic || o.clusters || o.min_area;
+}
+
+}  // namespace
+
 GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind) {
+    if (!asks_for_judged_links(input.options)) {
+        const std::optional<double> delivering = is_polynomial(kind) ? std::optional(mostly_open) : std::nullopt;
+        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, delivering)) return std::move(*light);
+    }
     return Hierarchy(input, kind).solve();
 }
 

@@ -7,10 +7,12 @@ namespace exitance {
 
 /// Radiosity over the links of a hierarchy, whatever its basis: what the methods hierarchical and wavelet share.
 ///
-/// Links are refined for an error asked for, with light from a coarser solution (multigridding), the system is solved
-/// on them, and again, until the links' own estimate is met. O(k log k + links) for k pieces under clusters, O(k^2 +
-/// links) without. Where the basis holds polynomials, E_ind is delivered as the links give it.
-/// Source: [Hanrahan91], [Gortler93], [Smits94].
+/// Where light is gathered from the elements afterwards, rays find the links (`solve_linked_by_rays`). Where the basis
+/// holds polynomials and most light passes in the open, or where something about links is asked for, they are judged
+/// one by one: refined for an error asked for, with light from a coarser solution (multigridding), the system is solved
+/// on them, and again, until the links' own estimate is met; E_ind of polynomials is then delivered as the links give
+/// it. O(rays log rays); or O(k log k + links) for k pieces under clusters, O(k^2 + links) without. Source:
+/// [Hanrahan91], [Gortler93], [Smits94].
 GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind);
 
 /// The same without a hierarchy: Galerkin's method of order 1 to 3, whose basis is that of haar, multiwavelet2 or

@@ -1,0 +1,81 @@
+#include "exitance/methods/linked_by_rays.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exitance/methods/constant_elements.hpp"
+#include "exitance/transport/open_share.hpp"
+#include "exitance/transport/ray_links.hpp"
+
+namespace exitance {
+namespace {
+
+/// Dealt out over the hierarchy, half of the rays that rows by themselves take do.
+RayBudget dealt_out(RayBudget rays) {
+    constexpr double share = 0.5;
+    constexpr unsigned least = 8;
+    rays.average *= share;
+    rays.least = std::min(rays.least, least);
+    return rays;
+}
+
+/// What leaves reflect of direct light, and of that once more: enough to tell where light is even.
+std::vector<Spectrum> reflect_twice(const RayRows& rows, const Scene& scene, const GlobalLight& light) {
+    const std::vector<Spectrum> rho = leaf_reflectances(scene, light.tree, light.numbering);
+    std::vector<Spectrum> b(rho.size()), E(rho.size());
+    for (std::size_t i = 0; i < rho.size(); ++i) b[i] = rho[i] * light.direct[i];
+    rows.gather(b, E);
+    for (std::size_t i = 0; i < rho.size(); ++i) b[i] += rho[i] * E[i];
+    return b;
+}
+
+/// The error that one of `count` links may have, W/m^2 m. What it misses by reading the whole of an element is alike
+/// for neighbours, and comes back from every reflection.
+double allowed_error(const MethodInput& input, const GlobalLight& light, std::size_t count) {
+    double reflected = 0;
+    for (ElementId e : light.tree.roots())
+        reflected += light.tree.area(e) * mean(input.stage.scene.material(light.tree.region(e)).reflectance);
+    constexpr double share = 0.5, within_reason = 10;
+    const double reflections = std::min(within_reason, 1 / (1 - reflected / input.stage.area));
+    return share * input.knobs.link_error * light.mean_reflected(input.stage.area) / reflections *
+           std::sqrt(input.stage.area / static_cast<double>(count));
+}
+
+}  // namespace
+
+std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, std::optional<double> mostly) {
+    const Stage& stage = input.stage;
+    input.progress.phase("link");
+    GlobalLight light{.tree = input.direct.tree, .numbering = LeafNumbering(input.direct.tree)};
+    const std::vector<ElementId>& leaves = light.numbering.leaves;
+    light.direct = leaf_means(input.direct, light.numbering);
+    light.on_projection = true;
+    const ElementLocator locator(light.tree, stage.scene.regions().size());
+    const RayRows rows(stage, light.tree, light.numbering, locator, dealt_out(input.knobs.solve_rays),
+                       input.options.seed, Dealing::by_piece);
+    light.rays = rows.rays();
+    light.reflected = reflect_twice(rows, stage.scene, light);
+    if (mostly) {
+        const double open = open_share(stage, light.tree, light.numbering, rows, light.reflected);
+        input.progress.note(fmt::format("{:.0f}% of the light passes in the open between whole pieces", 100 * open));
+        if (open > *mostly) return std::nullopt;
+    }
+
+    const NodalBasis constants(HierarchyBasis::haar);
+    const LinkSites sites(stage, light.tree, constants);
+    NodalField b(sites);
+    for (std::size_t i = 0; i < leaves.size(); ++i) b.set_node(leaves[i], 0, light.reflected[i]);
+    b.pull();
+    const Links links = link_by_rays(sites, light.numbering, rows, b, allowed_error(input, light, rows.rays()));
+    input.progress.note(
+        fmt::format("{} links found by {} rays of {} leaves", links.size(), rows.rays(), leaves.size()));
+
+    relax_constant_elements(input, LinkOperator(sites, links, nullptr, light.numbering), light);
+    light.links = links.size();
+    light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();
+    if (input.options.keep_links) light.kept_links = links.list();
+    return light;
+}
+
+}  // namespace exitance
