@@ -20,14 +20,19 @@ RayBudget dealt_out(RayBudget rays) {
     return rays;
 }
 
-/// What leaves reflect of direct light, and of that once more: enough to tell where light is even.
-std::vector<Spectrum> reflect_twice(const RayRows& rows, const Scene& scene, const GlobalLight& light) {
-    const std::vector<Spectrum> rho = leaf_reflectances(scene, light.tree, light.numbering);
-    std::vector<Spectrum> b(rho.size()), E(rho.size());
-    for (std::size_t i = 0; i < rho.size(); ++i) b[i] = rho[i] * light.direct[i];
-    rows.gather(b, E);
-    for (std::size_t i = 0; i < rho.size(); ++i) b[i] += rho[i] * E[i];
+/// What leaves reflect of direct light.
+std::vector<Spectrum> reflect_once(const Scene& scene, const GlobalLight& light) {
+    std::vector<Spectrum> b = leaf_reflectances(scene, light.tree, light.numbering);
+    for (std::size_t i = 0; i < b.size(); ++i) b[i] = b[i] * light.direct[i];
     return b;
+}
+
+/// And what they reflect of that: enough to tell where light is even.
+void reflect_again(const RayRows& rows, const Scene& scene, GlobalLight& light) {
+    const std::vector<Spectrum> rho = leaf_reflectances(scene, light.tree, light.numbering);
+    std::vector<Spectrum> E(rho.size());
+    rows.gather(light.reflected, E);
+    for (std::size_t i = 0; i < rho.size(); ++i) light.reflected[i] += rho[i] * E[i];
 }
 
 /// The error that one of `count` links may have, W/m^2 m. What it misses by reading the whole of an element is alike
@@ -52,15 +57,17 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, std::o
     light.direct = leaf_means(input.direct, light.numbering);
     light.on_projection = true;
     const ElementLocator locator(light.tree, stage.scene.regions().size());
-    const RayRows rows(stage, light.tree, light.numbering, locator, dealt_out(input.knobs.solve_rays),
-                       input.options.seed, Dealing::by_piece);
-    light.rays = rows.rays();
-    light.reflected = reflect_twice(rows, stage.scene, light);
+    light.reflected = reflect_once(stage.scene, light);
     if (mostly) {
-        const double open = open_share(stage, light.tree, light.numbering, rows, light.reflected);
+        const double open =
+            open_share(stage, light.tree, light.numbering, locator, light.reflected, input.options.seed);
         input.progress.note(fmt::format("{:.0f}% of the light passes in the open between whole pieces", 100 * open));
         if (open > *mostly) return std::nullopt;
     }
+    const RayRows rows(stage, light.tree, light.numbering, locator, dealt_out(input.knobs.solve_rays),
+                       input.options.seed, Dealing::by_piece);
+    light.rays = rows.rays();
+    reflect_again(rows, stage.scene, light);
 
     const NodalBasis constants(HierarchyBasis::haar);
     const LinkSites sites(stage, light.tree, constants);

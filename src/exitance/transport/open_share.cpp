@@ -1,6 +1,8 @@
 #include "exitance/transport/open_share.hpp"
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
+#include "exitance/transport/element_rays.hpp"
 #include "exitance/transport/shaft.hpp"
 
 namespace exitance {
@@ -22,10 +24,23 @@ bool is_certainly_open(const Stage& stage, const ElementTree& tree, ElementId p,
     return shaft.classify(candidates) == View::open;
 }
 
+/// One leaf in each of many strata of equal area.
+std::vector<ElementId> leaves_by_area(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering) {
+    constexpr std::size_t count = 512;
+    std::vector<ElementId> out;
+    double before = 0;
+    for (const ElementId e : numbering.leaves) {
+        before += tree.area(e);
+        while (out.size() < count && static_cast<double>(out.size()) + 0.5 <= count * before / stage.area)
+            out.push_back(e);
+    }
+    return out;
+}
+
 }  // namespace
 
-double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows,
-                  std::span<const Spectrum> radiosity) {
+double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                  const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
     struct Light {
         double open = 0, all = 0;
         Light& operator+=(const Light& o) {
@@ -33,17 +48,17 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
             return *this;
         }
     };
-    constexpr std::size_t samples = 512;
-    const std::size_t leaves = numbering.leaves.size();
-    const Light sum = parallel_sum<Light>(samples, [&](std::size_t k) {
-        // Some leaf, and one of its rays.
-        const std::size_t i = (2 * k + 1) * leaves / (2 * samples);
-        const std::span<const std::uint32_t> hits = rows.hits(i);
-        const std::uint32_t hit = hits[k % hits.size()];
-        if (hit == RayRows::missed) return Light();
-        const double light = tree.area(numbering.leaves[i]) * mean(radiosity[hit]);
+    const std::vector<ElementId> leaves = leaves_by_area(stage, tree, numbering);
+    const Light sum = parallel_sum<Light>(leaves.size(), [&](std::size_t k) {
+        ElementRays rays(stage, tree, locator);
+        std::uint32_t hit = 0;
+        // Points of one sequence: the leaves together look everywhere.
+        rays.cast(leaves[k], hash(seed, static_cast<std::uint64_t>(Stream::rows)), {&hit, 1},
+                  static_cast<std::uint32_t>(k));
+        if (hit == ElementRays::missed) return Light();
+        const double light = mean(radiosity[hit]);
         if (light <= 0) return Light();
-        const ElementId p = piece_of(tree, numbering.leaves[i]), q = piece_of(tree, numbering.leaves[hit]);
+        const ElementId p = piece_of(tree, leaves[k]), q = piece_of(tree, numbering.leaves[hit]);
         return Light{is_certainly_open(stage, tree, p, q) ? light : 0, light};
     });
     return sum.all > 0 ? sum.open / sum.all : 1;

@@ -1,12 +1,14 @@
 #pragma once
 
-#include "exitance/transport/ray_rows.hpp"
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 
-/// How much of the light that rays of leaves find goes between pieces with nothing in between, certainly: of
-/// `radiosity`, by leaf number. From some hundred of the rays.
-double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows,
-                  std::span<const Spectrum> radiosity);
+/// How much of the light that leaves receive goes between pieces with nothing in between, certainly: of `radiosity`, by
+/// leaf number. From a ray of each of some hundred leaves, one in each of as many strata of equal area.
+double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                  const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed);
 
 }  // namespace exitance

@@ -101,7 +101,7 @@ TEST(OpenShare, IsAllWhereNothingStandsInBetweenAndLittleInARoomWithBoxes) {
     const auto share = [](Scene scene) {
         const Rows r(std::move(scene), [](const Point&) { return 1.0; });
         const std::vector<Spectrum> even(r.numbering.leaves.size(), Spectrum(1.0));
-        return open_share(r.stage, r.tree, r.numbering, r.rows, even);
+        return open_share(r.stage, r.tree, r.numbering, r.locator, even, 1);
     };
     EXPECT_EQ(share(box_scene(1, 2, 3, 0.5, 1)), 1);
     const double cornell = share(built_scene("cornell"));
