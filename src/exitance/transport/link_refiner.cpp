@@ -9,13 +9,14 @@
 
 namespace exitance {
 
-LinkRefiner::Found::Found(const LinkJudge::Result& result, bool is_open)
+LinkRefiner::Found::Found(const LinkJudge::Result& result, bool is_open, bool is_from_leaf)
     : link(result.link),
       squared_error(static_cast<float>(result.squared_error)),
       light(static_cast<float>(result.light)),
       near(result.near),
       open(is_open),
-      too_strong(result.too_strong) {
+      too_strong(result.too_strong),
+      from_leaf(is_from_leaf) {
     for (std::size_t c = 0; c < departure.size(); ++c) departure[c] = static_cast<float>(result.departure[c]);
 }
 
@@ -102,12 +103,65 @@ void LinkRefiner::judge_all_pieces(const NodalField& b, const LinkTolerance& tol
     judge(std::move(pairs), b, tolerance, stop);
 }
 
-/// The links that were found before, as pairs.
+double LinkRefiner::growth(const NodalField& b, ElementId source) const {
+    double now = 0, then = 0;
+    const std::size_t n = sites_.nodes();
+    for (std::size_t k = 0; k < n; ++k)
+        now += sites_.weight(source, k) * squared(b.node(source, k)),
+            then += sites_.weight(source, k) * squared(judged_.node(source, k));
+    if (then <= 0) return now > 0 ? -1 : 1;
+    const double growth = std::sqrt(now / then);
+    double changed = 0;
+    for (std::size_t k = 0; k < n; ++k)
+        changed += sites_.weight(source, k) * squared(b.node(source, k) - growth * judged_.node(source, k));
+    constexpr double hardly = 0.1;  // of what there is: less than the errors of links are known by
+    return changed <= hardly * hardly * now ? growth : -1;
+}
+
+/// Links that are surely good enough still stay: what they carry and what they miss have grown like their source's
+/// light. Returns the others, as pairs.
+std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const LinkTolerance& tolerance) {
+    // With a stricter tolerance a link would have been judged by better rules: what it misses has to be well below.
+    constexpr double surely = 0.3;
+    const double allowed = surely * surely * tolerance.error * tolerance.error;
+    const bool may_keep = tolerance.oracle == LinkOracle::transport && importance_.empty();
+    Field<ElementId, float> growth_of(tree_.size(), -1.0f);
+    if (may_keep)
+        parallel_for(tree_.size(), 256,
+                     [&](std::size_t e) { growth_of[ElementId(e)] = static_cast<float>(growth(b, ElementId(e))); });
+    const std::size_t n = sites_.nodes();
+    std::vector<LinkPair> stale;
+    std::vector<float> blocks, shadows;
+    std::size_t kept = 0;
+    for (const Found& found : links_) {
+        const float growth = growth_of[found.link.source];
+        const bool same = growth >= 0 && found.from_leaf == tree_.is_leaf(found.link.source);
+        if (!same || static_cast<double>(growth * growth * found.squared_error) > allowed) {
+            stale.push_back(pair_of(found));
+            continue;
+        }
+        Found& still = links_[kept++] = found;
+        still.light *= growth, still.squared_error *= growth * growth;
+        for (float& d : still.departure) d *= growth;
+        if (still.near) {
+            const auto block = blocks_.begin() + found.link.block;
+            still.link.block = static_cast<std::uint32_t>(blocks.size());
+            blocks.insert(blocks.end(), block, block + static_cast<std::ptrdiff_t>(n * n));
+        }
+        if (const float* shadow = shadow_of(found)) {
+            still.shadow = static_cast<std::uint32_t>(shadows.size());
+            for (std::size_t k = 0; k < n; ++k) shadows.push_back(growth * shadow[k]);
+            for (std::size_t k = n; k < 2 * n; ++k) shadows.push_back(growth * growth * shadow[k]);
+        }
+    }
+    links_.resize(kept);
+    blocks_ = std::move(blocks), shadows_ = std::move(shadows);
+    return stale;
+}
+
+/// The links that were found before.
 void LinkRefiner::judge_again(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop) {
-    std::vector<LinkPair> pairs;
-    for (const Found& found : links_) pairs.push_back(pair_of(found));
-    links_.clear(), blocks_.clear(), shadows_.clear();
-    judge(std::move(pairs), b, tolerance, stop);
+    judge(take_stale_links(b, tolerance), b, tolerance, stop);
 }
 
 void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalField& b,
@@ -116,12 +170,14 @@ void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalFiel
     sites_.update();
     b.resize();
     for (NodalField* field : also) field->resize();
+    judged_.resize();
     roughness_.resize(tree_.size(), 0.0);
     if (!importance_.empty()) importance_.resize(tree_.size(), 0.0);
     for (ElementId e : elements)
         for (ElementId child : tree_.children(e)) {
             if (!importance_.empty()) importance_[child] = importance_[e];
             inherit(sites_, e, child, b);
+            inherit(sites_, e, child, judged_);
             for (NodalField* field : also) inherit(sites_, e, child, *field);
         }
 }
@@ -160,7 +216,7 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
                         result.link.block = static_cast<std::uint32_t>(block.blocks.size());
                         block.blocks.insert(block.blocks.end(), judge.block().begin(), judge.block().end());
                     }
-                    block.links.push_back({result, pair.view == View::open});
+                    block.links.push_back({result, pair.view == View::open, tree_.is_leaf(pair.source)});
                     if (pair.view == View::open || sites_.nodes() == 1) continue;
                     block.links.back().shadow = static_cast<std::uint32_t>(block.shadows.size());
                     for (const auto& at_nodes : {result.shadowed, result.variance})
@@ -281,6 +337,7 @@ void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const
         judge_again(b, tolerance, stop);
     else
         judge_all_pieces(b, tolerance, stop);
+    judged_ = b;
     cut_until_good(b, also, tolerance, progress, stop);
 }
 
@@ -289,6 +346,7 @@ void LinkRefiner::refine(const std::vector<LinkPair>& fresh, NodalField& b, std:
     roughness_ = b.roughness();
     judge_again(b, tolerance, stop);
     judge(fresh, b, tolerance, stop);
+    judged_ = b;
     cut_until_good(b, also, tolerance, progress, stop);
 }
 

@@ -15,7 +15,7 @@ namespace exitance {
 /// order of their ids. So the result does not depend on threads. O(pairs + links).
 class LinkRefiner {
   public:
-    LinkRefiner(ElementTree& tree, LinkSites& sites) : tree_(tree), sites_(sites) {}
+    LinkRefiner(ElementTree& tree, LinkSites& sites) : tree_(tree), sites_(sites), judged_(sites) {}
 
     /// Starts with all pairs of pieces, or goes on from the links that it found before. `b`: the light that elements
     /// reflect, at the nodes of all of them; elements that are cut hand on theirs, here and in each of `also`.
@@ -48,6 +48,7 @@ class LinkRefiner {
     template <class Archive>
     void archive_state(Archive& a) {
         a(importance_, links_, blocks_, shadows_, interpolation_, rays_, form_factors_, begun_, limited_);
+        judged_.archive_state(a);
     }
 
     std::size_t rays() const { return rays_; }
@@ -56,7 +57,7 @@ class LinkRefiner {
   private:
     /// A link, and what refining needs to know of it.
     struct Found {
-        Found(const LinkJudge::Result& result, bool is_open);
+        Found(const LinkJudge::Result& result, bool is_open, bool is_from_leaf);
         Found() = default;
 
         Link link;
@@ -66,6 +67,7 @@ class LinkRefiner {
         bool near = false;            ///< Has it a block?
         bool open = false;            ///< Is its view certain?
         bool too_strong = false;      ///< For its receiver, in the eyes of an oracle of strength.
+        bool from_leaf = false;       ///< Was its source a leaf when it was judged?
     };
     static constexpr std::uint32_t none = 0xffffffffu;
     /// What all links of a receiver bring to it.
@@ -78,6 +80,9 @@ class LinkRefiner {
     }
     void judge_all_pieces(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop);
     void judge_again(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop);
+    /// How much more light a source sends than when its links were judged, if it is the same but for that; else -1.
+    double growth(const NodalField& b, ElementId source) const;
+    std::vector<LinkPair> take_stale_links(const NodalField& b, const LinkTolerance& tolerance);
     void judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                const StopRequest& stop);
     void cut_until_good(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,
@@ -97,6 +102,7 @@ class LinkRefiner {
     Field<ElementId, double> roughness_, importance_;
     std::vector<Found> links_;
     std::vector<float> blocks_, shadows_;
+    NodalField judged_;         ///< The light that links were judged by last.
     double interpolation_ = 0;  ///< Squared, as in error().
     double error_ = 0, light_ = 0, open_light_ = 0;
     std::size_t rays_ = 0, form_factors_ = 0;
