@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exitance/core/memory.hpp"
+#include "exitance/core/parallel.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/linked_by_rays.hpp"
@@ -171,7 +172,9 @@ class Hierarchy {
 
     /// Exact direct light as it was projected, at the nodes of leaves.
     void project_direct() {
-        for (ElementId e : light_.tree.leaves()) {
+        const std::vector<ElementId> leaves = light_.tree.leaves();
+        parallel_for(leaves.size(), 64, [&](std::size_t i) {
+            const ElementId e = leaves[i];
             const Patch& patch = light_.tree.patch(e);
             for (std::size_t k = 0; k < sites_.nodes(); ++k) {
                 const Spectrum E = sites_.nodes() == 1 ? input_.direct.fit[e].mean
@@ -179,7 +182,7 @@ class Hierarchy {
                 direct_.set_node(e, k, E);
                 first_.set_node(e, k, material(e).reflectance * E);
             }
-        }
+        });
         direct_.pull();
         first_.pull();
     }
@@ -254,15 +257,18 @@ class Hierarchy {
     void solve_on_links(const NodalField& rhs, NodalField& x) {
         const LinkOperator F(sites_, *links_, far_links_ ? &*far_links_ : nullptr, light_.numbering);
         const std::size_t n = sites_.nodes();
-        std::vector<Spectrum> rho, first, value;
-        std::vector<double> area;
-        for (ElementId e : light_.numbering.leaves)
+        const std::vector<ElementId>& leaves = light_.numbering.leaves;
+        std::vector<Spectrum> rho(F.size()), first(F.size()), value(F.size());
+        std::vector<double> area(F.size());
+        parallel_for(leaves.size(), 256, [&](std::size_t i) {
+            const ElementId e = leaves[i];
             for (std::size_t k = 0; k < n; ++k) {
-                rho.push_back(material(e).reflectance);
-                first.push_back(rhs.node(e, k));
-                value.push_back(x.node(e, k));
-                area.push_back(light_.tree.area(e) * sites_.weight(e, k));
+                rho[i * n + k] = material(e).reflectance;
+                first[i * n + k] = rhs.node(e, k);
+                value[i * n + k] = x.node(e, k);
+                area[i * n + k] = light_.tree.area(e) * sites_.weight(e, k);
             }
+        });
         const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
         // Links are gathered all at once, and higher orders are not symmetric.
         const bool all_at_once = asked == Relaxation::jacobi || asked == Relaxation::chebyshev;
@@ -273,8 +279,9 @@ class Hierarchy {
                                          .max_iterations = input_.knobs.max_iterations,
                                          .request = &input_.stop});
         light_.report.iterations += before;
-        for (std::size_t i = 0; i < light_.numbering.leaves.size(); ++i)
-            for (std::size_t k = 0; k < n; ++k) x.set_node(light_.numbering.leaves[i], k, value[i * n + k]);
+        parallel_for(leaves.size(), 256, [&](std::size_t i) {
+            for (std::size_t k = 0; k < n; ++k) x.set_node(leaves[i], k, value[i * n + k]);
+        });
         x.pull();
     }
 

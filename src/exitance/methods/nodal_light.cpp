@@ -1,5 +1,7 @@
 #include "exitance/methods/nodal_light.hpp"
 
+#include "exitance/core/parallel.hpp"
+
 namespace exitance {
 namespace {
 
@@ -35,36 +37,42 @@ ElementFit fit_polynomial(const LinkSites& sites, const NodalField& field, Eleme
 
 std::vector<ElementId> rough_elements(const LinkSites& sites, const NodalField& E,
                                       const std::vector<ElementId>& elements, double allowed) {
-    std::vector<ElementId> rough;
-    for (ElementId e : elements) {
+    std::vector<std::uint8_t> is_rough(elements.size());
+    parallel_for(elements.size(), 64, [&](std::size_t i) {
+        const ElementId e = elements[i];
         const ElementFit bilinear = fit_polynomial(sites, E, e);
+        const Spectrum weight = light_weight(material(sites, e));
         double sum = 0;
         for (std::size_t k = 0; k < sites.nodes(); ++k) {
             const Spectrum off = E.node(e, k) - bilinear.at(sites.tree().patch(e).coordinates(sites.node(e, k)));
-            sum += sites.weight(e, k) * squared(light_weight(material(sites, e)) * off) / static_cast<double>(bands);
+            sum += sites.weight(e, k) * squared(weight * off) / static_cast<double>(bands);
         }
-        if (sum > allowed * allowed) rough.push_back(e);
-    }
+        is_rough[i] = sum > allowed * allowed;
+    });
+    std::vector<ElementId> rough;
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        if (is_rough[i]) rough.push_back(elements[i]);
     return rough;
 }
 
 void write_nodal_light(const LinkSites& sites, const NodalField& direct, const NodalField& indirect,
                        const DirectProjection& projection, GlobalLight& light) {
-    for (ElementId e : light.numbering.leaves) {
-        const Spectrum E_dir = mean_over(sites, direct, e), E_ind = mean_over(sites, indirect, e);
-        light.direct.push_back(E_dir);
-        light.indirect.push_back(E_ind);
-        light.reflected.push_back(material(sites, e).reflectance * (E_dir + E_ind));
+    const std::vector<ElementId>& leaves = light.numbering.leaves;
+    light.direct.resize(leaves.size()), light.indirect.resize(leaves.size()), light.reflected.resize(leaves.size());
+    light.indirect_corners.resize(leaves.size()), light.direct_corners.resize(leaves.size());
+    parallel_for(leaves.size(), 64, [&](std::size_t leaf) {
+        const ElementId e = leaves[leaf];
+        light.direct[leaf] = mean_over(sites, direct, e), light.indirect[leaf] = mean_over(sites, indirect, e);
+        light.reflected[leaf] = material(sites, e).reflectance * (light.direct[leaf] + light.indirect[leaf]);
         const ElementFit polynomial = fit_polynomial(sites, indirect, e);
-        std::array<Spectrum, 4>& indirect_corners = light.indirect_corners.emplace_back();
-        std::array<Spectrum, 4>& direct_corners = light.direct_corners.emplace_back();
         const ElementId own = projected(projection, light.tree, e);
         const Patch &patch = light.tree.patch(e), &of_own = projection.tree.patch(own);
         for (int i = 0; i < patch.corner_count(); ++i) {
-            indirect_corners[static_cast<std::size_t>(i)] = polynomial.corner(i);
-            direct_corners[static_cast<std::size_t>(i)] = projection.at({own, of_own.coordinates(patch.corner(i))});
+            const auto corner = static_cast<std::size_t>(i);
+            light.indirect_corners[leaf][corner] = polynomial.corner(i);
+            light.direct_corners[leaf][corner] = projection.at({own, of_own.coordinates(patch.corner(i))});
         }
-    }
+    });
 }
 
 }  // namespace exitance

@@ -9,6 +9,12 @@ namespace {
 
 using Values = std::vector<Spectrum>;
 
+/// body(i) for every unknown.
+template <class Body>
+void for_each(std::size_t n, const Body& body) {
+    parallel_for(n, 1024, body);
+}
+
 /// One inner product a band, in blocks of fixed length: the same bits on any number of threads.
 Spectrum inner(std::span<const Spectrum> x, std::span<const Spectrum> y, std::span<const double> weight) {
     return parallel_sum<Spectrum>(x.size(), [&](std::size_t i) { return weight[i] * (x[i] * y[i]); });
@@ -30,7 +36,7 @@ Spectrum root(const Spectrum& x) {
 void residual(const RadiositySystem& s, std::span<const Spectrum> b, Values& r) {
     r.resize(b.size());
     s.F.gather(b, r);
-    parallel_for(b.size(), 1024, [&](std::size_t i) { r[i] = s.rhs[i] + s.reflectance[i] * r[i] - b[i]; });
+    for_each(b.size(), [&](std::size_t i) { r[i] = s.rhs[i] + s.reflectance[i] * r[i] - b[i]; });
 }
 
 /// What every relaxation shares: the norm to reach, and the count of gathers.
@@ -132,7 +138,7 @@ SolveReport gauss_seidel(const RadiositySystem& s, std::span<Spectrum> b, StopRu
 
 /// x <- x + scale p, a factor a band.
 void add_scaled(std::span<Spectrum> x, const Spectrum& scale, std::span<const Spectrum> p) {
-    parallel_for(x.size(), 1024, [&](std::size_t i) { x[i] += scale * p[i]; });
+    for_each(x.size(), [&](std::size_t i) { x[i] += scale * p[i]; });
 }
 
 SolveReport conjugate_gradients(const RadiositySystem& s, std::span<Spectrum> b, StopRule stop) {
@@ -213,14 +219,14 @@ SolveReport gmres(const RadiositySystem& s, std::span<Spectrum> b, StopRule stop
         std::array<Hessenberg, bands> small;
         std::vector<Values> basis(1, Values(n));
         const Spectrum length = root(inner(r, r, s.area));
-        for (std::size_t i = 0; i < n; ++i) basis[0][i] = divided(r[i], length);
+        for_each(n, [&](std::size_t i) { basis[0][i] = divided(r[i], length); });
         for (std::size_t band = 0; band < bands; ++band) small[band].g[0] = length[band];
         int k = 0;
         for (bool done = false; k < Hessenberg::restart && !done; ++k) {
             Values w(n);
             s.F.gather(basis.back(), w);
             ++watch.report.iterations;
-            for (std::size_t i = 0; i < n; ++i) w[i] = basis.back()[i] - s.reflectance[i] * w[i];
+            for_each(n, [&](std::size_t i) { w[i] = basis.back()[i] - s.reflectance[i] * w[i]; });
             for (int j = 0; j <= k; ++j) {
                 const Values& v = basis[static_cast<std::size_t>(j)];
                 const Spectrum h = inner(w, v, s.area);
@@ -233,15 +239,16 @@ SolveReport gmres(const RadiositySystem& s, std::span<Spectrum> b, StopRule stop
                 small[band].H[k + 1][k] = h[band];
                 squares += std::pow(small[band].rotate(k), 2);
             }
-            for (Spectrum& x : w) x = divided(x, h);
+            for_each(n, [&](std::size_t i) { w[i] = divided(w[i], h); });
             basis.push_back(std::move(w));
             done = watch.done(std::sqrt(squares));
         }
         for (std::size_t band = 0; band < bands; ++band) {
             const auto y = small[band].solve(k);
-            for (int j = 0; j < k; ++j)
-                for (std::size_t i = 0; i < n; ++i)
+            for_each(n, [&](std::size_t i) {
+                for (int j = 0; j < k; ++j)
                     b[i][band] += y[static_cast<std::size_t>(j)] * basis[static_cast<std::size_t>(j)][i][band];
+            });
         }
         if (watch.report.converged || watch.report.interrupted || watch.report.iterations >= stop.max_iterations)
             return watch.report;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
@@ -56,7 +57,7 @@ const LaneMasks lane_masks;
 /// scene. Where its nodes stand about the middle, and what they send.
 template <std::size_t n>
 struct alignas(64) SourceRecord {
-    Point centre;
+    double centre[3];
     float normal[3];
     float node[3][n];
     float light[bands][n];  ///< w_l A b_l / pi
@@ -71,10 +72,10 @@ void prefetch(const SourceRecord<n>& record) {
 
 template <std::size_t n>
 void fill(SourceRecord<n>& out, const LinkSites& sites, const NodalField& b, ElementId e, double scale) {
-    out.centre = sites.centre(e);
     const double* const at[] = {sites.x(e), sites.y(e), sites.z(e)};
     const double area = sites.tree().area(e) * scale * scale / pi;
     for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.centre[axis] = sites.centre(e)[axis];
         out.normal[axis] = static_cast<float>(sites.normal(e)[axis]);
         for (std::size_t l = 0; l < n; ++l)
             out.node[axis][l] = static_cast<float>(scale * (at[axis][l] - out.centre[axis]));
@@ -262,8 +263,10 @@ template <class Layout>
 void Links::gather_kernels(const NodalField& b, NodalField& E) const {
     constexpr std::size_t at_a_time = 16, ahead = 3;  // links: in single precision, to fetch
     const double scale = 1 / std::sqrt(sites_->stage().area);
-    std::vector<SourceRecord<Layout::n>> sources(sites_->tree().size());
-    parallel_for(sources.size(), 1024, [&](std::size_t e) { fill(sources[e], *sites_, b, ElementId(e), scale); });
+    // Memory that is new is first touched where it is filled, on all threads.
+    const auto sources = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sites_->tree().size());
+    parallel_for(sites_->tree().size(), 1024,
+                 [&](std::size_t e) { fill(sources[e], *sites_, b, ElementId(e), scale); });
     for_rows([&](std::size_t row) {
         ReceivedLight<Layout> receiver(*sites_, receiver_[row], scale);
         for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {

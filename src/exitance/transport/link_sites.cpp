@@ -153,6 +153,13 @@ void add_product(std::span<const double> matrix, std::size_t n, const double* in
 
 }  // namespace
 
+void NodalField::clear() {
+    parallel_ranges(values_.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+        std::fill(values_.begin() + static_cast<std::ptrdiff_t>(begin),
+                  values_.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+    });
+}
+
 void NodalField::pull() {
     const ElementTree& tree = sites_->tree();
     const std::size_t n = sites_->nodes();

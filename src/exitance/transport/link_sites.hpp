@@ -81,7 +81,7 @@ class NodalField {
     void archive_state(Archive& a) {
         a(values_);
     }
-    void clear() { std::fill(values_.begin(), values_.end(), 0.0); }
+    void clear();
 
     double* at(ElementId e, std::size_t band) { return &values_[(e.value * bands + band) * sites_->stride()]; }
     const double* at(ElementId e, std::size_t band) const {
