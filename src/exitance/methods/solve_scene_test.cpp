@@ -185,6 +185,26 @@ TEST(SolveScene, CoarseLinksBehindObstaclesTakeNoLightAway) {
     }
 }
 
+TEST(SolveScene, LinksAreFoundByRaysUnlessSomethingIsAskedOfThem) {
+    const Scene scene = built_scene("complex", {{"m", "6"}});
+    const auto with = [&](SolveOptions options) {
+        options.error = 0.05;
+        return solved(scene, options).statistics;
+    };
+    const SolveStatistics rows = with({.method = Method::matrix}), links = with({.method = Method::hierarchical});
+    EXPECT_LT(2 * links.links, rows.links);
+    EXPECT_LT(links.relative_error_estimate, 0.05);
+    // The noise of the rays of either.
+    EXPECT_NEAR(links.energy.absorbed, rows.energy.absorbed, 5e-3 * rows.energy.absorbed);
+    EXPECT_EQ(with({.method = Method::wavelet}).links, links.links) << "little is open here: constants will do";
+    const SolveStatistics judged = with({.method = Method::hierarchical, .epsilon = 0.05});
+    EXPECT_NE(judged.links, links.links);
+    // Nothing stands in between: links of polynomials are judged, few of them, and give the light.
+    const Scene box = box_scene(1, 1, 3, 0.5, 1);
+    const SolveStatistics open = solved(box, {.method = Method::wavelet, .error = 0.05}).statistics;
+    EXPECT_LT(open.links, solved(box, {.method = Method::hierarchical, .error = 0.05}).statistics.links);
+}
+
 TEST(SolveScene, ClustersSaveLinksAndGiveTheSameLight) {
     const Scene scene = built_scene("complex", {{"m", "12"}});
     std::array<SolveStatistics, 2> found;
