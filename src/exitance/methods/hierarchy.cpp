@@ -67,9 +67,13 @@ class Hierarchy {
         for (; round < most_rounds; ++round) {
             safe_points.pass(state);
             input_.progress.phase("link");
+            const double judged_by = light_norm();
             refine(tolerance);
             relax();
             light_.delivers = is_polynomial_ && open_share() > mostly_open;
+            // What links miss grows with the light, of which the first round knows but one reflection. Where rays
+            // correct it, that does not matter.
+            const double missed = light_.delivers ? error() * light_norm() / judged_by : error();
             demand = input_.knobs.link_error * (light_.delivers || input_.options.smoothing ? 1 : gathers_forgive) *
                      light_norm();
             input_.progress.note(
@@ -77,12 +81,12 @@ class Hierarchy {
                             "their error {:.3f}% "
                             "of {:.3f}%",
                             refiner_.size(), far_ ? far_->size() : 0, 100 * open_share(), light_.tree.size(), rays(),
-                            100 * error() / light_norm(), 100 * demand / light_norm()));
+                            100 * missed / light_norm(), 100 * demand / light_norm()));
             light_.limited_by_memory = refiner_.is_limited();
             if (input_.stop.requested() || light_.limited_by_memory) break;
             const bool weighed = round > 0 || !somewhere;
-            if (weighed && error() <= demand) break;
-            const double factor = std::clamp(0.8 * demand / error(), 0.1, 0.8);
+            if (weighed && missed <= demand) break;
+            const double factor = std::clamp(0.8 * demand / missed, 0.1, 0.8);
             tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
         }
         if (!light_.delivers && !input_.stop.requested()) correct_by_rays();
