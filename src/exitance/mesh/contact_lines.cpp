@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -135,19 +136,25 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
     constexpr int most_in_vain = 6;
     struct Open {
         ElementId element;
-        std::size_t lines;  ///< When they last became fewer by a quarter,
-        int in_vain;        ///< and how many cuts ago that was.
+        std::size_t lines;                    ///< When they last became fewer by a quarter,
+        int in_vain;                          ///< and how many cuts ago that was.
+        std::size_t given = ~std::size_t(0);  ///< Of those given: which one.
     };
+    // Most have none: all are looked at on all threads, and what is left to cut is little.
+    std::vector<std::vector<std::pair<Vec2, Vec2>>> of_given(from.size());
+    parallel_for(from.size(), 64, [&](std::size_t i) { of_given[i] = contacts.within(tree, from[i]); });
     std::vector<Open> open;
-    for (ElementId e : from) open.push_back({e, ~std::size_t(0), 0});
+    for (std::size_t i = 0; i < from.size(); ++i)
+        if (!of_given[i].empty()) open.push_back({from[i], ~std::size_t(0), 0, i});
     while (!open.empty()) {
         Open now = open.back();
         const ElementId e = now.element;
         open.pop_back();
-        const std::vector<std::pair<Vec2, Vec2>> lines = contacts.within(tree, e);
+        const std::vector<std::pair<Vec2, Vec2>> lines =
+            now.given < of_given.size() ? std::move(of_given[now.given]) : contacts.within(tree, e);
         if (lines.size() > many) {
             if (lines.size() < now.lines - now.lines / 4)
-                now = {e, lines.size(), 0};
+                now = {e, lines.size(), 0, now.given};
             else if (++now.in_vain > most_in_vain)
                 continue;
             for (ElementId child : refine_element(tree, e)) open.push_back({child, now.lines, now.in_vain});
