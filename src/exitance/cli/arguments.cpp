@@ -214,7 +214,8 @@ void declare_accuracy(CLI::App& app, SolveOptions& o) {
     add_positive(app, "--min-area", o.min_area, "M2", "No element is cut smaller, m^2")->group("Accuracy");
     add_positive(app, "--residual", o.residual, "R", "Of the system, relative to its right side")->group("Accuracy");
     add_count(app, "--max-iterations", o.max_iterations, 1, "Sweeps, Krylov steps or shots")->group("Accuracy");
-    add_positive(app, "--epsilon", o.epsilon, "R", "Error of all links of a hierarchy together, relative RMS; has pairs judged")
+    add_positive(app, "--epsilon", o.epsilon, "R",
+                 "Error of all links of a hierarchy together, relative RMS; has pairs judged")
         ->group("Accuracy");
 }
 
