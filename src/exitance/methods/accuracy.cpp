@@ -26,14 +26,13 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
     knobs.residual = 0.05 * error;
     knobs.link_error = 0.45 * error;
-    // Two strips more where the light is delivered than its mean square needs: at an edge, too, it is to be right.
-    knobs.gather_mesh = {edge_for_elements(pieces, count(5)), strips + (error < 0.01 ? 2 : 0)};
-    const double rays = 0.55 * std::pow(0.5 / error, 4.0 / 3);
-    knobs.gather_rays = {
-        .average = rays, .least = static_cast<unsigned>(std::max(16.0, rays / (error < 0.01 ? 2 : 4))), .most = 16384};
+    // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each.
+    knobs.gather_curved = error < 0.03;
+    knobs.gather_mesh = {edge_for_elements(pieces, count(knobs.gather_curved ? 4 : 5)), strips};
+    const double rays = (knobs.gather_curved ? 0.3 : 0.55) * std::pow(0.5 / error, 4.0 / 3);
+    const double least = std::max(knobs.gather_curved ? 8.0 : 16.0, rays / 4);
+    knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
     knobs.gather_noise = 0.58 * error;
-    // In corners, too, where elements are small and count little.
-    if (error < 0.01) knobs.gather_relative_noise = 0.6 * error;
     knobs.gather_tolerance = 0.4 * error;
     if (error < 0.01) knobs.gather_relative_tolerance = 0.6 * error;
     knobs.gather_element_share = 0.05 * error;
@@ -45,6 +44,8 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     Knobs out = knobs;
     if (error < 0.01) {
         out.solve_mesh.longest_end = out.gather_mesh.longest_end = 4;
+        // Two strips more than the mean square needs: at an edge, too, light is to be right.
+        out.gather_mesh.grading_levels += 2;
         return out;
     }
     // Coarser than this, and the certificate, which reads the light that the method's elements hold, sees too little.
@@ -53,6 +54,7 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     out.solve_mesh = coarse.solve_mesh, out.solve_rays = coarse.solve_rays;
     out.gather_mesh = coarse.gather_mesh, out.gather_tolerance = coarse.gather_tolerance;
     out.gather_element_share = coarse.gather_element_share;
+    out.gather_curved = false;
     return out;
 }
 
@@ -78,18 +80,16 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
     }
     const double allowed = std::sqrt(std::max(0.25 * target * target, target * target - method * method));
     if (local > allowed) {
-        const double factor = std::clamp(allowed / local, least, most);
-        constexpr double small = 0.5;
-        if (parts.noise > small * allowed) {
-            out.knobs.gather_noise = factor * std::min(knobs.gather_noise, parts.noise);
-            out.knobs.gather_relative_noise *= factor;
-            out.knobs.gather_rays.average *= std::pow(factor, -4.0 / 3);
-        }
-        if (parts.interpolation > small * allowed) {
-            out.knobs.gather_tolerance *= factor;
-            out.knobs.gather_element_share *= factor;
-        }
-        out.work = std::max(out.work, std::pow(factor, -4.0 / 3));
+        // Each part is given its share by itself: one that is small already is not made smaller for the other's sake.
+        const auto share_of = [&](double part, double share) {
+            return part > share * allowed ? std::clamp(share * allowed / part, least, most) : 1.0;
+        };
+        const double noise = share_of(parts.noise, 0.8), interpolation = share_of(parts.interpolation, 0.55);
+        out.knobs.gather_noise *= noise < 1 ? noise * std::min(1.0, parts.noise / knobs.gather_noise) : 1;
+        out.knobs.gather_rays.average *= std::pow(noise, -4.0 / 3);
+        out.knobs.gather_tolerance *= interpolation;
+        out.knobs.gather_element_share *= interpolation;
+        out.work = std::max(out.work, std::pow(std::min(noise, interpolation), -4.0 / 3));
     }
     apply_user_knobs(out.knobs, options);
     return out;

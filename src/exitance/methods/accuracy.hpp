@@ -18,7 +18,7 @@ struct Knobs {
     RayBudget gather_rays;                 ///< Rays of a node.
     double gather_tolerance = 0;           ///< Error of interpolation, relative to the mean reflected radiosity.
     double gather_noise = 0;               ///< Error of the rays, likewise,
-    double gather_relative_noise = 0;      ///< and of the light on small elements; 0: any.
+    bool gather_curved = false;            ///< By polynomials of second degree.
     double gather_relative_tolerance = 0;  ///< Error of interpolation where elements are summed, of the light there.
     double gather_element_share = 0;       ///< What an element may miss there, of the light there.
 };

@@ -4,8 +4,30 @@
 
 namespace exitance {
 
+namespace {
+
+std::array<Spectrum, 4> quarter_sums(const ReflectedLight& b, GatherWorkspace& w) {
+    w.values.resize(w.fronts.size());
+    b.read(w.fronts, w.values);
+    std::array<Spectrum, 4> quarter{};
+    for (std::size_t k = 0; k < w.fronts.size(); ++k) quarter[w.share[k]] += w.values[k];
+    return quarter;
+}
+
+Gathered estimate(std::array<Spectrum, 4> quarter, unsigned rays) {
+    Gathered out;
+    for (Spectrum& q : quarter) {
+        q *= 4.0 / rays;
+        out.irradiance += 0.25 * q;
+    }
+    for (const Spectrum& q : quarter) out.variance += 0.5 / 12 * ((q - out.irradiance) * (q - out.irradiance));
+    return out;
+}
+
+}  // namespace
+
 void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                 GatherWorkspace& w) {
+                 GatherWorkspace& w, unsigned first) {
     const Frame frame(n);
     const ScrambledSobol points(key);
     w.origins.resize(1), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
@@ -16,7 +38,7 @@ void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId o
     const std::uint32_t columns = 1u << (bits - bits / 2), rows = 1u << (bits / 2), per_cell = rays / (columns * rows);
     w.filled.assign(columns * rows, 0);
     for (std::uint32_t k = 0; k < rays; ++k) {
-        const double a = points(k, 0), b = points(k, 1);
+        const double a = points(first + k, 0), b = points(first + k, 1);
         const std::uint32_t cell =
             static_cast<std::uint32_t>(a * columns) * rows + static_cast<std::uint32_t>(b * rows);
         const std::uint32_t place = cell * per_cell + w.filled[cell]++;
@@ -35,17 +57,26 @@ void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId o
 }
 
 Gathered read_gather(const ReflectedLight& b, GatherWorkspace& w) {
-    w.values.resize(w.fronts.size());
-    b.read(w.fronts, w.values);
-    std::array<Spectrum, 4> quarter{};
-    for (std::size_t k = 0; k < w.fronts.size(); ++k) quarter[w.share[k]] += w.values[k];
-    Gathered out;
-    for (Spectrum& q : quarter) {
-        q *= 4.0 / static_cast<double>(w.hits.size());
-        out.irradiance += 0.25 * q;
+    return estimate(quarter_sums(b, w), static_cast<unsigned>(w.hits.size()));
+}
+
+void GrowingGather::grow(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
+                         std::uint64_t key, const ReflectedLight& b, GatherWorkspace& w) {
+    while (rays_ < rays) {
+        const unsigned more = rays_ == 0 ? rays : rays_;
+        cast_gather(stage, x, n, own, more, key, w, rays_);
+        const std::array<Spectrum, 4> fresh = quarter_sums(b, w);
+        // What there was becomes the first two quarters, what is new the others.
+        if (rays_ == 0)
+            quarter_ = fresh;
+        else
+            quarter_ = {quarter_[0] + quarter_[1], quarter_[2] + quarter_[3], fresh[0] + fresh[1], fresh[2] + fresh[3]};
+        rays_ += more;
     }
-    for (const Spectrum& q : quarter) out.variance += 0.5 / 12 * ((q - out.irradiance) * (q - out.irradiance));
-    return out;
+}
+
+Gathered GrowingGather::gathered() const {
+    return estimate(quarter_, rays_);
 }
 
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,

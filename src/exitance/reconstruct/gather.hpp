@@ -67,9 +67,25 @@ Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, R
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
                           std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace);
 
-/// Its two steps, for those who read several functions with the same rays: cast them, then read b where they hit.
+/// Its two steps, for those who read several functions with the same rays: cast them, then read b where they hit. The
+/// rays are those of the points from `first` on, a multiple of their number.
 void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                 GatherWorkspace& workspace);
+                 GatherWorkspace& workspace, unsigned first = 0);
 Gathered read_gather(const ReflectedLight& b, GatherWorkspace& workspace);
+
+/// A gather that can go on where its variance turns out too large: n rays, then the next n, then the next 2 n, are the
+/// same gather as 4 n at once.
+class GrowingGather {
+  public:
+    /// Casts the rays that are missing to `rays` in all: a power of two, at least 4.
+    void grow(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
+              const ReflectedLight& b, GatherWorkspace& workspace);
+    unsigned rays() const { return rays_; }
+    Gathered gathered() const;
+
+  private:
+    unsigned rays_ = 0;
+    std::array<Spectrum, 4> quarter_{};  ///< Sums of b.
+};
 
 }  // namespace exitance

@@ -4,6 +4,7 @@
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/reconstruct/gather.hpp"
+#include "exitance/reconstruct/sampled_element.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -11,10 +12,10 @@ namespace exitance {
 
 /// How finely indirect light is gathered.
 struct LocalPassDemand {
-    RayBudget rays;             ///< Of one node, to begin with; more where they turn out too noisy.
-    double noise = 0;           ///< RMS error of rho E_ind that the rays may leave, W/m^2.
-    double relative_noise = 0;  ///< As much of the light there as the rays may leave on small elements; 0: any.
-    double tolerance = 0;       ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
+    RayBudget rays;        ///< Of one place, to begin with; more where they turn out too noisy.
+    double noise = 0;      ///< RMS error of rho E_ind that the rays may leave, W/m^2.
+    double tolerance = 0;  ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
+    bool curved = false;   ///< Fit polynomials of second degree, where they are larger than their noise.
     /// As much of the light there as interpolation may leave on an element that elements are summed for; 0: any.
     double relative_tolerance = 0;
     /// The same b, to be summed over in place of rays, where that suits the scene; and what one element may miss.
@@ -37,11 +38,13 @@ struct LocalPassReport {
 };
 
 /// Indirect irradiance everywhere, by one gather over the light that a method found: E_ind = H b at the places of a
-/// quadrature rule on the elements of an adaptive mesh (3 x 3 on parallelograms, 7 on triangles), and the polynomial
-/// nearest to them in the mean square. The gather smooths what is rough in b and doubles its order (the iterated or
-/// Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber the polynomial's freedoms: what they leave over,
-/// less the rays' noise, is the error of interpolation, and elements are cut where that has more than its share of the
-/// tolerance. O(elements x rays).
+/// quadrature rule on the elements of an adaptive mesh (`RuleOrder`: 3 x 3 on parallelograms, 4 x 4 for polynomials of
+/// second degree), and the polynomial nearest to them in the mean square. The gather smooths what is rough in b and
+/// doubles its order (the iterated or Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber the
+/// polynomial's freedoms: what they leave over, less the rays' noise, is the error of interpolation, and elements are
+/// cut where that has more than its share of the tolerance. Rays are doubled until their noise is what is allowed: a
+/// polynomial of many places needs few from each, which is why elements as large as light allows are what makes this
+/// cheap. What is delivered are straight elements for all that. O(elements x rays).
 ///
 /// Mesh and gathers stay: called again with a stricter demand, only what falls short of it is done again; with other
 /// light, everything is gathered anew, on the mesh found so far.
@@ -62,38 +65,30 @@ class LocalPass {
     }
 
   private:
-    /// What one element's gathers say.
-    struct Sampled {
-        std::array<Spectrum, 4> corners;
-        double light = 0;            ///< RMS of rho E over places and bands, W/m^2.
-        double noise_squared = 0;    ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
-        double misfit_squared = 0;   ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
-        double noise_in_misfit = 0;  ///< How much of that the rays' noise makes, on average.
-        unsigned rays = 0;           ///< Spent in all.
-        unsigned place_rays = 0;     ///< Of one place, in the end; 0: not gathered yet.
-    };
-
     /// Room for the gathers of one thread.
     struct Workspace {
         GatherWorkspace rays;
         ElementGather::Workspace elements;
+        std::vector<GrowingGather> growing;  ///< One a place.
+        std::vector<Gathered> gathered;
     };
 
-    Sampled sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, Workspace& workspace) const;
-    Sampled sample(ElementId e, const ReflectedLight& b, unsigned rays, const LocalPassDemand& demand,
-                   Workspace& workspace) const;
-    Gathered gather_at(ElementId e, std::size_t place, const Point& x, const ReflectedLight& b, unsigned rays,
-                       const LocalPassDemand& demand, Workspace& workspace) const;
+    SampledElement sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
+                          Workspace& workspace) const;
+    void gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b, unsigned rays,
+                   const LocalPassDemand& demand, Workspace& workspace) const;
+    void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
+                      Workspace& workspace) const;
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
-    double allowed_noise(ElementId e, double light, const LocalPassDemand& demand) const;
-    bool is_too_noisy(ElementId e, const LocalPassDemand& demand) const;
+    double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
+    bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);
-    ElementFunction finished(LocalPassReport& report) const;
+    ElementFunction finished(const LocalPassDemand& demand, LocalPassReport& report) const;
 
     const Stage& stage_;
     std::uint64_t seed_;
     ElementTree tree_;
-    Field<ElementId, Sampled> sampled_;
+    Field<ElementId, SampledElement> sampled_;
     double mean_area_ = 0;
 };
 
