@@ -34,6 +34,19 @@ inline Scene make(const std::vector<Face>& faces) {
     return std::move(*checked.scene);
 }
 
+/// An L of 3 x 3 m, 1 m wide, whose faces look inwards and all emit alike.
+inline std::vector<Face> l_room(double height, double exitance) {
+    const std::vector<Vec2> L = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+    std::vector<Face> faces = {{{}, exitance}, {{}, exitance}};
+    for (std::size_t i = 0; i < L.size(); ++i) {
+        const Vec2 a = L[i], b = L[(i + 1) % L.size()], top = L[L.size() - 1 - i];
+        faces[0].corners.push_back({a.x, a.y, 0});
+        faces[1].corners.push_back({top.x, top.y, height});
+        faces.push_back({{{a.x, a.y, 0}, {a.x, a.y, height}, {b.x, b.y, height}, {b.x, b.y, 0}}, exitance});
+    }
+    return faces;
+}
+
 inline Vec3 any_in_cube(RandomStream& random) {
     const double x = random.uniform() - 0.5, y = random.uniform() - 0.5;
     return {x, y, random.uniform() - 0.5};

@@ -155,6 +155,13 @@ TEST(SolveScene, ZeroBouncesIsDirectLightAlone) {
     EXPECT_GT(light.at(points)[0].irradiance[0], 0);
 }
 
+TEST(SolveScene, AFurnaceWithACornerKeepsItsEnergyOnManyElements) {
+    const Scene scene = test::make(test::l_room(2, 1));
+    const Solution solution = solved(scene, {.error = 0.05, .mesh_size = 0.09});
+    EXPECT_GT(solution.statistics.leaf_elements, 8000u);  // from where on weak emitters may be left to rays
+    EXPECT_LT(solution.statistics.energy.defect, 1e-4);   // what the iteration leaves
+}
+
 TEST(SolveScene, EachBounceAddsItsShareInAFurnace) {
     const double rho = 0.5;
     const Scene scene = box_scene(1, 1, 1, rho, 1, 1);

@@ -107,9 +107,15 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         const double allowed = options.tolerance * flux / stage.area;
         return allowed * allowed * mean_area;
     };
-    // Where elements are few, all of them are looked at well, and tell what share of the squared error one may have.
-    constexpr std::size_t few = 8000;
-    const bool many = active.size() > few && stage.direct.beams().empty();
+    // Where elements or emitters are few, or emitters large, all of them are looked at well. Then the elements tell what
+    // share of the squared error one may have.
+    constexpr std::size_t few = 8000, few_emitters = 8;
+    constexpr double small = 0.25;  // of all area
+    double emitting = 0;
+    for (const DirectLight::Emitter& emitter : stage.direct.emitters())
+        emitting += stage.scene.regions()[emitter.region].area;
+    const bool many = active.size() > few && stage.direct.emitters().size() > few_emitters &&
+                      emitting < small * stage.area && stage.direct.beams().empty();
     double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed)) : 0;
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());

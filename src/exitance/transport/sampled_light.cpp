@@ -30,7 +30,7 @@ Point uniform_on(std::span<const Point> corners, double s, double t) {
 
 }  // namespace
 
-void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own) {
+void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, double radius) {
     sources_.clear();
     double all = 0;
     for (std::uint32_t i = 0; i < direct_.emitters().size(); ++i) {
@@ -41,7 +41,9 @@ void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own) {
         for (PieceId piece : emitter.pieces) {
             const double F = point_to_polygon(x, n, direct_.occluders().corners(piece));
             if (F <= 0) continue;
-            sources_.push_back({{i, piece}, emitter.region, F * emitter.exitance, 0, {}});
+            const double both = radius + emitter.radius;
+            const double near = std::min(1.0, both * both / squared_norm(emitter.centre - x));
+            sources_.push_back({{i, piece}, emitter.region, F * emitter.exitance, 0, near, {}});
             all += mean(sources_.back().light);
         }
     }
@@ -74,14 +76,19 @@ double SampledLight::visible_part(const ElementTree& tree, ElementId e, std::siz
 const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, ElementId e, const Spectrum& weight,
                                                        double allowed) {
     const RegionId own = tree.region(e);
-    find_sources(tree.patch(e).at(tree.centre(e)), direct_.occluders().scene().regions()[own].plane.n, own);
+    const Point x = tree.patch(e).at(tree.centre(e));
+    double radius = 0;
+    for (const Point& corner : tree.outline(e)) radius = std::max(radius, norm(corner - x));
+    find_sources(x, direct_.occluders().scene().regions()[own].plane.n, own, radius);
     // What is in sight is found by rays of its own: a source must not be thought weak because its light was missed.
     enum : std::uint64_t { sight, value };
     for (std::size_t s = 0; s < sources_.size(); ++s)
         if (visible_part(tree, e, s, sight) > 0)
             sources_[s].in_sight = (1 / std::min(1.0, sources_[s].expected)) * sources_[s].light;
-    std::stable_sort(sources_.begin(), sources_.end(),
-                     [](const Source& a, const Source& b) { return mean(a.in_sight) < mean(b.in_sight); });
+    std::stable_sort(sources_.begin(), sources_.end(), [](const Source& a, const Source& b) {
+        return std::pair(mean(a.in_sight), a.near * mean(a.light)) <
+               std::pair(mean(b.in_sight), b.near * mean(b.light));
+    });
     // Light that comes and goes between nothing and U misses in the mean square U^2 / 4 at most; as a rule half of
     // that. Sources that no ray has found may still send theirs: then chance has it that rays of the second kind find
     // it.
@@ -90,14 +97,19 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     estimate_.weak = Spectrum();
     estimate_.misfit_squared = 0;
     estimate_.strong.clear();
-    Spectrum in_sight;
+    // The middle stands for the element, and all of a source for the part that is in sight, which errs by (radii /
+    // distance)^2 at most and always to the same side: by half of what is allowed at most, whether a ray was drawn or not.
+    constexpr double askew = 4;
+    Spectrum in_sight, astray;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
-        in_sight += sources_[s].in_sight;
-        const double misfit = misses * power(in_sight);
+        const Spectrum in_sight_with = in_sight + sources_[s].in_sight;
+        const Spectrum astray_with = astray + sources_[s].near * sources_[s].light;
+        const double misfit = std::max(misses * power(in_sight_with), askew * power(astray_with));
         if (misfit > allowed) {
             estimate_.strong.push_back(sources_[s].name);
             continue;
         }
+        in_sight = in_sight_with, astray = astray_with;
         estimate_.misfit_squared = misfit;
         estimate_.weak += visible_part(tree, e, s, value) * sources_[s].light;
     }

@@ -40,9 +40,10 @@ class SampledLight {
         RegionId region;
         Spectrum light;     ///< As if nothing stood in between.
         double expected;    ///< Rays.
+        double near;        ///< (radii / distance)^2: how much its light varies over the two, as part of it.
         Spectrum in_sight;  ///< All of it where some ray of its own got through, in the mean over elements.
     };
-    void find_sources(const Point& x, const Normal& n, RegionId own);
+    void find_sources(const Point& x, const Normal& n, RegionId own, double radius);
     /// The part of its light that a source sends, by an own set of rays for each purpose; 0 if no ray was drawn.
     double visible_part(const ElementTree& tree, ElementId e, std::size_t source, std::uint64_t purpose);
 

@@ -4,6 +4,7 @@
 
 #include "exitance/transport/direct_projection.hpp"
 #include "support/built_scene.hpp"
+#include "support/test_scenes.hpp"
 
 namespace exitance {
 namespace {
@@ -68,6 +69,19 @@ TEST(SampledLight, KeepsTheLightOfAProjectionOntoManyElements) {
     for (std::size_t i = 0; i < leaves.size(); i += 23) area += many.tree.area(leaves[i]);
     EXPECT_NEAR(found / exact, 1, 0.01);
     EXPECT_LT(std::sqrt(square / area), 0.2 * exact / area);  // the tolerance
+}
+
+TEST(SampledLight, LooksWellAtSourcesThatAreNear) {
+    // An L of which every wall glows. Of what its corner hides a ray from the middle of an element would tell too much
+    // or too little, and always so.
+    const Scene scene = test::make(test::l_room(2, 1));
+    const Stage stage(scene);
+    SampledLight sampled(stage.direct, stage.tracer, 1);
+    const ElementTree tree = stage.make_elements({0.25, 0});
+    double weak = 0;
+    for (ElementId e : tree.leaves())
+        weak += tree.area(e) / stage.area * mean(sampled(tree, e, Spectrum(0.5), 4e-4).weak);
+    EXPECT_LT(weak, 0.02);  // of 1; 0.07 if only their light counted
 }
 
 }  // namespace
