@@ -1,5 +1,6 @@
 #include "exitance/mesh/leaf_finder.hpp"
 
+#include <array>
 #include <bit>
 
 namespace exitance {
@@ -155,15 +156,23 @@ void LeafFinder::find(std::span<Query> queries) const {
             batch[i].leaf = start_[at[i]];
             if (!(batch[i].leaf & is_leaf)) __builtin_prefetch(&nodes_[batch[i].leaf]);
         }
-        for (bool more = true; more;) {
-            more = false;
-            for (Query& q : batch) {
-                if (q.leaf & is_leaf) continue;
+        // Those still on their way, closed up after every step, without a branch that could be guessed wrong.
+        std::array<std::uint32_t, together> open;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            open[count] = static_cast<std::uint32_t>(i);
+            count += (batch[i].leaf & is_leaf) == 0;
+        }
+        while (count > 0) {
+            std::size_t left = 0;
+            for (std::size_t k = 0; k < count; ++k) {
+                Query& q = batch[open[k]];
                 q.leaf = nodes_[q.leaf].part_of(q.uv);
-                if (q.leaf & is_leaf) continue;
-                __builtin_prefetch(&nodes_[q.leaf]);
-                more = true;
+                __builtin_prefetch(&nodes_[q.leaf & ~is_leaf]);
+                open[left] = open[k];
+                left += (q.leaf & is_leaf) == 0;
             }
+            count = left;
         }
         for (Query& q : batch) q.leaf &= ~is_leaf;
     }

@@ -30,7 +30,7 @@ void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId o
                  GatherWorkspace& w, unsigned first) {
     const Frame frame(n);
     const ScrambledSobol points(key);
-    w.origins.resize(1), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
+    w.origins.resize(1), w.square.resize(rays), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
     w.origins[0] = x;
     // The tracer is fastest with packets of like directions. A power of two of these points fills every cell of a
     // grid over the unit square alike, sixteen points a cell: so a packet is a cell.
@@ -43,9 +43,10 @@ void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId o
             static_cast<std::uint32_t>(a * columns) * rows + static_cast<std::uint32_t>(b * rows);
         const std::uint32_t place = cell * per_cell + w.filled[cell]++;
         EXI_ASSERT(w.filled[cell] <= per_cell);
-        w.directions[place] = cosine_direction(frame, a, b);
+        w.square[place] = {a, b};
         w.quarter[place] = static_cast<std::uint8_t>(4 * k / rays);
     }
+    cosine_directions(frame, w.square, w.directions);
     stage.tracer.nearest(w.origins, w.directions, own, w.hits);
     w.fronts.clear(), w.share.clear();
     for (std::uint32_t k = 0; k < rays; ++k) {

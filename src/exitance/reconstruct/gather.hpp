@@ -42,6 +42,7 @@ class PointwiseLight final : public ReflectedLight {
 /// Room for the rays of one gather; one a thread.
 struct GatherWorkspace {
     std::vector<Point> origins;  ///< One: where all rays begin.
+    std::vector<Vec2> square;    ///< Points of the unit square, and what directions they stand for.
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
     std::vector<std::uint8_t> quarter;  ///< Of the points' order that a ray comes from.
