@@ -383,7 +383,7 @@ namespace {
 
 /// Does what was asked for say how links are to be found or judged, or deliver what they hold?
 bool asks_for_judged_links(const SolveOptions& o) {
-    return o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing || !o.triage ||
+    return o.basis || o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing || !o.triage ||
            o.visibility != VisibilityKind::automatic || o.clusters || o.min_area;
 }
 

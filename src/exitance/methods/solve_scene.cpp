@@ -333,6 +333,8 @@ class Solver {
         s.link_memory_bytes = light_->link_memory_bytes;
         s.element_memory_bytes = light_->element_memory_bytes;
         if (has_links_) s.elements_by_level = count_by_level(light_->tree);
+        // Links that rays have found lead between constants, whatever basis the method has else.
+        if (has_links_ && light_->indirect_corners.empty()) s.basis = name_in(basis_names, BasisKind::haar);
         const double scale = light_->mean_reflected(stage_.area);
         s.standard_error = scale > 0 ? rms_standard_error(stage_, *light_) / scale : 0;
     }
