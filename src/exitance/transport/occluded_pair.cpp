@@ -10,8 +10,11 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t most_lines = 24, most_cells = 200;
-constexpr int most_searches = 6;       ///< Halvings of a receiver with more lines.
-constexpr int deepest = 20;            ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
+constexpr int most_searches = 6;           ///< Halvings of a receiver with more lines.
+constexpr int deepest = 20;                ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
+constexpr double dominating = 0.03;        ///< An entry above it makes its row's error.
+constexpr double dominating_share = 0.25;  ///< Of the tolerance, for such an entry.
+constexpr double near_share = 0.5;     ///< Of the difference of two rules that the better one may leave, at an edge.
 constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
 
 double cross_area(std::span<const Vec2> corners) {
@@ -33,6 +36,24 @@ double diameter(std::span<const Vec2> corners) {
         for (std::size_t j = 0; j < i; ++j)
             squared = std::max(squared, dot(corners[i] - corners[j], corners[i] - corners[j]));
     return std::sqrt(squared);
+}
+
+double squared_distance(const Point& x, const Point& a, const Point& b) {
+    const Vec3 e = b - a, d = x - a;
+    const double length = dot(e, e), t = length > 0 ? std::clamp(dot(d, e) / length, 0.0, 1.0) : 0;
+    return dot(d - t * e, d - t * e);
+}
+
+/// From a point to a convex polygon with normal n, metres.
+double distance(const Point& x, std::span<const Point> polygon, const Normal& n) {
+    double nearest = HUGE_VAL;
+    bool above = true;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point &a = polygon[i], &b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        above &= dot(cross(b - a, x - a), n) >= 0;
+        nearest = std::min(nearest, squared_distance(x, a, b));
+    }
+    return above ? std::abs(dot(n, x - polygon[0])) : std::sqrt(nearest);
 }
 
 }  // namespace
@@ -199,10 +220,16 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
     return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
 }
 
+/// A lower bound: boxes of slanting faces reach far beyond them, so that the source is asked itself.
 double OccludedExchange::distance_to_source(const Cell& cell) const {
-    Box box;
-    for (Vec2 p : cell.corners()) box.add(frame_.at(p));
-    return norm(max(max(source_box_.lo - box.hi, box.lo - source_box_.hi), Vec3{}));
+    const Vec2 middle = middle_of(cell.corners());
+    double radius = 0, height = HUGE_VAL;
+    for (Vec2 p : cell.corners()) {
+        radius = std::max(radius, dot(p - middle, p - middle));
+        height = std::min(height, pair_.source_plane.signed_distance(frame_.at(p)));
+    }
+    const double apart = distance(frame_.at(middle), pair_.source, pair_.source_plane.n) - std::sqrt(radius);
+    return std::max({apart, height, 0.0});
 }
 
 /// No point of a cell has a larger form factor than this.
@@ -238,6 +265,23 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed) {
     return sum;
 }
 
+/// Does a blocker's edge pass over the cell within its size? What is seen changes within the edge's height over the
+/// receiver then, perhaps between the points of a rule, which agree with each other and are wrong.
+bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
+    const Vec2 flat = middle_of(cell.corners());
+    const Point middle = frame_.at(flat);
+    double squared = 0;
+    for (Vec2 p : cell.corners()) squared = std::max(squared, dot(p - flat, p - flat));
+    const double slack = nearest_line * size_;
+    for (const ConvexBlocker* blocker : pair_.blockers)
+        for (const ConvexBlocker::Edge& e : blocker->edges) {
+            const Point &a = blocker->points[e.a], &b = blocker->points[e.b];
+            if (frame_.height(a) <= slack && frame_.height(b) <= slack) continue;
+            if (squared_distance(middle, a, b) < 1.5 * squared) return true;
+        }
+    return false;
+}
+
 /// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; the
 /// better one's is a small share of it, but no less than the source's distance lets expect. Two points a side need a
 /// second witness, as bends of opposite sign cancel in their difference from the middle: exp(a s) on [-1, 1] errs by
@@ -245,14 +289,15 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double allowed) {
 /// Shares are from cells of rooms with blocks: of a hundred cells accepted one errs by more than its allowance, none by
 /// ten times that.
 double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
-    const bool fine = relative_ < 1e-5;
+    const bool fine = relative_ < 1e-5 || dominates_;
     const double rho = convergence(cell), step = 1 / (rho * rho);
     const double far = 2 * cell.area * brightest(cell);
+    const bool near = dominates_ && is_under_an_edge(cell);
     Glance glance = cell.glance;
     double before = cell.two_points;
     if (fine) {
         before = apply(cell, 3, glance);
-    } else if (glance.black == 0) {
+    } else if (glance.black == 0 && !near) {
         Seen seen;
         const double middle = std::max(seen_from(middle_of(cell.corners()), seen), 1e-300);
         const double most = std::max(glance.highest / middle - 1, 1 - glance.lowest / middle), varies = 3 * most * most;
@@ -263,7 +308,7 @@ double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) 
     for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
         const double sum = apply(cell, points, glance);
         if (glance.black == glance.count) return 0;
-        const double share = fine || matters_ ? 0.1 : 0.03;
+        const double share = near ? near_share : fine || matters_ ? 0.1 : 0.03;
         if (share * std::abs(sum - before) + far * std::pow(step, points) <= allowed) return sum;
         before = sum;
         if (!fine) break;
@@ -280,8 +325,6 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     if (visible_.is_hidden_from(pair.receiver)) return 0;
 
     frame_ = PlaneFrame(pair.receiver[0], pair.receiver_plane.n);
-    source_box_ = {};
-    for (const Point& p : pair.source) source_box_.add(p);
     Cell whole;
     for (const Point& p : pair.receiver) whole.add(frame_.flat(p));
     size_ = diameter(whole.corners());
@@ -298,7 +341,8 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     if (all) return unoccluded = true, 0;
 
     matters_ = estimate > demand.large;
-    const double allowed = std::max(demand.relative * estimate, demand.absolute);
+    dominates_ = estimate > dominating * norm(area_vector(pair.receiver));
+    const double allowed = std::max((dominates_ ? dominating_share : 1) * demand.relative * estimate, demand.absolute);
     source_area_ = norm(area_vector(pair.source));
     const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
     double total = 0;

@@ -65,6 +65,7 @@ class OccludedExchange {
     void look(Cell& cell);
     double distance_to_source(const Cell& cell) const;
     double brightest(const Cell& cell) const;
+    bool is_under_an_edge(const Cell& cell) const;
     double convergence(const Cell& cell) const;
     double integrate(const Cell& cell, double allowed, int depth);
     double integrate_smooth(const Cell& cell, double allowed);
@@ -81,10 +82,9 @@ class OccludedExchange {
     CriticalLineFinder finder_;
     std::vector<CriticalLine> lines_;
     std::vector<Cell> cells_, parts_, next_;
-    Box source_box_;
     double size_ = 0, source_area_ = 0;
     double relative_ = 0;
-    bool matters_ = false;
+    bool matters_ = false, dominates_ = false;
     std::size_t enough_ = 0;  ///< Evaluations after which nothing is halved any more: a bound on the worst pairs.
 };
 

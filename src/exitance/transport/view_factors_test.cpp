@@ -101,6 +101,54 @@ TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
     EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // as both rows err
 }
 
+/// The room of the complex family, whose slanting walls lie in boxes that hold all of the room, with one of its chairs'
+/// seats on one leg. The seat's edge passes over the leg's sides at a fortieth of their height.
+Scene room_with_a_stool() {
+    const auto prism = [](const Outline& low, const Outline& high, std::vector<Outline>& faces) {
+        for (std::size_t k = 0; k < low.size(); ++k) {
+            const std::size_t next = (k + 1) % low.size();
+            faces.push_back({low[k], low[next], high[next], high[k]});
+        }
+    };
+    const auto lifted = [](Outline outline, double z) {
+        for (Point& p : outline) p.z = z;
+        return outline;
+    };
+    const auto turned = [](Outline outline) { return Outline(outline.rbegin(), outline.rend()); };
+    const Outline floor = {
+        {0, 5.87877538268, 0}, {-5.09116882454, -2.93938769134, 0}, {5.09116882454, -2.93938769134, 0}};
+    const Outline ceiling = {{0, 1.71464281995, 5.87877538268},
+                             {-1.48492424049, -0.857321409974, 5.87877538268},
+                             {1.48492424049, -0.857321409974, 5.87877538268}};
+    const Outline seat = {{3.63365689213, -2.44055704903, 0.45},
+                          {4.04330007655, -2.34786151807, 0.45},
+                          {3.9506045456, -1.93821833365, 0.45},
+                          {3.54096136118, -2.03091386461, 0.45}};
+    const Outline leg = {{3.91287268209, -1.99802056167, 0},
+                         {3.9518863187, -1.98919241587, 0},
+                         {3.9430581729, -1.95017877926, 0},
+                         {3.90404453628, -1.95900692506, 0}};
+    std::vector<Outline> faces = {floor, turned(ceiling), seat, turned(lifted(seat, 0.41))};
+    prism(leg, lifted(leg, 0.41), faces);  // faces 4 to 7
+    prism(lifted(seat, 0.41), seat, faces);
+    prism(turned(floor), turned(ceiling), faces);
+    return scene_of(faces);
+}
+
+TEST(ViewFactors, OfALegUnderAnOverhangingSeatSumToOneBetweenSlantingWalls) {
+    const ViewFactors table = factors_of(room_with_a_stool(), 1e-4);
+    ASSERT_EQ(table.size(), 15U);
+    // One sum was 1.005 once: boxes had it that the wall was near everywhere, no rule was believed, and the budget was
+    // spent before all of the leg was seen. 1e-4: the tolerance asked for; 2e-4 is that of two entries.
+    for (std::size_t leg = 4; leg < 8; ++leg) {
+        EXPECT_NEAR(table.row_sums[leg], 1, 1e-4) << leg;
+        const double largest = *std::max_element(table.row(leg).begin(), table.row(leg).end());
+        for (std::size_t j = 0; j < table.size(); ++j)
+            EXPECT_NEAR(table.row(leg)[j], table.areas[j] / table.areas[leg] * table.row(j)[leg], 2e-4 * largest)
+                << leg << ' ' << j;
+    }
+}
+
 TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
     std::vector<Outline> whole, cut;
     add_box(whole, {0, 0, 0}, {4, 3, 2.5}, true, 1);
