@@ -217,7 +217,8 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
         two.add(p), two.add(q), two.add(at(3)), two.add(at(0));
     }
     look(one), look(two);
-    return integrate(one, 0.5 * allowed, depth + 1) + integrate(two, 0.5 * allowed, depth + 1);
+    return integrate(one, distance_to_source(one), 0.5 * allowed, depth + 1) +
+           integrate(two, distance_to_source(two), 0.5 * allowed, depth + 1);
 }
 
 /// A lower bound: boxes of slanting faces reach far beyond them, so that the source is asked itself.
@@ -232,23 +233,22 @@ double OccludedExchange::distance_to_source(const Cell& cell) const {
     return std::max({apart, height, 0.0});
 }
 
-/// No point of a cell has a larger form factor than this.
-double OccludedExchange::brightest(const Cell& cell) const {
-    const double d = distance_to_source(cell);
+/// No point of a cell d from the source has a larger form factor than this.
+double OccludedExchange::brightest(double d) const {
     return source_area_ < pi * d * d ? source_area_ / (pi * d * d) : 1;
 }
 
 /// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points
 /// a side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
-double OccludedExchange::convergence(const Cell& cell) const {
-    const double g = distance_to_source(cell) / diameter(cell.corners());
+double OccludedExchange::convergence(const Cell& cell, double d) const {
+    const double g = d / diameter(cell.corners());
     return 1 + 2 * g + 2 * std::sqrt(g + g * g);
 }
 
 /// A cell that sees all of the source: as many Gauss points as its distance asks for.
-double OccludedExchange::integrate_smooth(const Cell& cell, double allowed) {
-    const double rho = convergence(cell);
-    const double whole = cell.area * brightest(cell);
+double OccludedExchange::integrate_smooth(const Cell& cell, double d, double allowed) {
+    const double rho = convergence(cell, d);
+    const double whole = cell.area * brightest(d);
     const double wanted = std::max(allowed, 1e-16 * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
@@ -288,10 +288,10 @@ bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
 /// a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones, every bend counts.
 /// Shares are from cells of rooms with blocks: of a hundred cells accepted one errs by more than its allowance, none by
 /// ten times that.
-double OccludedExchange::integrate(const Cell& cell, double allowed, int depth) {
+double OccludedExchange::integrate(const Cell& cell, double d, double allowed, int depth) {
     const bool fine = relative_ < 1e-5 || dominates_;
-    const double rho = convergence(cell), step = 1 / (rho * rho);
-    const double far = 2 * cell.area * brightest(cell);
+    const double rho = convergence(cell, d), step = 1 / (rho * rho);
+    const double far = 2 * cell.area * brightest(d);
     const bool near = dominates_ && is_under_an_edge(cell);
     Glance glance = cell.glance;
     double before = cell.two_points;
@@ -350,14 +350,14 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     for (const Cell& cell : cells_) {
         // What a cell leaves of its ration goes to the cells after it, so that none starves another.
         enough_ += (relative_ < 1e-5 ? 1000 : 50) * (1 + 1000 / cells_.size());
-        if (cell.complete && cell.glance.dark == cell.glance.count)
-            continue;
-        else if (cell.complete && cell.glance.lit == cell.glance.count)
-            total += integrate_smooth(cell, 0.3 * share);
-        else if (cell.area * brightest(cell) < 0.3 * share)
+        if (cell.complete && cell.glance.dark == cell.glance.count) continue;
+        const double d = distance_to_source(cell);
+        if (cell.complete && cell.glance.lit == cell.glance.count)
+            total += integrate_smooth(cell, d, 0.3 * share);
+        else if (cell.area * brightest(d) < 0.3 * share)
             total += cell.two_points;
         else
-            total += integrate(cell, share, 0);
+            total += integrate(cell, d, share, 0);
     }
     return total;
 }

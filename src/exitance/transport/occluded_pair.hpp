@@ -64,11 +64,11 @@ class OccludedExchange {
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
     void look(Cell& cell);
     double distance_to_source(const Cell& cell) const;
-    double brightest(const Cell& cell) const;
+    double brightest(double d) const;
     bool is_under_an_edge(const Cell& cell) const;
-    double convergence(const Cell& cell) const;
-    double integrate(const Cell& cell, double allowed, int depth);
-    double integrate_smooth(const Cell& cell, double allowed);
+    double convergence(const Cell& cell, double d) const;
+    double integrate(const Cell& cell, double d, double allowed, int depth);
+    double integrate_smooth(const Cell& cell, double d, double allowed);
     double integrate_halves(const Cell& cell, double allowed, int depth);
     void place_nodes(const Cell& cell, int points);
     double apply(const Cell& cell, int points, Glance& glance);

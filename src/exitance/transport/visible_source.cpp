@@ -39,7 +39,7 @@ bool VisibleSource::add_pyramid(const ConvexBlocker& blocker, const Point& x, bo
         planes_.push_back(left ? cross(b, a) : cross(a, b));
     }
     const auto last = static_cast<std::uint32_t>(planes_.size());
-    pyramids_.push_back({first, last});
+    pyramids_.push_back({first, last, first});
     return last - first >= 3;
 }
 
@@ -74,6 +74,22 @@ VisibleSource::Sides VisibleSource::measure(const Polygon& polygon, const Vec3& 
     return {highest > 0, lowest < 0};
 }
 
+/// Has a plane of a pyramid all of a fragment outside? The plane that had the last one is asked first.
+bool VisibleSource::misses(const Polygon& fragment, Pyramid& pyramid) const {
+    const auto is_outside = [&](std::uint32_t k) {
+        const Vec3& plane = planes_[k];
+        const double none = on_plane * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z));
+        for (std::size_t i = 0; i < fragment.count; ++i)
+            if (plane.x * fragment.xyz[i][0] + plane.y * fragment.xyz[i][1] + plane.z * fragment.xyz[i][2] > none)
+                return false;
+        return true;
+    };
+    if (is_outside(pyramid.likely)) return true;
+    for (std::uint32_t k = pyramid.first; k < pyramid.last; ++k)
+        if (k != pyramid.likely && is_outside(k)) return pyramid.likely = k, true;
+    return false;
+}
+
 /// Adds the planes of a pyramid that run through a fragment to cuts_; false when one has all of it outside.
 bool VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
     double heights[Polygon::most];
@@ -85,21 +101,29 @@ bool VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
     return true;
 }
 
-/// Adds the edges of what the pyramids from `next` on leave of a fragment.
-void VisibleSource::subtract(const Polygon& fragment, std::size_t next, bool is_whole) {
-    const std::size_t mark = pool_used_, first_cut = cuts_.size();
-    while (next < pyramids_.size() && !find_cuts(fragment, pyramids_[next])) cuts_.resize(first_cut), ++next;
-    if (next == pyramids_.size()) {
+/// Adds the edges of what the pyramids named in reaching_[first, last) leave of a fragment. Those that miss it miss all
+/// that is cut from it, too.
+void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole) {
+    const std::size_t mark = pool_used_, first_cut = cuts_.size(), first_left = reaching_.size();
+    for (std::size_t i = first; i < last; ++i) {
+        const std::uint32_t p = reaching_[i];
+        if (misses(fragment, pyramids_[p])) continue;
+        if (reaching_.size() == first_left) {
+            find_cuts(fragment, pyramids_[p]);
+            if (cuts_.size() == first_cut) {  // it lies within
+                anything_hidden_ = true;
+                hidden_by_one_ |= is_whole;
+                return;
+            }
+        }
+        reaching_.push_back(p);
+    }
+    const std::size_t left = reaching_.size() - first_left;
+    if (left == 0) {
         anything_lit_ = true;
         add_edges(fragment, 1);
         return;
     }
-    if (cuts_.size() == first_cut) {  // it lies within
-        anything_hidden_ = true;
-        hidden_by_one_ |= is_whole;
-        return;
-    }
-    const bool last = next + 1 == pyramids_.size();
     if (pool_used_ + 2 + cuts_.size() - first_cut > pool_.size()) pool_.resize(2 * pool_.size() + cuts_.size());
     std::size_t rest = pool_used_++, spare = pool_used_++;
     const std::size_t first_offcut = pool_used_;
@@ -110,7 +134,7 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t next, bool is_
         const Sides sides = measure(*polygon, planes_[cuts_[c]], heights);
         hidden = sides.any_in;
         if (!sides.any_in || !sides.any_out) continue;
-        if (!last) cut(*polygon, heights, -1, pool_[pool_used_++]);
+        if (left > 1) cut(*polygon, heights, -1, pool_[pool_used_++]);
         cut(*polygon, heights, 1, pool_[spare]);
         std::swap(rest, spare);
         polygon = &pool_[rest];
@@ -119,8 +143,8 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t next, bool is_
     cuts_.resize(first_cut);
     if (!hidden) {  // beside the pyramid after all
         pool_used_ = mark;
-        subtract(fragment, next + 1, is_whole);
-    } else if (last) {  // nothing more is cut: the hidden part may count negative
+        subtract(fragment, first_left + 1, first_left + left, is_whole);
+    } else if (left == 1) {  // nothing more is cut: the hidden part may count negative
         anything_hidden_ = anything_lit_ = true;
         add_edges(fragment, 1);
         add_edges(*polygon, -1);
@@ -129,10 +153,11 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t next, bool is_
         for (std::size_t i = first_offcut; i < end; ++i) {
             Polygon piece;
             piece.copy(pool_[i]);
-            subtract(piece, next + 1, false);
+            subtract(piece, first_left + 1, first_left + left, false);
         }
     }
     pool_used_ = mark;
+    reaching_.resize(first_left);
 }
 
 double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
@@ -151,18 +176,18 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
         const Vec3 r = whole.at(whole.count - 1);
         size_ = std::max(size_, std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
     }
-    const bool many = blockers_.size() > 3;
+    reaching_.clear();
     for (const ConvexBlocker* blocker : blockers_) {
         bool inside = false;
         const bool opens = add_pyramid(*blocker, x, inside);
         if (inside) return seen = Seen::nothing, 0;
         // What misses the source as a whole would miss every part of it, and most of many blockers do.
-        const bool touches = opens && (!many || find_cuts(whole, pyramids_.back()));
-        if (many && touches && cuts_.empty()) return seen = Seen::nothing, 0;
-        if (!touches) planes_.resize(pyramids_.back().first), pyramids_.pop_back();
-        cuts_.clear();
+        if (opens && !misses(whole, pyramids_.back()))
+            reaching_.push_back(static_cast<std::uint32_t>(pyramids_.size() - 1));
+        else
+            planes_.resize(pyramids_.back().first), pyramids_.pop_back();
     }
-    subtract(whole, 0, true);
+    subtract(whole, 0, reaching_.size(), true);
     seen = !anything_lit_     ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several)
            : anything_hidden_ ? Seen::part
                               : Seen::all;

@@ -50,6 +50,7 @@ class VisibleSource {
     };
     struct Pyramid {
         std::uint32_t first, last;  ///< Its planes.
+        std::uint32_t likely;       ///< The plane that had the last fragment outside.
     };
 
     bool add_pyramid(const ConvexBlocker& blocker, const Point& x, bool& inside);
@@ -57,8 +58,9 @@ class VisibleSource {
         bool any_in, any_out;
     };
     Sides measure(const Polygon& polygon, const Vec3& plane, double* heights) const;
+    bool misses(const Polygon& fragment, Pyramid& pyramid) const;
     bool find_cuts(const Polygon& fragment, const Pyramid& pyramid);
-    void subtract(const Polygon& fragment, std::size_t next, bool is_whole);
+    void subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole);
     void add_edges(const Polygon& polygon, double weight);
     static void cut(const Polygon& polygon, const double* heights, double sign, Polygon& out);
 
@@ -68,6 +70,7 @@ class VisibleSource {
     Normal n_;
     std::vector<Vec3> planes_;
     std::vector<Pyramid> pyramids_;
+    std::vector<std::uint32_t> reaching_;  ///< A stack: pyramids that may hide some of the fragments at hand.
     std::vector<std::uint8_t> in_front_;
     std::vector<Polygon> pool_;  ///< A stack of fragments.
     std::size_t pool_used_ = 0;
