@@ -2,27 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include "support/element_kinds.hpp"
+
 namespace exitance {
 namespace {
-
-/// A parallelogram, a triangle and a cell with five corners.
-ElementTree three_kinds() {
-    ElementTree tree;
-    const Patch square{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram};
-    const Patch triangle{{0, 0, 1}, {1, 0, 0}, {0, 3, 0}, Patch::Shape::triangle};
-    tree.add_root(RegionId(0), square);
-    tree.add_root(RegionId(1), triangle);
-    tree.add_root(RegionId(2), square);
-    tree.split_by_line(ElementId(2), {{1, 1}, 1.6});
-    return tree;
-}
 
 Spectrum spectrum(double value) {
     return Spectrum(value);
 }
 
 TEST(ElementFit, ReturnsThePolynomialsItIsMadeFor) {
-    const ElementTree tree = three_kinds();
+    const ElementTree tree = test::elements_of_every_kind();
     for (ElementId e : tree.leaves()) {
         const bool bilinear = !tree.is_cell(e) && !tree.patch(e).is_triangle();
         const auto f = [&](Vec2 p) { return 1 + 2 * p.x - 3 * p.y + (bilinear ? 4 * p.x * p.y : 0); };
@@ -37,7 +27,7 @@ TEST(ElementFit, ReturnsThePolynomialsItIsMadeFor) {
 }
 
 TEST(ElementFit, WeightsOfARuleSumToOneAndItsPlacesLieInside) {
-    const ElementTree tree = three_kinds();
+    const ElementTree tree = test::elements_of_every_kind();
     for (ElementId e : tree.leaves())
         for (RuleOrder order : {RuleOrder::nodes, RuleOrder::fine}) {
             double sum = 0;
@@ -52,7 +42,7 @@ TEST(ElementFit, WeightsOfARuleSumToOneAndItsPlacesLieInside) {
 }
 
 TEST(ElementFit, FineRulesIntegrateTheirDegree) {
-    const ElementTree tree = three_kinds();
+    const ElementTree tree = test::elements_of_every_kind();
     // Squares: u^4 v^4 has the mean 1/25; triangles: u^3 v^2 has 2 x 3! 2! / 7! = 1/210.
     double square = 0, triangle = 0;
     for (const WeightedPlace& p : element_rule(tree, ElementId(0), RuleOrder::fine))

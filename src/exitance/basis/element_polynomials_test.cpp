@@ -2,18 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "support/element_kinds.hpp"
+
 namespace exitance {
 namespace {
 
-/// A parallelogram, a triangle, a cell with five corners and a sliver of a cell.
+/// And a sliver of a cell.
 ElementTree four_kinds() {
-    ElementTree tree;
-    const Patch square{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram};
-    const Patch triangle{{0, 0, 1}, {1, 0, 0}, {0, 3, 0}, Patch::Shape::triangle};
-    tree.add_root(RegionId(0), square);
-    tree.add_root(RegionId(1), triangle);
-    tree.add_root(RegionId(2), square);
-    tree.split_by_line(ElementId(2), {{1, 1}, 1.6});
+    ElementTree tree = test::elements_of_every_kind();
     tree.split_by_line(ElementId(3), {{1, 0}, 1e-4});
     return tree;
 }
