@@ -134,7 +134,7 @@ TEST_F(ObjFiles, FilesThatAreMissingOrUnknownAreRefused) {
 }
 
 TEST_F(ObjFiles, TextInUtf16IsRefusedByName) {
-    const std::string wide("\xff\xfev\0 \0\x31\0", 10);
+    const std::string wide("\xff\xfev\0 \0\x31\0", 8);
     EXPECT_EQ(first_error(wide), "s.obj: is text in UTF-16");
 }
 
