@@ -229,4 +229,34 @@ std::size_t RayTracer::occluded(std::span<const SurfacePoint> from, std::span<co
     });
 }
 
+RayEnds RayTracer::ray_ends(std::span<const Point> points, RegionId region) const {
+    EXI_CHECK(points.size() == RayEnds::size);
+    const Vec3 lifted = content_->offset(region);
+    RayEnds ends;
+    for (std::size_t k = 0; k < RayEnds::size; ++k) {
+        const Float3 p = content_->local(points[k] + lifted);
+        ends.x[k] = p.x, ends.y[k] = p.y, ends.z[k] = p.z;
+    }
+    return ends;
+}
+
+std::uint32_t RayTracer::occluded(const RayEnds& from, const RayEnds& to) const {
+    static_assert(RayEnds::size == width);
+    RTCIntersectContext context = make_context();
+    alignas(64) RTCRay16 packet;
+    alignas(64) std::array<int, width> valid;
+    for (std::size_t k = 0; k < width; ++k) {
+        packet.org_x[k] = from.x[k], packet.org_y[k] = from.y[k], packet.org_z[k] = from.z[k];
+        packet.dir_x[k] = to.x[k] - from.x[k], packet.dir_y[k] = to.y[k] - from.y[k];
+        packet.dir_z[k] = to.z[k] - from.z[k];
+        packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
+        packet.mask[k] = 0xffffffffu, packet.id[k] = 0, packet.flags[k] = 0;
+        valid[k] = -1;
+    }
+    rtcOccluded16(valid.data(), content_->rtc, &context, &packet);
+    std::uint32_t blocked = 0;
+    for (std::size_t k = 0; k < width; ++k) blocked |= static_cast<std::uint32_t>(packet.tfar[k] < 0) << k;
+    return blocked;
+}
+
 }  // namespace exitance

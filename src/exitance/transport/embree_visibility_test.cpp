@@ -89,6 +89,26 @@ TEST(RayTracer, FindsSegmentsBlockedOnlyByWhatStandsBetweenTheirEnds) {
         EXPECT_TRUE(std::abs(from[i].x + to[i].x) < 1e-5 || blocked[i] == (from[i].x + to[i].x > 0));
 }
 
+TEST(RayTracer, SaysOfEndsMadeInAdvanceWhatItSaysOfPoints) {
+    const std::vector<Point> floor = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    const std::vector<Point> ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
+    const std::vector<Point> plate = {{0, -1, 1}, {1, -1, 1}, {1, 1, 1}, {0, 1, 1}};
+    const Scene scene = test::make({{floor}, {ceiling}, {plate}});
+    const RayTracer tracer(scene);
+    const RegionId receiver = scene.surfaces()[SurfaceId(0)].region, source = scene.surfaces()[SurfaceId(1)].region;
+    RandomStream random(5, Stream::visibility);
+    for (int packet = 0; packet < 50; ++packet) {
+        std::array<Point, RayEnds::size> from, to;
+        std::array<bool, RayEnds::size> blocked;
+        for (Point& p : from) p = {2 * random.uniform() - 1, 2 * random.uniform() - 1, 0};
+        for (Point& p : to) p = {2 * random.uniform() - 1, 2 * random.uniform() - 1, 2};
+        tracer.occluded(from, to, receiver, source, blocked);
+        const std::uint32_t bits = tracer.occluded(tracer.ray_ends(from, receiver), tracer.ray_ends(to, source));
+        for (std::size_t k = 0; k < RayEnds::size; ++k)  // within 1e-5 of the plate's edge rounding decides
+            EXPECT_TRUE(std::abs(from[k].x + to[k].x) < 1e-5 || blocked[k] == (bits >> k & 1)) << k;
+    }
+}
+
 TEST(RayTracer, GivesTheSameHitsOnAnyNumberOfThreads) {
     const Scene scene = test::make(test::closed_box({0, 0, 0}, {1, 1, 1}));
     std::vector<Vec3> to_the_edges;  // where two faces are equally near

@@ -26,8 +26,9 @@ EXITANCE_INLINE bool any(const Mask& m) {
     return bits(m) != 0;
 }
 
-/// Lambert's sum over the four edges of quads wholly above the horizon.
-EXITANCE_INLINE Real contour(const Normal& n, const Vec (&r)[4]) {
+/// Lambert's sum over the four edges of quads wholly above the horizon. The normal is one, or one a lane.
+template <class Direction>
+EXITANCE_INLINE Real contour(const Direction& n, const Vec (&r)[4]) {
     Real sum{};
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
@@ -72,8 +73,8 @@ const SmallRules small_rules;
 /// parts P, E agree and their odd parts p, o differ in sign, so that a pair of points is
 ///
 ///     (P + p) / (E + o)^2 + (P - p) / (E - o)^2 = 2 (P (E^2 + o^2) - 2 p E o) / (E^2 - o^2)^2
-template <std::size_t count>
-EXITANCE_INLINE Real cubature(const Normal& n, const Vec (&r)[4], const Real& unit, const NodePair (&nodes)[count]) {
+template <class Direction, std::size_t count>
+EXITANCE_INLINE Real cubature(const Direction& n, const Vec (&r)[4], const Real& unit, const NodePair (&nodes)[count]) {
     const Vec p = r[0] + r[2], q = r[1] + r[3];
     const Vec m = 0.25 * (p + q), c = 0.25 * (p - q);
     const Vec a = 0.25 * ((r[1] - r[0]) + (r[2] - r[3])), b = 0.25 * ((r[3] - r[0]) + (r[2] - r[1]));
@@ -102,20 +103,18 @@ EXITANCE_INLINE Real cubature(const Normal& n, const Vec (&r)[4], const Real& un
     return sum * 4 * unit * unit * (1 / pi);
 }
 
-/// Form factors of eight quads, `column` their coordinates in the order of QuadBatch::columns. Returns a bit for each
-/// that the horizon cuts, whose form factor is none.
-EXITANCE_INLINE int group(const Point& x, const Normal& n, const double* const (&column)[16], double* out) {
-    const Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
-    Vec r[4];
+/// Form factors of eight quads from x, r their corners and `middle` their middles relative to it. Returns a bit for
+/// each that the horizon cuts, whose form factor is none.
+template <class Direction>
+EXITANCE_INLINE int form_factors(const Direction& n, const Vec (&r)[4], const Vec& middle, const Real& radius,
+                                 double* out) {
     Real lowest = Real{} + HUGE_VAL, highest = -lowest;
 #pragma GCC unroll 4
-    for (std::size_t i = 0; i < 4; ++i) {
-        r[i] = Vec{load<Real>(column[3 * i]), load<Real>(column[3 * i + 1]), load<Real>(column[3 * i + 2])} - origin;
-        const Real height = dot(n, r[i]);
+    for (const Vec& corner : r) {
+        const Real height = dot(n, corner);
         lowest = min(lowest, height), highest = max(highest, height);
     }
-    const Vec middle = Vec{load<Real>(column[12]), load<Real>(column[13]), load<Real>(column[14])} - origin;
-    const Real radius = load<Real>(column[15]), squared = 4 * radius * radius, distance = dot(middle, middle);
+    const Real squared = 4 * radius * radius, distance = dot(middle, middle);
     Real F;
     if (!any(squared > 3.6e-5 * distance))
         F = cubature(n, r, 1 / distance, small_rules.seven);
@@ -128,9 +127,37 @@ EXITANCE_INLINE int group(const Point& x, const Normal& n, const double* const (
     return bits((lowest < 0) & (highest > 0));
 }
 
+/// Of eight quads and one point, `column` the quads' coordinates in the order of QuadBatch::columns.
+EXITANCE_INLINE int group(const Point& x, const Normal& n, const double* const (&column)[16], double* out) {
+    const Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
+    Vec r[4];
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 4; ++i)
+        r[i] = Vec{load<Real>(column[3 * i]), load<Real>(column[3 * i + 1]), load<Real>(column[3 * i + 2])} - origin;
+    const Vec middle = Vec{load<Real>(column[12]), load<Real>(column[13]), load<Real>(column[14])} - origin;
+    return form_factors(n, r, middle, load<Real>(column[15]), out);
+}
+
+/// Of one quad and eight points, `column` the points' coordinates and then their normals'.
+EXITANCE_INLINE int points_group(const std::array<Point, 4>& quad, const Point& centre, double radius,
+                                 const double* const (&column)[6], double* out) {
+    const Vec x = {load<Real>(column[0]), load<Real>(column[1]), load<Real>(column[2])};
+    const Vec n = {load<Real>(column[3]), load<Real>(column[4]), load<Real>(column[5])};
+    const auto from_x = [&](const Point& p) __attribute__((always_inline)) {
+        return Vec{p.x - x.x, p.y - x.y, p.z - x.z};
+    };
+    const Vec r[4] = {from_x(quad[0]), from_x(quad[1]), from_x(quad[2]), from_x(quad[3])};
+    return form_factors(n, r, from_x(centre), Real{} + radius, out);
+}
+
 using Group = int(const Point&, const Normal&, const double* const (&)[16], double*);
 int group_of_any_processor(const Point& x, const Normal& n, const double* const (&column)[16], double* out) {
     return group(x, n, column, out);
+}
+using PointsGroup = int(const std::array<Point, 4>&, const Point&, double, const double* const (&)[6], double*);
+int points_group_of_any_processor(const std::array<Point, 4>& quad, const Point& centre, double radius,
+                                  const double* const (&column)[6], double* out) {
+    return points_group(quad, centre, radius, column, out);
 }
 #ifdef __x86_64__
 /// The same operations in the same order, hence the same bits, in half as many instructions.
@@ -138,13 +165,20 @@ int group_of_any_processor(const Point& x, const Normal& n, const double* const 
     const Point& x, const Normal& n, const double* const (&column)[16], double* out) {
     return group(x, n, column, out);
 }
+[[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]] int points_group_of_avx512(
+    const std::array<Point, 4>& quad, const Point& centre, double radius, const double* const (&column)[6],
+    double* out) {
+    return points_group(quad, centre, radius, column, out);
+}
 bool has_avx512() {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
 }
 Group* const fastest = has_avx512() ? group_of_avx512 : group_of_any_processor;
+PointsGroup* const fastest_points = has_avx512() ? points_group_of_avx512 : points_group_of_any_processor;
 #else
 Group* const fastest = group_of_any_processor;
+PointsGroup* const fastest_points = points_group_of_any_processor;
 #endif
 
 }  // namespace
@@ -237,6 +271,34 @@ void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std
         if (cut == 0) continue;
         for (std::size_t i = 0; i < lanes; ++i)
             if (cut >> i & 1) out[k + i] = point_to_polygon(x, n, quads.corners(k + i));
+    }
+}
+
+void ReceiverBatch::add(const Point& x, const Normal& n) {
+    const double value[6] = {x.x, x.y, x.z, n.x, n.y, n.z};
+    for (std::size_t i = 0; i < 6; ++i) {
+        if (count_ % lanes == 0) column_[i].resize(count_ + lanes);
+        std::fill_n(column_[i].begin() + static_cast<std::ptrdiff_t>(count_), lanes - count_ % lanes, value[i]);
+    }
+    ++count_;
+}
+
+void points_to_quad(const ReceiverBatch& receivers, const std::array<Point, 4>& quad, std::span<double> out,
+                    Processor processor) {
+    EXI_CHECK(out.size() == receivers.size());
+    const Point middle = 0.25 * ((quad[0] + quad[1]) + (quad[2] + quad[3]));
+    double squared_radius = 0;
+    for (const Point& corner : quad) squared_radius = std::max(squared_radius, squared_norm(corner - middle));
+    PointsGroup& group_of = processor == Processor::any ? points_group_of_any_processor : *fastest_points;
+    for (std::size_t first = 0; first < out.size(); first += lanes) {
+        const double* column[6];
+        for (std::size_t i = 0; i < 6; ++i) column[i] = &receivers.column_[i][first];
+        std::array<double, lanes> F;
+        const int cut = group_of(quad, middle, std::sqrt(squared_radius), column, F.data());
+        for (std::size_t i = 0; i < lanes && first + i < out.size(); ++i)
+            out[first + i] = cut >> i & 1 ? point_to_polygon({column[0][i], column[1][i], column[2][i]},
+                                                             {column[3][i], column[4][i], column[5][i]}, quad)
+                                          : F[i];
     }
 }
 

@@ -46,6 +46,23 @@ class QuadBatch {
 void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out,
                     Processor processor = Processor::fastest);
 
+/// Points with a normal each, one array a coordinate; groups of eight are filled with copies of the last one.
+class ReceiverBatch {
+  public:
+    void clear() { count_ = 0; }
+    void add(const Point& x, const Normal& n);
+    std::size_t size() const { return count_; }
+
+  private:
+    friend void points_to_quad(const ReceiverBatch&, const std::array<Point, 4>&, std::span<double>, Processor);
+    std::size_t count_ = 0;
+    std::array<std::vector<double>, 6> column_;  ///< x, y, z of the points, then of their normals.
+};
+
+/// The other way about: out[k] is the form factor from receiver k to one quad, with the same rules and accuracy.
+void points_to_quad(const ReceiverBatch& receivers, const std::array<Point, 4>& quad, std::span<double> out,
+                    Processor processor = Processor::fastest);
+
 /// Terms of Lambert's contour sum, gathered from any number of edges of any number of polygons.
 class EdgeTerms {
   public:

@@ -51,6 +51,29 @@ TEST(PointToQuads, HaveTheSameBitsWhateverTheProcessorOffers) {
     }
 }
 
+TEST(PointsToQuad, GiveEachReceiverWhatItSeesAloneOnAnyProcessor) {
+    RandomStream random(3, Stream::mesh);
+    for (double distance : {0.7, 5.0, 30.0, 300.0})
+        for (std::size_t size : {1, 7, 8, 43}) {
+            const std::array<Point, 4> quad = random_quad(random, distance);
+            ReceiverBatch receivers;
+            std::vector<Point> x;
+            std::vector<Normal> n;
+            for (std::size_t k = 0; k < size; ++k) {
+                x.push_back({0.2 * random.uniform(), 0.2 * random.uniform(), 0.2 * random.uniform()});
+                n.push_back(normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5}));
+                receivers.add(x[k], n[k]);
+            }
+            std::vector<double> F(size), plain(size);
+            points_to_quad(receivers, quad, F);
+            points_to_quad(receivers, quad, plain, Processor::any);
+            EXPECT_EQ(F, plain);
+            const double solid = 1 / (distance * distance);  // as for one point and many quads
+            for (std::size_t k = 0; k < size; ++k)
+                EXPECT_NEAR(F[k], point_to_polygon(x[k], n[k], quad), 2e-12 * std::min(1.0, solid)) << distance;
+        }
+}
+
 TEST(PointToQuads, WallsAndCeilingOfAClosedRoomSumToOne) {
     QuadBatch room;
     room.add({{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}});

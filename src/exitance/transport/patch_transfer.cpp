@@ -1,5 +1,7 @@
 #include "exitance/transport/patch_transfer.hpp"
 
+#include <bit>
+
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
 #include "exitance/transport/form_factor.hpp"
@@ -19,6 +21,21 @@ constexpr std::array<unsigned, 16> partner_cell = [] {
         for (unsigned b = 0; b < 4; ++b) cell[4 * a + b] = 4 * (a ^ b) + (a ^ twice[b]);
     return cell;
 }();
+
+/// Place k goes to k ^ turn: as the array is linear, that turns the digits of the cells that rays lead to.
+RayEnds turned(const RayEnds& ends, unsigned turn) {
+    RayEnds out;
+    const unsigned within = turn & 3u;
+    for (unsigned block = 0; block < RayEnds::size; block += 4) {
+        const unsigned from = block ^ (turn & 12u);
+        for (unsigned k = 0; k < 4; ++k) {
+            out.x[block + k] = ends.x[from + (k ^ within)];
+            out.y[block + k] = ends.y[from + (k ^ within)];
+            out.z[block + k] = ends.z[from + (k ^ within)];
+        }
+    }
+    return out;
+}
 
 }  // namespace
 
@@ -54,62 +71,86 @@ std::vector<Spectrum> PatchLevel::pull(std::span<const Spectrum> leaf_values) co
 }
 
 void PatchTransfer::update_places() {
-    const std::size_t first = places_.size() / samples_;
-    places_.resize(tree_.size() * samples_);
+    const std::size_t first = centres_.size(), groups = samples_ / RayEnds::size;
     centres_.resize(tree_.size());
+    receiving_.resize(tree_.size() * groups);
+    sending_.resize(tree_.size() * groups);
     parallel_for(tree_.size() - first, 256, [&](std::size_t i) {
         const ElementId e(first + i);
         centres_[e.value] = tree_.patch(e).at(tree_.centre(e));
         RandomStream random(seed_, Stream::visibility, e.value);
-        for (unsigned k = 0; k < samples_; ++k) {
-            const double s = (k % 16 / 4 + random.uniform()) / 4, t = (k % 4 + random.uniform()) / 4;
-            places_[e.value * samples_ + k] = tree_.patch(e).at(tree_.uniform(e, s, t));
+        for (std::size_t g = 0; g < groups; ++g) {
+            std::array<Point, RayEnds::size> places, partners;
+            for (unsigned k = 0; k < RayEnds::size; ++k) {
+                const double s = (k / 4 + random.uniform()) / 4, t = (k % 4 + random.uniform()) / 4;
+                places[k] = tree_.patch(e).at(tree_.uniform(e, s, t));
+            }
+            for (unsigned k = 0; k < RayEnds::size; ++k) partners[k] = places[partner_cell[k]];
+            receiving_[e.value * groups + g] = stage_.tracer.ray_ends(places, tree_.region(e));
+            sending_[e.value * groups + g] = stage_.tracer.ray_ends(partners, tree_.region(e));
         }
     });
 }
 
-double PatchTransfer::visible_share(ElementId receiver, ElementId source, Workspace& w) const {
-    const std::span<const Point> to = std::span(places_).subspan(receiver.value * samples_, samples_);
-    const std::span<const Point> from = std::span(places_).subspan(source.value * samples_, samples_);
+std::pair<RayEnds, RayEnds> PatchTransfer::rays(ElementId receiver, ElementId source, std::size_t group) const {
+    const std::size_t groups = samples_ / RayEnds::size;
     const std::uint64_t turn = hash(seed_, receiver.value, source.value);
-    w.from.resize(samples_);
-    for (unsigned k = 0; k < samples_; ++k) {
-        const auto digits = static_cast<unsigned>(turn >> (k / 16 * 4));
-        w.from[k] = from[k / 16 * 16 + (partner_cell[k % 16] ^ (digits & 15u))];
+    const auto digits = static_cast<unsigned>(turn >> (4 * group % 64)) & 15u;
+    return {receiving_[receiver.value * groups + group], turned(sending_[source.value * groups + group], digits)};
+}
+
+double PatchTransfer::visible_share(ElementId receiver, ElementId source, Workspace& w) const {
+    unsigned blocked = 0;
+    for (std::size_t group = 0; group < samples_ / RayEnds::size; ++group) {
+        const auto [from, to] = rays(receiver, source, group);
+        blocked += static_cast<unsigned>(std::popcount(stage_.tracer.occluded(from, to)));
     }
     w.rays += samples_;
-    stage_.tracer.occluded(to, w.from, tree_.region(receiver), tree_.region(source),
-                           std::span(w.blocked).first(samples_));
-    const auto blocked = std::count(w.blocked.begin(), w.blocked.begin() + samples_, true);
     return 1 - static_cast<double>(blocked) / samples_;
 }
 
-double PatchTransfer::form_factor(ElementId receiver, ElementId source, std::span<const Point> outline,
-                                  Workspace& w) const {
-    const RegionId own = tree_.region(receiver), other = tree_.region(source);
-    const Point& x = centres_[receiver.value];
-    if (own == other || stage_.scene.regions()[other].plane.signed_distance(x) <= 0) return 0;
-    ++w.form_factors;
-    const double F = point_to_polygon(x, stage_.scene.regions()[own].plane.n, outline);
-    return F > 0 ? F * visible_share(receiver, source, w) : 0;
+/// Is the receiver's middle in front of the source, and none of its own region?
+bool PatchTransfer::faces(ElementId receiver, ElementId source) const {
+    const RegionId other = tree_.region(source);
+    return tree_.region(receiver) != other &&
+           stage_.scene.regions()[other].plane.signed_distance(centres_[receiver.value]) > 0;
+}
+
+double PatchTransfer::form_factor_in_the_open(ElementId receiver, ElementId source) const {
+    if (!faces(receiver, source)) return 0;
+    const Normal& n = stage_.scene.regions()[tree_.region(receiver)].plane.n;
+    return point_to_polygon(centres_[receiver.value], n, tree_.outline(source));
 }
 
 double PatchTransfer::form_factor(ElementId receiver, ElementId source, Workspace& w) const {
-    w.outline = tree_.outline(source);
-    return form_factor(receiver, source, w.outline, w);
+    const double F = form_factor_in_the_open(receiver, source);
+    w.form_factors += F > 0;
+    return F > 0 ? F * visible_share(receiver, source, w) : 0;
 }
 
 void PatchTransfer::column(std::span<const ElementId> receivers, ElementId source, std::span<float> out) const {
     const std::vector<Point> outline = tree_.outline(source);
-    parallel_ranges(receivers.size(), 64,
-                    [&](std::size_t begin, std::size_t end) {
-                        Workspace workspace;
-                        for (std::size_t i = begin; i < end; ++i)
-                            out[i] = static_cast<float>(form_factor(receivers[i], source, outline, workspace));
-                        count(workspace);
-                        note_source(tree_.region(source).value);
-                    },
-                    {"column", [&](std::size_t i) { return tree_.region(receivers[i]).value; }});
+    const std::array<Point, 4> quad = {outline[0], outline[1], outline[2], outline.back()};
+    parallel_ranges(
+        receivers.size(), 64,
+        [&](std::size_t begin, std::size_t end) {
+            Workspace w;
+            for (std::size_t i = begin; i < end; ++i) {
+                out[i] = 0;
+                if (!faces(receivers[i], source)) continue;
+                w.facing.push_back(i);
+                w.batch.add(centres_[receivers[i].value], stage_.scene.regions()[tree_.region(receivers[i])].plane.n);
+            }
+            w.F.resize(w.facing.size());
+            points_to_quad(w.batch, quad, w.F);
+            w.form_factors += w.facing.size();
+            for (std::size_t k = 0; k < w.facing.size(); ++k)
+                if (w.F[k] > 0)
+                    out[w.facing[k]] = static_cast<float>(w.F[k] * visible_share(receivers[w.facing[k]], source, w));
+            count(w);
+            note_source(tree_.region(source).value);
+        },
+        {"column", [&](std::size_t i) { return tree_.region(receivers[i]).value; }});
 }
 
 DenseTransport::DenseTransport(const PatchTransfer& transfer, const LeafNumbering& numbering, const PatchLevel& level,

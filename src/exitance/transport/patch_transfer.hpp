@@ -4,9 +4,11 @@
 #include <array>
 #include <atomic>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "exitance/core/progress.hpp"
+#include "exitance/transport/form_factor_batch.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/transport/transport_operator.hpp"
 
@@ -45,8 +47,9 @@ class PatchTransfer {
     static constexpr unsigned most_samples = 256;  ///< Rays a pair; more are not asked for.
 
     struct Workspace {
-        std::vector<Point> from, outline;
-        std::array<bool, most_samples> blocked;
+        ReceiverBatch batch;
+        std::vector<std::size_t> facing;
+        std::vector<double> F;
         std::size_t rays = 0, form_factors = 0;
     };
 
@@ -55,6 +58,13 @@ class PatchTransfer {
 
     /// F_ij for every receiver in turn and one source. Counts go to `rays` and `form_factors`.
     void column(std::span<const ElementId> receivers, ElementId source, std::span<float> out) const;
+
+    /// The share of `samples` rays between the two that meet nothing.
+    double visible_share(ElementId receiver, ElementId source, Workspace& workspace) const;
+    /// The ends of the rays of one group of sixteen.
+    std::pair<RayEnds, RayEnds> rays(ElementId receiver, ElementId source, std::size_t group) const;
+    /// F_ij as if nothing stood in between.
+    double form_factor_in_the_open(ElementId receiver, ElementId source) const;
 
     /// Adds what a workspace has counted to the totals.
     void count(const Workspace& workspace) const {
@@ -65,15 +75,15 @@ class PatchTransfer {
     std::size_t form_factors() const { return form_factors_; }
 
   private:
-    double form_factor(ElementId receiver, ElementId source, std::span<const Point> outline,
-                       Workspace& workspace) const;
-    double visible_share(ElementId receiver, ElementId source, Workspace& workspace) const;
+    bool faces(ElementId receiver, ElementId source) const;
 
     const Stage& stage_;
     const ElementTree& tree_;
     std::vector<Point> centres_;  ///< Of every element.
-    std::vector<Point> places_;   ///< `samples_` of every element, sixteen cells at a time.
-    unsigned samples_;            ///< A multiple of 16.
+    /// Sixteen places a group, `samples_` of every element. As a source, they lie in the order of the cells that rays
+    /// from cells 0 to 15 lead to.
+    std::vector<RayEnds> receiving_, sending_;
+    unsigned samples_;  ///< A multiple of 16.
     std::uint64_t seed_;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
 };

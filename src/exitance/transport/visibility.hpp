@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -19,6 +20,13 @@ struct RayHit {
 struct SurfacePoint {
     Point at;
     RegionId region;
+};
+
+/// Sixteen places off the surfaces that they belong to, as rays begin and end there: metres from the middle of
+/// the scene's box, times the power of two that makes the scene about 1 wide.
+struct alignas(64) RayEnds {
+    static constexpr std::size_t size = 16;
+    float x[size], y[size], z[size];
 };
 
 /// Rays through a scene, many at a time: single precision inside, on coordinates relative to the scene's middle. Rays
@@ -52,6 +60,13 @@ class RayTracer {
     /// The same between points of any regions.
     std::size_t occluded(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
                          std::span<bool> blocked) const;
+
+    /// Sixteen points of a region, for `occluded` below.
+    RayEnds ray_ends(std::span<const Point> points, RegionId region) const;
+
+    /// Bit k: does anything stand between places k of both? For ends that many rays share: a packet is made in a few
+    /// instructions.
+    std::uint32_t occluded(const RayEnds& from, const RayEnds& to) const;
 
     std::size_t triangle_count() const;
 
