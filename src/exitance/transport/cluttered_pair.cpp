@@ -8,8 +8,16 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t least_cells = 16;           ///< Of the receiver before differences are believed.
+constexpr std::size_t least_cells = 32;           ///< Of the receiver before differences are believed.
+constexpr std::size_t most_parts = 48;            ///< Cut under edges.
+constexpr double near_edge = 0.1;                 ///< Of the receiver's size: the height of edges that it is cut under.
 constexpr std::size_t most_evaluations = 20'000;  ///< Of a pair: a bound on the worst.
+
+double squared_distance(const Point& x, const Point& a, const Point& b) {
+    const Vec3 e = b - a, d = x - a;
+    const double length = dot(e, e), t = length > 0 ? std::clamp(dot(d, e) / length, 0.0, 1.0) : 0;
+    return dot(d - t * e, d - t * e);
+}
 
 double area_of(std::span<const Vec2> part) {
     double twice = 0;
@@ -43,25 +51,28 @@ bool cut_part(const std::vector<Vec2>& part, Vec2 p, Vec2 q, double slack, std::
 
 }  // namespace
 
+void ClutteredExchange::cut_along(Vec2 p, Vec2 q, double slack) {
+    if (dot(q - p, q - p) <= slack * slack) return;
+    Part left, right;
+    next_.clear();
+    for (Part& part : parts_) {
+        if (cut_part(part, p, q, slack, left, right)) {
+            next_.push_back(left);
+            next_.push_back(right);
+        } else {
+            next_.push_back(std::move(part));
+        }
+    }
+    parts_.swap(next_);
+}
+
 /// Where something stands on the receiver, what it sees jumps.
 void ClutteredExchange::cut_along_contacts(double slack) {
-    Part left, right;
     for (const ConvexBlocker* blocker : pair_.blockers)
         for (const ConvexBlocker::Edge& e : blocker->edges) {
             const Point &a = blocker->points[e.a], &b = blocker->points[e.b];
             if (std::abs(frame_.height(a)) > slack || std::abs(frame_.height(b)) > slack) continue;
-            const Vec2 p = frame_.flat(a), q = frame_.flat(b);
-            if (dot(q - p, q - p) <= slack * slack) continue;
-            next_.clear();
-            for (Part& part : parts_) {
-                if (cut_part(part, p, q, slack, left, right)) {
-                    next_.push_back(left);
-                    next_.push_back(right);
-                } else {
-                    next_.push_back(std::move(part));
-                }
-            }
-            parts_.swap(next_);
+            cut_along(frame_.flat(a), frame_.flat(b), slack);
         }
 }
 
@@ -75,6 +86,58 @@ void ClutteredExchange::add_cells() {
             total_ += cell.integral;
             heap_.push_back(cell);
         }
+}
+
+void ClutteredExchange::find_edges(double slack) {
+    edges_.clear();
+    const auto in_frame = [&](const Point& p) {
+        const Vec2 flat = frame_.flat(p);
+        return Point{flat.x, flat.y, frame_.height(p)};
+    };
+    for (const ConvexBlocker* blocker : pair_.blockers)
+        for (const ConvexBlocker::Edge& e : blocker->edges) {
+            const Point a = in_frame(blocker->points[e.a]), b = in_frame(blocker->points[e.b]);
+            if (a.z > slack || b.z > slack) edges_.push_back({a, b, false});
+        }
+    std::stable_sort(edges_.begin(), edges_.end(),
+                     [](const Edge& e, const Edge& f) { return std::max(e.a.z, e.b.z) < std::max(f.a.z, f.b.z); });
+}
+
+/// Where an edge passes closely over the receiver, what it sees nearly jumps.
+void ClutteredExchange::cut_under_edges(double slack) {
+    const double near = near_edge * std::sqrt(area_);
+    for (Edge& e : edges_) {
+        const Vec2 p = {e.a.x, e.a.y}, q = {e.b.x, e.b.y};
+        if (parts_.size() > most_parts || std::max(e.a.z, e.b.z) > near) break;
+        cut_along(p, q, slack);
+        e.is_cut = true;
+    }
+}
+
+/// How much of a cell may lie where edges change what is seen, from 0 to 1: all of it when one passes over it within
+/// its size, a strip as wide as the edge is high if it has been cut along that edge.
+double ClutteredExchange::share_under_edges(const Cell& cell) const {
+    Vec2 middle{};
+    for (std::size_t i = 0; i < cell.count; ++i) middle = middle + cell.corner[i];
+    middle = (1.0 / cell.count) * middle;
+    double squared = 0;
+    for (std::size_t i = 0; i < cell.count; ++i)
+        squared = std::max(squared, dot(cell.corner[i] - middle, cell.corner[i] - middle));
+    const Point at = {middle.x, middle.y, 0};
+    double share = 0;
+    for (const Edge& edge : edges_) {
+        if (squared_distance(at, edge.a, edge.b) >= squared) continue;
+        if (!edge.is_cut) return 1;
+        share = std::max(share, std::min(1.0, std::max(edge.a.z, edge.b.z) / std::sqrt(squared)));
+    }
+    return share;
+}
+
+/// What may have slipped between the points of a cell under an edge: some of what they saw, or of what little the cell
+/// would hold if it saw less than a third of what the receiver sees on average.
+double ClutteredExchange::unseen(const Cell& cell) const {
+    const double area = area_of(std::span(cell.corner).first(cell.count));
+    return 0.3 * std::max(cell.integral, 0.3 * total_ * area / area_);
 }
 
 double ClutteredExchange::visible_at(Vec2 p, double weight) {
@@ -130,8 +193,9 @@ void ClutteredExchange::halve_worst() {
     constexpr double left = 0.35, least = 0.2;
     const double error = std::max(left * change, least * std::min(cell.error, change + cell.integral));
     one.error = two.error = error;
+    for (Cell* half : {&one, &two}) half->error = std::max(half->error, share_under_edges(*half) * unseen(*half));
     total_ += one.integral + two.integral - cell.integral;
-    squared_error_ += 2 * error * error - cell.error * cell.error;
+    squared_error_ += one.error * one.error + two.error * two.error - cell.error * cell.error;
     for (const Cell& half : {one, two}) {
         heap_.push_back(half);
         std::push_heap(heap_.begin(), heap_.end());
@@ -150,14 +214,16 @@ double ClutteredExchange::operator()(const OccludedPair& pair, double allowed, d
     total_ = squared_error_ = 0, all_lit_ = true;
     Part whole;
     for (const Point& p : pair.receiver) whole.push_back(frame_.flat(p));
-    const double area = area_of(whole);
+    area_ = area_of(whole);
+    const double slack = 1e-6 * std::sqrt(area_);
     parts_.assign(1, whole);
-    if (allowed < HUGE_VAL) cut_along_contacts(1e-6 * std::sqrt(area));
+    cut_along_contacts(slack);
+    find_edges(slack);
+    cut_under_edges(slack);
     add_cells();
-    if (allowed == HUGE_VAL) return total_;
     for (Cell& cell : heap_) {
         const double cell_area = area_of(std::span(cell.corner).first(cell.count));
-        cell.error = std::max(cell.integral, total_ * cell_area / area);  // unknown
+        cell.error = std::max(cell.integral, total_ * cell_area / area_);  // unknown
         squared_error_ += cell.error * cell.error;
     }
     // Halved evenly at first: a sum of all that is seen must not rest on where the first few points happened to lie.
@@ -169,6 +235,17 @@ double ClutteredExchange::operator()(const OccludedPair& pair, double allowed, d
     if (all_lit_) return unoccluded = true, 0;
     double sum = 0;  // anew: the running one has rounded
     for (const Cell& cell : heap_) sum += cell.integral;
+    return sum;
+}
+
+double crowding(const Plane& plane, double size, std::span<const ConvexBlocker* const> blockers) {
+    double sum = 0;
+    for (const ConvexBlocker* blocker : blockers)
+        for (const ConvexBlocker::Edge& e : blocker->edges) {
+            const Point &a = blocker->points[e.a], &b = blocker->points[e.b];
+            const double height = 0.5 * (plane.signed_distance(a) + plane.signed_distance(b));
+            if (height > 0) sum += norm(b - a) / std::max(height, 0.002 * size);
+        }
     return sum;
 }
 

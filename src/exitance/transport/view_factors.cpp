@@ -16,11 +16,13 @@
 namespace exitance {
 namespace {
 
-constexpr double smallest_entry = 1e-6;  ///< Entries below it need no digits of their own.
-constexpr double large_entry = 3e-4;     ///< Entries above it may be among the largest of their rows.
-constexpr std::size_t few_blockers = 8;  ///< With more, errors are relative to the row's largest entry.
-constexpr double largest_share = 0.25;   ///< Of the tolerance: many such entries make a row.
-constexpr double much_larger = 16;       ///< Than another face.
+constexpr double smallest_entry = 1e-6;   ///< Entries below it need no digits of their own.
+constexpr double large_entry = 3e-4;      ///< Entries above it may be among the largest of their rows.
+constexpr std::size_t few_blockers = 8;   ///< With more, their critical lines would cut faces into thousands of cells.
+constexpr double alike_areas = 4;         ///< Areas of one order: either face may receive.
+constexpr double cluttered_share = 1e-3;  ///< Entry below which cluttered pairs keep fewer digits.
+constexpr double largest_share = 0.25;    ///< Of the tolerance: many such entries make a row.
+constexpr double much_larger = 16;        ///< Than another face.
 /// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance one was wrong by 0.6%.
 constexpr double contour_share = 1e-4;
 constexpr double usual_largest = 0.25;  ///< Entry of a row that is not being computed.
@@ -36,7 +38,6 @@ class RowWorker {
   private:
     int points_for(const ViewFace& receiver, const ViewFace& source) const;
     double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
-    void add_cluttered(std::size_t i, std::span<double> row);
     double occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                            std::span<const Point> s, bool& unoccluded);
     void add_unoccluded(std::size_t i, std::size_t j, bool cut);
@@ -64,10 +65,7 @@ class RowWorker {
     std::vector<Point> front_r_, front_s_;
     OccludedExchange exchange_;
     ClutteredExchange cluttered_exchange_;
-    std::vector<std::uint32_t> cluttered_;  ///< Sources behind much that may hide them.
-    /// The largest entry of the row, about, which errors of cluttered pairs are relative to; HUGE_VAL: not known yet.
-    double largest_ = HUGE_VAL;
-    bool is_cluttered_ = false;  ///< Is the pair at hand one of those?
+    bool is_cluttered_ = false;  ///< May many things hide some of the pair at hand?
 };
 
 /// How many Gauss points a side an unoccluded receiver takes; more than most_points when the pair is too near. What
@@ -142,16 +140,21 @@ void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
 double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                                   std::span<const Point> s, bool& unoccluded) {
     // What a large face sees of a small one changes within the size of the small one: there the small one looks back,
-    // from points of this row's own.
-    const double allowed = largest_share * tolerance_;
-    if (source.area < receiver.area && (is_cluttered_ || much_larger * source.area < receiver.area))
-        return cluttered_exchange_(
-            {s, r, source.plane, receiver.plane, standing_between_},
-            is_cluttered_ && largest_ == HUGE_VAL ? HUGE_VAL : allowed * usual_largest * source.area, tolerance_, 0.45,
-            unoccluded);
+    // from points of this row's own. Of faces of about one size that one receives which less stands close to.
+    const bool alike =
+        is_cluttered_ && source.area < alike_areas * receiver.area && receiver.area < alike_areas * source.area;
+    const bool turned =
+        alike ? crowding(source.plane, source.diameter, standing_between_) <
+                    crowding(receiver.plane, receiver.diameter, standing_between_)
+              : source.area < receiver.area && (is_cluttered_ || much_larger * source.area < receiver.area);
+    const double needless = is_cluttered_ ? cluttered_share * tolerance_ * std::min(source.area, receiver.area)
+                                          : largest_share * tolerance_ * usual_largest * source.area;
+    if (turned)
+        return cluttered_exchange_({s, r, source.plane, receiver.plane, standing_between_}, needless, tolerance_, 0.45,
+                                   unoccluded);
     if (is_cluttered_)
-        return cluttered_exchange_({r, s, receiver.plane, source.plane, standing_between_},
-                                   allowed * largest_ * receiver.area, tolerance_, 0.5, unoccluded);
+        return cluttered_exchange_({r, s, receiver.plane, source.plane, standing_between_}, needless, tolerance_, 0.5,
+                                   unoccluded);
     const Demand demand{tolerance_, tolerance_ * smallest_entry * receiver.area, large_entry * receiver.area};
     return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
 }
@@ -210,39 +213,13 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
     return total / receiver.area;
 }
 
-/// What is known of the row and a first guess of the rest tell its largest entry, and that how well the rest must be
-/// known.
-void RowWorker::add_cluttered(std::size_t i, std::span<double> row) {
-    if (cluttered_.empty()) return;
-    double largest = *std::max_element(row.begin(), row.end());
-    largest_ = HUGE_VAL;
-    is_cluttered_ = true;
-    bool unoccluded = false;
-    for (std::uint32_t j : cluttered_) {
-        pairs_.find_blockers(i, j, of_row_, of_pair_);
-        largest = std::max(largest, occluded(i, j, of_pair_, unoccluded = false));
-    }
-    largest_ = largest;
-    for (std::uint32_t j : cluttered_) {
-        pairs_.find_blockers(i, j, of_row_, of_pair_);
-        row[j] = occluded(i, j, of_pair_, unoccluded = false);
-        if (unoccluded) exact_.push_back(j);
-    }
-    is_cluttered_ = false;
-    cluttered_.clear();
-    flush_batches(i, row);
-}
-
 void RowWorker::compute(std::size_t i, std::span<double> row) {
     pairs_.find_blockers(i, of_row_);
     for (std::size_t j = 0; j < pairs_.faces().size(); ++j) {
         bool cut = false;
         if (j == i || !pairs_.face_each_other(i, j, cut)) continue;
         pairs_.find_blockers(i, j, of_row_, of_pair_);
-        if (of_pair_.size() > few_blockers) {
-            cluttered_.push_back(static_cast<std::uint32_t>(j));
-            continue;
-        }
+        is_cluttered_ = of_pair_.size() > few_blockers;
         bool unoccluded = of_pair_.empty();
         if (!unoccluded) row[j] = occluded(i, j, of_pair_, unoccluded);
         if (!unoccluded) continue;
@@ -250,7 +227,6 @@ void RowWorker::compute(std::size_t i, std::span<double> row) {
         add_unoccluded(i, j, cut);
     }
     flush_batches(i, row);
-    add_cluttered(i, row);
     for (double& F : row) F = std::clamp(F, 0.0, 1.0);
 }
 

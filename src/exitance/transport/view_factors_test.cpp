@@ -149,6 +149,22 @@ TEST(ViewFactors, OfALegUnderAnOverhangingSeatSumToOneBetweenSlantingWalls) {
     }
 }
 
+TEST(ViewFactors, OfAWallBehindBoardsAFingersBreadthAwayAreReciprocal) {
+    // The wall looks between the boards from strips as wide as they stand off: points that met none of them agreed, and
+    // entries from there were believed that are wrong by 0.6%.
+    std::vector<Outline> faces;
+    add_box(faces, {0, 0, 0}, {4, 3, 2.5}, true, 1);
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 4; ++k) {
+            const Point lo = {0.01 + 0.004 * k, 0.13 + 0.95 * i + 0.05 * k, 0.21 + 0.55 * k};
+            add_box(faces, lo, lo + Vec3{0.02, 0.31, 0.17}, false, 1);
+        }
+    const double tolerance = 1e-3;
+    const ViewFactors table = factors_of(scene_of(faces), tolerance);
+    for (double sum : table.row_sums) EXPECT_NEAR(sum, 1, tolerance);
+    EXPECT_LT(table.reciprocity_defect, tolerance);
+}
+
 TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
     std::vector<Outline> whole, cut;
     add_box(whole, {0, 0, 0}, {4, 3, 2.5}, true, 1);

@@ -3,84 +3,149 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/transport/four.hpp"
+
 namespace exitance {
 namespace {
 
 constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as none: scenes are full of aligned edges.
+/// Of the point's height over the source: what rises above it is not projected, but taken to reach everywhere.
+constexpr double below = 1 - 1e-9;
 
 }  // namespace
 
-void VisibleSource::set(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers) {
-    source_ = source, blockers_ = blockers;
-    if (pool_.empty()) pool_.resize(256);
+void VisibleSource::Polygon::copy(const Polygon& other) {
+    count = other.count;
+    std::copy_n(other.u, count + lanes - 1, u);
+    std::copy_n(other.v, count + lanes - 1, v);
+    low_u = other.low_u, high_u = other.high_u, low_v = other.low_v, high_v = other.high_v;
 }
 
-/// Adds the planes through x and the silhouette of a blocker, normals pointing into its pyramid. False when x sees it
-/// edge-on; `inside` when x lies within a body.
-bool VisibleSource::add_pyramid(const ConvexBlocker& blocker, const Point& x, bool& inside) {
-    const std::size_t count = blocker.faces.size();
+void VisibleSource::set(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers) {
+    source_ = source;
+    if (pool_.empty()) pool_.resize(256);
+    frame_ = PlaneFrame(source[0], normalized(area_vector(source)));
+    corners_.clear();
+    for (const Point& p : source) corners_.push_back(frame_.flat(p));
+    bodies_.clear();
+    points_.clear();
+    faces_.clear();
+    for (const ConvexBlocker* shape : blockers) {
+        bodies_.push_back(
+            {shape, static_cast<std::uint32_t>(points_.size()), static_cast<std::uint32_t>(faces_.size())});
+        for (const Point& p : shape->points) points_.push_back(turned(p - frame_.origin));
+        for (const Plane& face : shape->faces)
+            faces_.push_back({turned(face.n), face.offset - dot(face.n, frame_.origin)});
+    }
+}
+
+void VisibleSource::look_from(const Point& x) {
+    lines_.clear();
+    pyramids_.clear();
+    x_ = turned(x - frame_.origin);
+    size_ = 0;
+    whole_.clear();
+    for (Vec2 p : corners_) {
+        whole_.add(p.x - x_.x, p.y - x_.y);
+        size_ = std::max(size_, std::abs(p.x - x_.x) + std::abs(p.y - x_.y) + std::abs(x_.z));
+    }
+    whole_.close();
+}
+
+/// A box about what the blocker covers of the source's plane; false when that is nothing, or beside the source.
+bool VisibleSource::find_box(const Body& body, Pyramid& pyramid) const {
+    const double highest = below * x_.z;
+    bool any_high = false, all_high = true;
+    double low_u = HUGE_VAL, low_v = HUGE_VAL, high_u = -HUGE_VAL, high_v = -HUGE_VAL;
+    const Vec3* const points = points_.data() + body.first_point;
+    for (std::size_t i = 0; i < body.shape->points.size(); ++i) {
+        const Vec3& p = points[i];
+        any_high |= p.z >= highest, all_high &= p.z >= x_.z;
+        const double stretch = x_.z / (x_.z - p.z), u = (p.x - x_.x) * stretch, v = (p.y - x_.y) * stretch;
+        low_u = std::min(low_u, u), high_u = std::max(high_u, u);
+        low_v = std::min(low_v, v), high_v = std::max(high_v, v);
+    }
+    if (all_high) return false;
+    if (any_high) low_u = low_v = -HUGE_VAL, high_u = high_v = HUGE_VAL;
+    pyramid.low_u = low_u, pyramid.high_u = high_u, pyramid.low_v = low_v, pyramid.high_v = high_v;
+    const double across = std::min(high_u, whole_.high_u) - std::max(low_u, whole_.low_u);
+    const double along = std::min(high_v, whole_.high_v) - std::max(low_v, whole_.low_v);
+    pyramid.overlap = across * along;
+    return across > 0 && along > 0;
+}
+
+/// Adds the lines of a blocker's silhouette as seen from the point. False when it is seen edge-on; `inside` when the
+/// point lies within a body.
+bool VisibleSource::add_pyramid(const Body& body, Pyramid& pyramid, bool& inside) {
+    const ConvexBlocker& shape = *body.shape;
+    const std::size_t count = shape.faces.size();
     in_front_.resize(count + 1);
     bool any = false;
     for (std::size_t k = 0; k < count; ++k) {
-        const double d = blocker.faces[k].signed_distance(x);
+        const double d = faces_[body.first_face + k].signed_distance(x_);
         in_front_[k] = d > 0;
         any |= d > 0;
     }
-    inside = blocker.is_solid() && !any;
+    inside = shape.is_solid() && !any;
     if (inside) return true;
-    const auto first = static_cast<std::uint32_t>(planes_.size());
-    for (const ConvexBlocker::Edge& e : blocker.edges) {
+    const auto first = static_cast<std::uint32_t>(lines_.size());
+    for (const ConvexBlocker::Edge& e : shape.edges) {
         const bool left = in_front_[static_cast<std::size_t>(e.left)];
         if (e.right != ConvexBlocker::no_face &&
             left == static_cast<bool>(in_front_[static_cast<std::size_t>(e.right)]))
             continue;
-        const Vec3 a = blocker.points[e.a] - x, b = blocker.points[e.b] - x;
+        const Vec3 a = points_[body.first_point + e.a] - x_, b = points_[body.first_point + e.b] - x_;
         // A face seen from its front runs counter-clockwise: b x a points inwards.
-        planes_.push_back(left ? cross(b, a) : cross(a, b));
+        const Vec3 plane = left ? cross(b, a) : cross(a, b);
+        lines_.push_back({plane.x, plane.y, -plane.z * x_.z,
+                          on_plane * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z))});
     }
-    const auto last = static_cast<std::uint32_t>(planes_.size());
-    pyramids_.push_back({first, last, first});
-    return last - first >= 3;
+    pyramid.first = pyramid.likely = first;
+    pyramid.last = static_cast<std::uint32_t>(lines_.size());
+    return pyramid.last - first >= 3;
 }
 
 void VisibleSource::add_edges(const Polygon& polygon, double weight) {
+    const auto corner = [&](std::size_t i) { return Vec3{polygon.u[i], polygon.v[i], -x_.z}; };
     for (std::size_t i = 0; i < polygon.count; ++i)
-        terms_.add(n_, polygon.at(i), polygon.at(i + 1 == polygon.count ? 0 : i + 1), weight);
+        terms_.add(n_, corner(i), corner(i + 1 == polygon.count ? 0 : i + 1), weight);
 }
 
 /// The part of a convex polygon with sign * height >= 0. Both parts meet in the same points.
 void VisibleSource::cut(const Polygon& polygon, const double* heights, double sign, Polygon& out) {
-    out.count = 0;
+    out.clear();
     for (std::size_t i = 0; i < polygon.count; ++i) {
         const std::size_t j = i + 1 == polygon.count ? 0 : i + 1;
         const double a = heights[i], b = heights[j];
-        if (sign * a >= 0) out.add(polygon.at(i));
+        if (sign * a >= 0) out.add(polygon.u[i], polygon.v[i]);
         if ((a > 0 && b < 0) || (a < 0 && b > 0)) {
-            const Vec3 p = polygon.at(i), q = polygon.at(j);
-            out.add(a < b ? p + (a / (a - b)) * (q - p) : q + (b / (b - a)) * (p - q));
+            const std::size_t low = a < b ? i : j, high = a < b ? j : i;
+            const double t = heights[low] / (heights[low] - heights[high]);
+            out.add(polygon.u[low] + t * (polygon.u[high] - polygon.u[low]),
+                    polygon.v[low] + t * (polygon.v[high] - polygon.v[low]));
         }
     }
+    out.close();
 }
 
-VisibleSource::Sides VisibleSource::measure(const Polygon& polygon, const Vec3& plane, double* heights) const {
-    const double none = on_plane * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z));
-    double lowest = HUGE_VAL, highest = -HUGE_VAL;
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-        double h = plane.x * polygon.xyz[i][0] + plane.y * polygon.xyz[i][1] + plane.z * polygon.xyz[i][2];
-        if (std::abs(h) <= none) h = 0;
-        heights[i] = h;
-        lowest = std::min(lowest, h), highest = std::max(highest, h);
+VisibleSource::Sides VisibleSource::measure(const Polygon& polygon, const Line& line, double* heights) const {
+    bool any_in = false, any_out = false;
+    for (std::size_t i = 0; i < polygon.count; i += four::lanes) {
+        const four::Real h = line.a * four::load(&polygon.u[i]) + line.b * four::load(&polygon.v[i]) + line.c;
+        const four::Mask in = h > line.none, out = h < -line.none;
+        any_in |= four::any(in), any_out |= four::any(out);
+        lanes_of::store(in || out ? h : four::Real{}, heights + i);
     }
-    return {highest > 0, lowest < 0};
+    return {any_in, any_out};
 }
 
-/// Has a plane of a pyramid all of a fragment outside? The plane that had the last one is asked first.
+/// Has a line of a pyramid all of a fragment outside? The line that had the last one is asked first.
 bool VisibleSource::misses(const Polygon& fragment, Pyramid& pyramid) const {
     const auto is_outside = [&](std::uint32_t k) {
-        const Vec3& plane = planes_[k];
-        const double none = on_plane * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z));
-        for (std::size_t i = 0; i < fragment.count; ++i)
-            if (plane.x * fragment.xyz[i][0] + plane.y * fragment.xyz[i][1] + plane.z * fragment.xyz[i][2] > none)
+        const Line& line = lines_[k];
+        for (std::size_t i = 0; i < fragment.count; i += four::lanes)
+            if (four::any(line.a * four::load(&fragment.u[i]) + line.b * four::load(&fragment.v[i]) + line.c >
+                          line.none))
                 return false;
         return true;
     };
@@ -90,15 +155,11 @@ bool VisibleSource::misses(const Polygon& fragment, Pyramid& pyramid) const {
     return false;
 }
 
-/// Adds the planes of a pyramid that run through a fragment to cuts_; false when one has all of it outside.
-bool VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
-    double heights[Polygon::most];
-    for (std::uint32_t k = pyramid.first; k < pyramid.last; ++k) {
-        const Sides sides = measure(fragment, planes_[k], heights);
-        if (!sides.any_in) return false;
-        if (sides.any_out) cuts_.push_back(k);
-    }
-    return true;
+/// Adds the lines of a pyramid that run through a fragment to cuts_.
+void VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
+    double heights[Polygon::most + Polygon::lanes];
+    for (std::uint32_t k = pyramid.first; k < pyramid.last; ++k)
+        if (measure(fragment, lines_[k], heights).any_out) cuts_.push_back(k);
 }
 
 /// Adds the edges of what the pyramids named in reaching_[first, last) leave of a fragment. Those that miss it miss all
@@ -107,7 +168,7 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     const std::size_t mark = pool_used_, first_cut = cuts_.size(), first_left = reaching_.size();
     for (std::size_t i = first; i < last; ++i) {
         const std::uint32_t p = reaching_[i];
-        if (misses(fragment, pyramids_[p])) continue;
+        if (pyramids_[p].is_beside(fragment) || misses(fragment, pyramids_[p])) continue;
         if (reaching_.size() == first_left) {
             find_cuts(fragment, pyramids_[p]);
             if (cuts_.size() == first_cut) {  // it lies within
@@ -131,7 +192,7 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     bool hidden = true;
     for (std::size_t c = first_cut; hidden && c < cuts_.size(); ++c) {
         double heights[Polygon::most];
-        const Sides sides = measure(*polygon, planes_[cuts_[c]], heights);
+        const Sides sides = measure(*polygon, lines_[cuts_[c]], heights);
         hidden = sides.any_in;
         if (!sides.any_in || !sides.any_out) continue;
         if (left > 1) cut(*polygon, heights, -1, pool_[pool_used_++]);
@@ -161,33 +222,34 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
 }
 
 double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
-    planes_.clear();
-    pyramids_.clear();
+    look_from(x);
     terms_.clear();
-    n_ = n;
+    n_ = turned(n);
     anything_lit_ = anything_hidden_ = hidden_by_one_ = false;
     pool_used_ = 0;
     cuts_.clear();
-    Polygon whole;
-    whole.count = 0;
-    size_ = 0;
-    for (const Point& p : source_) {
-        whole.add(p - x);
-        const Vec3 r = whole.at(whole.count - 1);
-        size_ = std::max(size_, std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
+    for (const Body& body : bodies_) {
+        // What misses the source as a whole would miss every part of it, and most of many blockers do.
+        Pyramid pyramid;
+        if (!find_box(body, pyramid)) continue;
+        const std::size_t mark = lines_.size();
+        bool inside = false;
+        const bool opens = add_pyramid(body, pyramid, inside);
+        if (inside) return seen = Seen::nothing, 0;
+        if (opens && !misses(whole_, pyramid))
+            pyramids_.push_back(pyramid);
+        else
+            lines_.resize(mark);
     }
     reaching_.clear();
-    for (const ConvexBlocker* blocker : blockers_) {
-        bool inside = false;
-        const bool opens = add_pyramid(*blocker, x, inside);
-        if (inside) return seen = Seen::nothing, 0;
-        // What misses the source as a whole would miss every part of it, and most of many blockers do.
-        if (opens && !misses(whole, pyramids_.back()))
-            reaching_.push_back(static_cast<std::uint32_t>(pyramids_.size() - 1));
-        else
-            planes_.resize(pyramids_.back().first), pyramids_.pop_back();
-    }
-    subtract(whole, 0, reaching_.size(), true);
+    for (std::uint32_t k = 0; k < pyramids_.size(); ++k) reaching_.push_back(k);
+    // What hides much goes first: less is left to be cut.
+    if (reaching_.size() > 2)
+        std::sort(reaching_.begin(), reaching_.end(), [&](std::uint32_t a, std::uint32_t b) {
+            const double of_a = pyramids_[a].overlap, of_b = pyramids_[b].overlap;
+            return of_a > of_b || (of_a == of_b && a < b);
+        });
+    subtract(whole_, 0, reaching_.size(), true);
     seen = !anything_lit_     ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several)
            : anything_hidden_ ? Seen::part
                               : Seen::all;
@@ -202,16 +264,18 @@ double VisibleSource::unoccluded(const Point& x, const Normal& n) {
 }
 
 bool VisibleSource::is_hidden_from(std::span<const Point> receiver) {
-    for (const ConvexBlocker* blocker : blockers_) {
+    double heights[Polygon::most + Polygon::lanes];
+    for (const Body& body : bodies_) {
         bool hides = true;
         for (const Point& x : receiver) {
-            planes_.clear();
-            pyramids_.clear();
+            look_from(x);
+            Pyramid pyramid;
             bool inside = false;
-            if (!add_pyramid(*blocker, x, inside) || inside) hides = false;
-            for (std::size_t k = 0; hides && k < planes_.size(); ++k)
-                for (const Point& y : source_)
-                    if (dot(planes_[k], y - x) < 0) hides = false;
+            hides = find_box(body, pyramid) && pyramid.low_u <= whole_.low_u && pyramid.high_u >= whole_.high_u &&
+                    pyramid.low_v <= whole_.low_v && pyramid.high_v >= whole_.high_v &&
+                    add_pyramid(body, pyramid, inside) && !inside;
+            for (std::uint32_t k = pyramid.first; hides && k < pyramid.last; ++k)
+                hides = !measure(whole_, lines_[k], heights).any_out;
             if (!hides) break;
         }
         if (hides) return true;
