@@ -237,6 +237,7 @@ class Hierarchy {
         for (std::size_t i = 0; i < leaves.size(); ++i)
             for (std::size_t k = 0; k < sites_.nodes(); ++k)
                 source.set_node(leaves[i], k, material(leaves[i]).reflectance * points[i]);
+        source.pull();
         NodalField v = source;
         const SolveReport of_light = light_.report;
         solve_on_links(source, v);
@@ -257,15 +258,19 @@ class Hierarchy {
         refiner_.set_importance(std::move(importance));
     }
 
-    /// x = rhs + rho F x for what leaves the elements, from the x that there is.
+    /// x = rhs + rho F x for what leaves the elements, from the x that there is; both as pulled.
+    ///
+    /// Solved on the part of the hierarchy that links touch. Below its ends, where the mesh follows direct light, all
+    /// elements receive what the ends do, and the ends send what rhs and that come to: the answer is the same.
     void solve_on_links(const NodalField& rhs, NodalField& x) {
-        const LinkOperator F(sites_, *links_, far_links_ ? &*far_links_ : nullptr, light_.numbering);
+        const ClusterLinks* const far = far_links_ ? &*far_links_ : nullptr;
+        const ElementPart part = linked_part(sites_, *links_, far);
+        const LinkOperator F(sites_, *links_, far, part);
         const std::size_t n = sites_.nodes();
-        const std::vector<ElementId>& leaves = light_.numbering.leaves;
         std::vector<Spectrum> rho(F.size()), first(F.size()), value(F.size());
         std::vector<double> area(F.size());
-        parallel_for(leaves.size(), 256, [&](std::size_t i) {
-            const ElementId e = leaves[i];
+        parallel_for(part.ends.size(), 256, [&](std::size_t i) {
+            const ElementId e = part.ends[i];
             for (std::size_t k = 0; k < n; ++k) {
                 rho[i * n + k] = material(e).reflectance;
                 first[i * n + k] = rhs.node(e, k);
@@ -283,8 +288,15 @@ class Hierarchy {
                                          .max_iterations = input_.knobs.max_iterations,
                                          .request = &input_.stop});
         light_.report.iterations += before;
+        x.clear();
+        parallel_for(part.ends.size(), 256, [&](std::size_t i) {
+            for (std::size_t k = 0; k < n; ++k)
+                x.set_node(part.ends[i], k, value[i * n + k] - first[i * n + k]);  // rho F x
+        });
+        x.push();
+        const std::vector<ElementId>& leaves = light_.numbering.leaves;
         parallel_for(leaves.size(), 256, [&](std::size_t i) {
-            for (std::size_t k = 0; k < n; ++k) x.set_node(leaves[i], k, value[i * n + k]);
+            for (std::size_t k = 0; k < n; ++k) x.set_node(leaves[i], k, rhs.node(leaves[i], k) + x.node(leaves[i], k));
         });
         x.pull();
     }
@@ -313,6 +325,7 @@ class Hierarchy {
                 for (std::size_t k = 0; k < sites_.nodes(); ++k)
                     first.set_node(leaves[i], k, first.node(leaves[i], k) + rho * missed);
             }
+            first.pull();
             solve_on_links(first, b_);
         }
         light_.rays += rows.rays();
@@ -383,8 +396,8 @@ namespace {
 
 /// Does what was asked for say how links are to be found or judged, or deliver what they hold?
 bool asks_for_judged_links(const SolveOptions& o) {
-    return o.basis || o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing || !o.triage ||
-           o.visibility != VisibilityKind::automatic || o.clusters || o.min_area;
+    return o.basis || o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing ||
+           !o.triage || o.visibility != VisibilityKind::automatic || o.clusters || o.min_area;
 }
 
 }  // namespace

@@ -78,7 +78,9 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, std::o
     input.progress.note(
         fmt::format("{} links found by {} rays of {} leaves", links.size(), rows.rays(), leaves.size()));
 
-    relax_constant_elements(input, LinkOperator(sites, links, nullptr, light.numbering), light);
+    // Every leaf has links of its own: the part is all of the hierarchy.
+    const ElementPart part{sites.inner(), leaves};
+    relax_constant_elements(input, LinkOperator(sites, links, nullptr, part), light);
     light.links = links.size();
     light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();
     if (input.options.keep_links) light.kept_links = links.list();

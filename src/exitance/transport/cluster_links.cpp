@@ -63,6 +63,12 @@ std::size_t ClusterLinks::memory_bytes() const {
            2 * bodies_.clusters().facing_count() * sizeof(VectorPower);
 }
 
+void ClusterLinks::mark(Field<ElementId, std::uint8_t>& marked) const {
+    for (const ClusterLink& link : links_)
+        for (Body end : {link.receiver, link.source})
+            if (!end.is_cluster()) marked[end.element()] = 1;
+}
+
 namespace {
 
 /// E of every band on a plane at right angles to the way of the light, and that way, from the source to x.

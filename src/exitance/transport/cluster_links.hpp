@@ -69,6 +69,9 @@ class ClusterLinks {
     /// pieces'.
     void add_to(NodalField& E, const NodalField& b) const;
 
+    /// Marks the elements that links lead to or come from.
+    void mark(Field<ElementId, std::uint8_t>& marked) const;
+
   private:
     Bodies bodies_;
     std::vector<ClusterLink> links_;  ///< By receiver, then by source.

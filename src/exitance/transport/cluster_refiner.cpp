@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t block_size = 128;
+constexpr std::size_t block_size = 32;
 
 /// A sum over the pieces of each facing, from pieces upwards.
 template <class Term>

@@ -235,14 +235,14 @@ struct PaddedSpectrum {
 /// then in double.
 void Links::gather_constants(const NodalField& b, NodalField& E) const {
     constexpr std::size_t ways = 8, at_a_time = 256, ahead = 512;
-    std::vector<PaddedSpectrum> light(sites_->tree().size());
-    parallel_for(light.size(), 4096, [&](std::size_t e) {
+    std::vector<PaddedSpectrum> light(sources_.size());
+    parallel_for(light.size(), 4096, [&](std::size_t i) {
         for (std::size_t band = 0; band < bands; ++band)
-            light[e].of[band] = static_cast<float>(*b.at(ElementId(e), band));
+            light[i].of[band] = static_cast<float>(*b.at(sources_[i], band));
     });
     for_rows([&](std::size_t row) {
         double total[bands]{};
-        const auto term = [&](std::size_t i) { return factor_[i] * light[source_[i].value].of; };
+        const auto term = [&](std::size_t i) { return factor_[i] * light[source_[i]].of; };
         for (std::size_t i = first_[row]; i < first_[row + 1];) {
             const std::size_t end = std::min(i + at_a_time, first_[row + 1]);
             decltype(PaddedSpectrum::of) sum[ways]{};
@@ -255,7 +255,7 @@ void Links::gather_constants(const NodalField& b, NodalField& E) const {
             const auto all = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
             for (std::size_t band = 0; band < bands; ++band) total[band] += static_cast<double>(all[band]);
         }
-        for (std::size_t band = 0; band < bands; ++band) *E.at(receiver_[row], band) = total[band];
+        for (std::size_t band = 0; band < bands; ++band) *E.at(receiver_[row], band) += total[band];
     });
 }
 
@@ -264,17 +264,16 @@ void Links::gather_kernels(const NodalField& b, NodalField& E) const {
     constexpr std::size_t at_a_time = 16, ahead = 3;  // links: in single precision, to fetch
     const double scale = 1 / std::sqrt(sites_->stage().area);
     // Memory that is new is first touched where it is filled, on all threads.
-    const auto sources = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sites_->tree().size());
-    parallel_for(sites_->tree().size(), 1024,
-                 [&](std::size_t e) { fill(sources[e], *sites_, b, ElementId(e), scale); });
+    const auto sources = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sources_.size());
+    parallel_for(sources_.size(), 256, [&](std::size_t i) { fill(sources[i], *sites_, b, sources_[i], scale); });
     for_rows([&](std::size_t row) {
         ReceivedLight<Layout> receiver(*sites_, receiver_[row], scale);
         for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
-            prefetch(sources[source_[std::min(i + ahead, source_.size() - 1)].value]);
+            prefetch(sources[source_[std::min(i + ahead, source_.size() - 1)]]);
             if (block_[i] == Link::far)
-                receiver.add(sources[source_[i].value], &visible_[i * words_]);
+                receiver.add(sources[source_[i]], &visible_[i * words_]);
             else
-                receiver.add(&blocks_[block_[i]], b, source_[i]);
+                receiver.add(&blocks_[block_[i]], b, sources_[source_[i]]);
             if (i % at_a_time == 0 || i + 1 == first_[row + 1]) receiver.flush(E, receiver_[row]);
         }
     });
@@ -292,6 +291,10 @@ void Links::for_rows(const Row& gather_row) const {
 
 void Links::gather(const NodalField& b, NodalField& E) const {
     E.clear();
+    add_to(E, b);
+}
+
+void Links::add_to(NodalField& E, const NodalField& b) const {
     if (sites_->nodes() == 1)
         gather_constants(b, E);
     else if (sites_->nodes() == 4)

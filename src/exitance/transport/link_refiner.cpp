@@ -35,7 +35,11 @@ struct LinkRefiner::Block {
 
 namespace {
 
-constexpr std::size_t block_size = 128;
+/// Pairs a task: enough of them to pay for it, and not so many that threads wait for one another at the end of a round.
+std::size_t block_size_for(std::size_t pairs) {
+    constexpr std::size_t tasks = 256, least = 16, most = 128;
+    return std::clamp(pairs / tasks, least, most);
+}
 
 template <class Departure>
 double mean_square(const Departure& d) {
@@ -173,13 +177,15 @@ void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalFiel
     judged_.resize();
     roughness_.resize(tree_.size(), 0.0);
     if (!importance_.empty()) importance_.resize(tree_.size(), 0.0);
-    for (ElementId e : elements)
+    parallel_for(elements.size(), 64, [&](std::size_t i) {
+        const ElementId e = elements[i];
         for (ElementId child : tree_.children(e)) {
             if (!importance_.empty()) importance_[child] = importance_[e];
             inherit(sites_, e, child, b);
             inherit(sites_, e, child, judged_);
             for (NodalField* field : also) inherit(sites_, e, child, *field);
         }
+    });
 }
 
 void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
@@ -187,6 +193,7 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
     std::vector<PieceId> pool;
     const Field<ElementId, double>* const importance = importance_.empty() ? nullptr : &importance_;
     while (!pairs.empty()) {
+        const std::size_t block_size = block_size_for(pairs.size());
         std::vector<Block> blocks((pairs.size() + block_size - 1) / block_size);
         // Once a stop is asked for, what is left is linked as it is.
         LinkTolerance now = tolerance;
@@ -266,20 +273,21 @@ Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers
     receivers.light.resize(tree_.size()), receivers.error.resize(tree_.size(), 0.0);
     enum : std::uint8_t { nothing, links, too_strong_ones };
     Field<ElementId, std::uint8_t> too_much(tree_.size(), 0), gained(tree_.size(), nothing);
+    std::vector<ElementId> gaining;
     for (; receivers.known < links_.size(); ++receivers.known) {
         const Found& found = links_[receivers.known];
         receivers.light[found.link.receiver].add(found, shadow_of(found), sites_.nodes());
         std::uint8_t& here = gained[found.link.receiver];
+        if (here == nothing) gaining.push_back(found.link.receiver);
         here = std::max<std::uint8_t>(here, found.too_strong ? too_strong_ones : links);
     }
-    interpolation_ = 0;
-    for (ElementId e : gained.ids()) {
-        if (gained[e]) receivers.error[e] = weight(e) * tree_.area(e) * receivers.light[e].squared_error(sites_, e);
-        interpolation_ += receivers.error[e];
+    std::sort(gaining.begin(), gaining.end());
+    for (ElementId e : gaining) {
+        receivers.error[e] = weight(e) * tree_.area(e) * receivers.light[e].squared_error(sites_, e);
         const bool is_good = tolerance.oracle == LinkOracle::transport
                                  ? receivers.error[e] <= tolerance.interpolation * tolerance.interpolation
                                  : gained[e] != too_strong_ones;
-        if (!gained[e] || is_good) continue;
+        if (is_good) continue;
         if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
         too_much[e] = 1;
         receivers.light[e] = {};  // of the links that will be left
@@ -296,21 +304,28 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     // A link that hardly departs stays; all such ones of a receiver together are a share of what is allowed.
     const double negligible = 0.03 * tolerance.interpolation;
     enum : std::uint8_t { untouched, left, handed_on };
-    std::vector<std::uint8_t> fate(links_.size());
-    parallel_for(links_.size(), 4096, [&](std::size_t i) {
-        const Found& found = links_[i];
+    const auto fate_of = [&](const Found& found) -> std::uint8_t {
         const ElementId p = found.link.receiver;
-        if (!too_much[p]) return;
-        if (tolerance.oracle != LinkOracle::transport) {
-            fate[i] = found.too_strong ? handed_on : left;
-            return;
-        }
+        if (!too_much[p]) return untouched;
+        if (tolerance.oracle != LinkOracle::transport) return found.too_strong ? handed_on : left;
         const double error = weight(p) * tree_.area(p) * mean_square(found.departure);
-        fate[i] = found.open && error < negligible * negligible ? left : handed_on;
+        return found.open && error < negligible * negligible ? left : handed_on;
+    };
+    // Receivers that are cut have mostly been linked of late: long stretches of links stay where they are.
+    constexpr std::size_t stretch = 1024;
+    std::vector<std::uint8_t> fate(links_.size()), stays((links_.size() + stretch - 1) / stretch, 1);
+    parallel_ranges(links_.size(), stretch, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            if ((fate[i] = fate_of(links_[i])) != untouched) stays[first / stretch] = 0;
     });
     std::vector<LinkPair> pairs;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < links_.size(); ++i) {
+        if (kept == i && i % stretch == 0 && stays[i / stretch]) {
+            kept = std::min(links_.size(), i + stretch);
+            i = kept - 1;
+            continue;
+        }
         if (fate[i] == handed_on) {
             for (ElementId child : tree_.children(links_[i].link.receiver)) {
                 pairs.push_back(pair_of(links_[i]));
@@ -325,8 +340,10 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     }
     links_.resize(kept);
     receivers.known = kept;
-    for (ElementId e : too_much.ids())
+    parallel_for(too_much.size(), 4096, [&](std::size_t i) {
+        const ElementId e(i);
         if (too_much[e]) receivers.error[e] = weight(e) * tree_.area(e) * receivers.light[e].squared_error(sites_, e);
+    });
     return pairs;
 }
 
@@ -359,6 +376,8 @@ void LinkRefiner::cut_until_good(NodalField& b, std::span<NodalField* const> als
         progress.advance(1 - std::ldexp(1.0, -round));
         judge(std::move(pairs), b, tolerance, stop);
     }
+    interpolation_ = 0;
+    for (double error : receivers.error) interpolation_ += error;
     sum_up();
 }
 
@@ -381,16 +400,17 @@ void LinkRefiner::sum_up() {
 
 Links LinkRefiner::make_links() const {
     const std::size_t size = sites_.nodes() * sites_.nodes();
-    std::vector<Link> links;
-    std::vector<float> blocks;  // those of links that are still there
-    links.reserve(links_.size());
-    for (const Found& found : links_) {
-        links.push_back(found.link);
-        if (!found.near) continue;
-        const auto block = blocks_.begin() + found.link.block;
-        links.back().block = static_cast<std::uint32_t>(blocks.size());
-        blocks.insert(blocks.end(), block, block + static_cast<long>(size));
-    }
+    std::vector<Link> links(links_.size());
+    std::vector<std::uint32_t> place(links_.size());  // of their blocks: those of links that are still there
+    std::uint32_t near = 0;
+    for (std::size_t i = 0; i < links_.size(); ++i) place[i] = near, near += links_[i].near ? 1 : 0;
+    std::vector<float> blocks(near * size);
+    parallel_for(links_.size(), 4096, [&](std::size_t i) {
+        links[i] = links_[i].link;
+        if (!links_[i].near) return;
+        links[i].block = static_cast<std::uint32_t>(place[i] * size);
+        std::copy_n(blocks_.begin() + links_[i].link.block, size, blocks.begin() + links[i].block);
+    });
     return Links(sites_, std::move(links), std::move(blocks));
 }
 

@@ -43,31 +43,37 @@ Patch LinkSites::frame(ElementId e) const {
     return cell_frame_[e] == regular ? tree_->patch(e) : cell_frames_[cell_frame_[e]];
 }
 
-void LinkSites::add_nodes(ElementId e) {
+void LinkSites::add_depth(ElementId e) {
     cell_frame_.add(regular);
     if (tree_->is_cell(e)) {
         cell_frame_[e] = static_cast<std::uint32_t>(cell_frames_.size());
-        cell_frames_.push_back(inertia_parallelogram(e));
+        cell_frames_.emplace_back();
     }
+    const ElementId parent = tree_->parent(e);
+    depth_.add(parent.is_none() ? 0 : depth_[parent] + 1);
+    if (parent.is_none() || e != tree_->children(parent).front()) return;
+    if (inner_.size() < depth_[e]) inner_.resize(depth_[e]);
+    inner_[depth_[parent]].push_back(parent);
+}
+
+void LinkSites::set_nodes(ElementId e) {
+    if (tree_->is_cell(e)) cell_frames_[cell_frame_[e]] = inertia_parallelogram(e);
     const Patch patch = frame(e);
     const Point middle = patch.centre();
     const auto nodes = basis_->nodes(patch.shape);
     for (std::size_t k = 0; k < stride_; ++k) {
         const Point p = k < n_ ? patch.at(nodes[k].at) : middle;
-        for (std::size_t axis = 0; axis < 3; ++axis) position_[axis].push_back(p[axis]);
+        for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][e.value * stride_ + k] = p[axis];
     }
-    centre_.add(middle);
+    centre_[e] = middle;
     double radius = 0;
     for (int i = 0; i < patch.corner_count(); ++i) radius = std::max(radius, norm(patch.corner(i) - middle));
-    radius_.add(radius);
+    radius_[e] = radius;
 }
 
 void LinkSites::add_matrices(ElementId child) {
     own_matrix_.add(regular);
     const ElementId parent = tree_->parent(child);
-    depth_.add(parent.is_none() ? 0 : depth_[parent] + 1);
-    if (depth_[child] == levels_.size()) levels_.emplace_back();
-    levels_[depth_[child]].push_back(child);
     if (parent.is_none()) return;
     const bool is_regular = !tree_->is_cell(parent) && !tree_->is_cell(child) &&
                             (tree_->way(parent) == Cut::both || tree_->ratio(parent) == 0.5);
@@ -110,10 +116,30 @@ void LinkSites::add_pull(ElementId parent) {
 }
 
 void LinkSites::update() {
-    for (std::size_t i = radius_.size(); i < tree_->size(); ++i) {
-        add_nodes(ElementId(i));
-        add_matrices(ElementId(i));
+    const std::size_t before = radius_.size(), count = tree_->size();
+    for (std::vector<double>& axis : position_) axis.resize(count * stride_);
+    centre_.resize(count), radius_.resize(count);
+    for (std::size_t e = before; e < count; ++e) add_depth(ElementId(e));
+    parallel_for(count - before, 256, [&](std::size_t i) { set_nodes(ElementId(before + i)); });
+    for (std::size_t e = before; e < count; ++e) add_matrices(ElementId(e));
+}
+
+ElementPart LinkSites::part_with(Field<ElementId, std::uint8_t> marked) const {
+    // Whatever has a marked element below it is cut.
+    for (std::size_t e = marked.size(); e-- > 0;)
+        if (marked[ElementId(e)] && !tree_->parent(ElementId(e)).is_none()) marked[tree_->parent(ElementId(e))] = 2;
+    ElementPart part;
+    for (ElementId e : marked.ids()) {
+        const ElementId parent = tree_->parent(e);
+        if (!parent.is_none() && marked[parent] != 2) continue;
+        if (marked[e] != 2) {
+            part.ends.push_back(e);
+            continue;
+        }
+        if (part.inner.size() <= depth_[e]) part.inner.resize(depth_[e] + 1);
+        part.inner[depth_[e]].push_back(e);
     }
+    return part;
 }
 
 std::span<const double> LinkSites::matrix(const std::vector<double>& own, ElementId child, bool pull) const {
@@ -140,7 +166,10 @@ void NodalField::set_node(ElementId e, std::size_t k, const Spectrum& value) {
 
 namespace {
 
-constexpr std::size_t grain = 256;
+/// Elements a task, that have so many nodes each and four children.
+std::size_t grain(std::size_t nodes) {
+    return nodes == 1 ? 128 : 32;
+}
 
 /// out += matrix in, n numbers of every band.
 void add_product(std::span<const double> matrix, std::size_t n, const double* in, double* out) {
@@ -160,14 +189,21 @@ void NodalField::clear() {
     });
 }
 
-void NodalField::pull() {
+void NodalField::clear(const ElementPart& part) {
+    const std::size_t size = bands * sites_->stride();
+    const auto clear_one = [&](ElementId e) { std::fill_n(at(e, 0), size, 0.0); };
+    for (const std::vector<ElementId>& level : part.inner)
+        for (ElementId e : level) clear_one(e);
+    parallel_for(part.ends.size(), 4096, [&](std::size_t i) { clear_one(part.ends[i]); });
+}
+
+void NodalField::pull(const Levels& inner) {
     const ElementTree& tree = sites_->tree();
     const std::size_t n = sites_->nodes();
-    for (std::size_t level = sites_->levels().size(); level-- > 0;) {
-        const std::vector<ElementId>& elements = sites_->levels()[level];
-        parallel_for(elements.size(), grain, [&](std::size_t i) {
+    for (std::size_t level = inner.size(); level-- > 0;) {
+        const std::vector<ElementId>& elements = inner[level];
+        parallel_for(elements.size(), grain(n), [&](std::size_t i) {
             const ElementId e = elements[i];
-            if (tree.is_leaf(e)) return;
             for (std::size_t band = 0; band < bands; ++band) std::fill_n(at(e, band), n, 0.0);
             for (ElementId child : tree.children(e)) {
                 const auto matrix = sites_->pull(child);
@@ -181,9 +217,9 @@ Field<ElementId, double> NodalField::roughness() const {
     const ElementTree& tree = sites_->tree();
     const std::size_t n = sites_->nodes();
     Field<ElementId, double> squared(tree.size(), 0.0);
-    for (std::size_t level = sites_->levels().size(); level-- > 0;) {
-        const std::vector<ElementId>& elements = sites_->levels()[level];
-        parallel_for(elements.size(), grain, [&](std::size_t i) {
+    for (std::size_t level = sites_->inner().size(); level-- > 0;) {
+        const std::vector<ElementId>& elements = sites_->inner()[level];
+        parallel_for(elements.size(), grain(n), [&](std::size_t i) {
             const ElementId e = elements[i];
             for (ElementId child : tree.children(e)) {
                 const auto matrix = sites_->push(child);
@@ -201,17 +237,17 @@ Field<ElementId, double> NodalField::roughness() const {
     return squared;
 }
 
-void NodalField::push() {
+void NodalField::push(const Levels& inner) {
     const ElementTree& tree = sites_->tree();
     const std::size_t n = sites_->nodes();
-    for (std::size_t level = 1; level < sites_->levels().size(); ++level) {
-        const std::vector<ElementId>& elements = sites_->levels()[level];
-        parallel_for(elements.size(), grain, [&](std::size_t i) {
-            const ElementId e = elements[i], parent = tree.parent(e);
-            const auto matrix = sites_->push(e);
-            for (std::size_t band = 0; band < bands; ++band) add_product(matrix, n, at(parent, band), at(e, band));
+    for (const std::vector<ElementId>& elements : inner)
+        parallel_for(elements.size(), grain(n), [&](std::size_t i) {
+            const ElementId parent = elements[i];
+            for (ElementId e : tree.children(parent)) {
+                const auto matrix = sites_->push(e);
+                for (std::size_t band = 0; band < bands; ++band) add_product(matrix, n, at(parent, band), at(e, band));
+            }
         });
-    }
 }
 
 }  // namespace exitance

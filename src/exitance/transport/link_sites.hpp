@@ -11,6 +11,13 @@
 
 namespace exitance {
 
+/// A hierarchy, or the upper part of one: of no element only some children. Within one level nothing depends on
+/// anything.
+struct ElementPart {
+    std::vector<std::vector<ElementId>> inner;  ///< By depth, roots first: elements whose children are in it.
+    std::vector<ElementId> ends;                ///< Where it ends, in order of their ids.
+};
+
 /// The elements of a tree as links see them: where the nodes of a basis stand, and how functions move between levels.
 ///
 /// A cell (an element whose domain is less than its patch) is seen as the parallelogram that has the cell's area's
@@ -44,13 +51,16 @@ class LinkSites {
     std::span<const double> push(ElementId child) const { return matrix(push_, child, false); }
     std::span<const double> pull(ElementId child) const { return matrix(pull_, child, true); }
 
-    /// Elements by their depth, roots first: within one level nothing depends on anything.
-    const std::vector<std::vector<ElementId>>& levels() const { return levels_; }
+    /// All inner elements by their depth, roots first.
+    const std::vector<std::vector<ElementId>>& inner() const { return inner_; }
+    /// The least part that holds all elements that are marked, by element. O(elements).
+    ElementPart part_with(Field<ElementId, std::uint8_t> marked) const;
     std::size_t memory_bytes() const;
 
   private:
     static constexpr std::uint32_t regular = 0xffffffffu;
-    void add_nodes(ElementId e);
+    void add_depth(ElementId e);
+    void set_nodes(ElementId e);
     void add_matrices(ElementId child);
     void add_pull(ElementId parent);
     std::span<const double> matrix(const std::vector<double>& own, ElementId child, bool pull) const;
@@ -65,7 +75,7 @@ class LinkSites {
     Field<ElementId, Point> centre_;
     Field<ElementId, std::uint32_t> own_matrix_;  ///< Of children that lie like no other: where their matrices stand.
     std::vector<double> push_, pull_;
-    std::vector<std::vector<ElementId>> levels_;
+    std::vector<std::vector<ElementId>> inner_;
     Field<ElementId, std::uint32_t> depth_;
     Field<ElementId, std::uint32_t> cell_frame_;  ///< Of a cell: where its frame stands in `cell_frames_`.
     std::vector<Patch> cell_frames_;
@@ -82,6 +92,7 @@ class NodalField {
         a(values_);
     }
     void clear();
+    void clear(const ElementPart& part);
 
     double* at(ElementId e, std::size_t band) { return &values_[(e.value * bands + band) * sites_->stride()]; }
     const double* at(ElementId e, std::size_t band) const {
@@ -91,13 +102,19 @@ class NodalField {
     void set_node(ElementId e, std::size_t k, const Spectrum& value);
 
     /// Every inner element takes its numbers from its children's. O(elements), level by level on all threads.
-    void pull();
+    void pull() { pull(sites_->inner()); }
+    void pull(const ElementPart& part) { pull(part.inner); }
     /// How far the mean over the bands departs from each element's own function, RMS over the element: 0 on leaves.
     Field<ElementId, double> roughness() const;
     /// Every child adds what its parent holds; leaves end with the sum along their path. Likewise.
-    void push();
+    void push() { push(sites_->inner()); }
+    void push(const ElementPart& part) { push(part.inner); }
 
   private:
+    using Levels = std::vector<std::vector<ElementId>>;
+    void pull(const Levels& inner);
+    void push(const Levels& inner);
+
     const LinkSites* sites_;
     std::vector<double> values_;
 };

@@ -14,46 +14,60 @@ std::size_t position(std::size_t n, std::size_t k, std::size_t l) {
     return n == LinkLayout2::n ? LinkLayout2::position(k, l) : LinkLayout3::position(k, l);
 }
 
-/// By receiver, by counting, and then by source, a receiver at a time on all threads.
-void sort_by_receiver(std::vector<Link>& links, std::size_t elements) {
+/// By receiver, by counting, and then by source, a receiver at a time on all threads. Returns where those of each
+/// receiver end.
+std::vector<std::size_t> sort_by_receiver(std::vector<Link>& links, std::size_t elements) {
     std::vector<std::size_t> end(elements + 1, 0);
     for (const Link& link : links) ++end[link.receiver.value + 1];
     for (std::size_t e = 0; e < elements; ++e) end[e + 1] += end[e];
-    std::vector<Link> sorted(links.size());
-    for (const Link& link : links) sorted[end[link.receiver.value]++] = link;
+    const auto by_receiver = [](const Link& a, const Link& b) { return a.receiver < b.receiver; };
+    if (std::is_sorted(links.begin(), links.end(), by_receiver)) {
+        std::copy(end.begin() + 1, end.end(), end.begin());
+    } else {
+        std::vector<Link> sorted(links.size());
+        for (const Link& link : links) sorted[end[link.receiver.value]++] = link;
+        links = std::move(sorted);
+    }
+    end.pop_back();
     parallel_for(elements, 64, [&](std::size_t e) {
-        const auto at = [&](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
+        const auto at = [&](std::size_t i) { return links.begin() + static_cast<std::ptrdiff_t>(i); };
         std::sort(at(e == 0 ? 0 : end[e - 1]), at(end[e]),
                   [](const Link& a, const Link& b) { return a.source < b.source; });
     });
-    links = std::move(sorted);
+    return end;
 }
 
 }  // namespace
 
 Links::Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks)
     : sites_(&sites), blocks_(std::move(blocks)) {
-    sort_by_receiver(links, sites.tree().size());
-    const std::size_t n = sites.nodes();
-    words_ = n == 1 ? 0 : (n * n + 31) / 32;
-    for (const Link& link : links) {
-        if (receiver_.empty() || receiver_.back() != link.receiver) {
-            receiver_.push_back(link.receiver);
-            first_.push_back(source_.size());
-        }
-        source_.push_back(link.source);
-        if (n == 1) {
-            factor_.push_back(link.factor);
-        } else {
-            lay_out(link);
-        }
+    const std::size_t elements = sites.tree().size(), n = sites.nodes();
+    const std::vector<std::size_t> end = sort_by_receiver(links, elements);
+    Field<ElementId, std::uint32_t> place(elements, 0);  // among the sources
+    for (const Link& link : links) place[link.source] = 1;
+    for (ElementId e : place.ids()) {
+        const std::size_t first = e.value == 0 ? 0 : end[e.value - 1];
+        if (first < end[e.value]) receiver_.push_back(e), first_.push_back(first);
+        if (place[e] == 0) continue;
+        place[e] = static_cast<std::uint32_t>(sources_.size());
+        sources_.push_back(e);
     }
-    first_.push_back(source_.size());
+    first_.push_back(links.size());
+    words_ = n == 1 ? 0 : (n * n + 31) / 32;
+    source_.resize(links.size());
+    (n == 1 ? factor_.resize(links.size()) : block_.resize(links.size()));
+    visible_.resize(words_ * links.size(), 0);
+    parallel_for(links.size(), 4096, [&](std::size_t i) {
+        source_[i] = place[links[i].source];
+        if (n == 1)
+            factor_[i] = links[i].factor;
+        else
+            lay_out(links[i], i);
+    });
 }
 
-void Links::lay_out(const Link& link) {
-    const std::size_t n = sites_->nodes(), first = visible_.size();
-    visible_.resize(first + words_, 0);
+void Links::lay_out(const Link& link, std::size_t i) {
+    const std::size_t n = sites_->nodes(), first = i * words_;
     std::array<float, 81> block;
     for (std::size_t k = 0; k < n; ++k)
         for (std::size_t l = 0; l < n; ++l) {
@@ -61,12 +75,12 @@ void Links::lay_out(const Link& link) {
             if (link.sees(k * n + l)) visible_[first + to / 32] |= 1u << (to % 32);
             if (link.block != Link::far) block[to] = blocks_[link.block + k * n + l];
         }
-    block_.push_back(link.block);
+    block_[i] = link.block;
     if (link.block != Link::far) std::copy_n(block.begin(), n * n, blocks_.begin() + link.block);
 }
 
 std::size_t Links::memory_bytes() const {
-    return 4 * (source_.size() + factor_.size() + visible_.size() + block_.size() + blocks_.size()) +
+    return 4 * (source_.size() + sources_.size() + factor_.size() + visible_.size() + block_.size() + blocks_.size()) +
            12 * receiver_.size();
 }
 
@@ -74,7 +88,7 @@ template <std::size_t groups>
 double Links::mean_form_factor(std::size_t row, std::size_t link) const {
     const ElementId p = receiver_[row];
     const std::size_t n = sites_->nodes();
-    const SourceNodes<groups> source(*sites_, source_[link]);
+    const SourceNodes<groups> source(*sites_, sources_[source_[link]]);
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) {
         four::Real K[groups]{};
@@ -98,26 +112,39 @@ std::vector<KeptLink> Links::list() const {
             const double factor = sites_->nodes() == 1   ? static_cast<double>(factor_[i])
                                   : sites_->nodes() == 4 ? mean_form_factor<1>(row, i)
                                                          : mean_form_factor<3>(row, i);
-            out.push_back({receiver_[row], source_[i], static_cast<float>(factor)});
+            out.push_back({receiver_[row], sources_[source_[i]], static_cast<float>(factor)});
         }
     return out;
 }
 
-LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far,
-                           const LeafNumbering& numbering)
-    : sites_(&sites), links_(&links), far_(far), numbering_(&numbering), b_(sites), E_(sites) {}
+void Links::mark(Field<ElementId, std::uint8_t>& marked) const {
+    for (ElementId e : receiver_) marked[e] = 1;
+    for (ElementId e : sources_) marked[e] = 1;
+}
+
+ElementPart linked_part(const LinkSites& sites, const Links& links, const ClusterLinks* far) {
+    Field<ElementId, std::uint8_t> marked(sites.tree().size(), 0);
+    links.mark(marked);
+    if (far) far->mark(marked);
+    return sites.part_with(std::move(marked));
+}
+
+LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part)
+    : sites_(&sites), links_(&links), far_(far), part_(&part), b_(sites), E_(sites) {}
 
 void LinkOperator::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
     const std::size_t n = sites_->nodes();
-    parallel_for(numbering_->leaves.size(), 256, [&](std::size_t i) {
-        for (std::size_t k = 0; k < n; ++k) b_.set_node(numbering_->leaves[i], k, radiosity[i * n + k]);
+    const std::vector<ElementId>& ends = part_->ends;
+    parallel_for(ends.size(), 256, [&](std::size_t i) {
+        for (std::size_t k = 0; k < n; ++k) b_.set_node(ends[i], k, radiosity[i * n + k]);
     });
-    b_.pull();
-    links_->gather(b_, E_);
+    b_.pull(*part_);
+    E_.clear(*part_);
+    links_->add_to(E_, b_);
     if (far_) far_->add_to(E_, b_);
-    E_.push();
-    parallel_for(numbering_->leaves.size(), 256, [&](std::size_t i) {
-        for (std::size_t k = 0; k < n; ++k) irradiance[i * n + k] = E_.node(numbering_->leaves[i], k);
+    E_.push(*part_);
+    parallel_for(ends.size(), 256, [&](std::size_t i) {
+        for (std::size_t k = 0; k < n; ++k) irradiance[i * n + k] = E_.node(ends[i], k);
     });
 }
 

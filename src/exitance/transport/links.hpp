@@ -49,6 +49,11 @@ class Links {
     /// E of every element that links lead to, at its nodes; of the others: zero. O(links). Kernels are made, and added
     /// up within a link, in single precision: 1e-6 of what arrives.
     void gather(const NodalField& b, NodalField& E) const;
+    /// Adds that to E, which is zero where links lead to.
+    void add_to(NodalField& E, const NodalField& b) const;
+
+    /// Marks the elements that links lead to or come from.
+    void mark(Field<ElementId, std::uint8_t>& marked) const;
 
     /// All of them, by receiver, then by source. O(links).
     std::vector<KeptLink> list() const;
@@ -56,7 +61,7 @@ class Links {
   private:
     template <std::size_t groups>
     double mean_form_factor(std::size_t row, std::size_t link) const;
-    void lay_out(const Link& link);
+    void lay_out(const Link& link, std::size_t i);
     void gather_constants(const NodalField& b, NodalField& E) const;
     template <class Layout>
     void gather_kernels(const NodalField& b, NodalField& E) const;
@@ -64,9 +69,10 @@ class Links {
     void for_rows(const Row& gather_row) const;
 
     const LinkSites* sites_;
-    std::vector<ElementId> receiver_;  ///< Of each row.
-    std::vector<std::size_t> first_;   ///< Row i stands in [first_[i], first_[i + 1]).
-    std::vector<ElementId> source_;
+    std::vector<ElementId> receiver_;     ///< Of each row.
+    std::vector<std::size_t> first_;      ///< Row i stands in [first_[i], first_[i + 1]).
+    std::vector<ElementId> sources_;      ///< All of them, once, in order of their ids;
+    std::vector<std::uint32_t> source_;   ///< of a link: its place among them.
     std::vector<float> factor_;           ///< Order 1.
     std::vector<std::uint32_t> visible_;  ///< Higher orders: `words_` a link, bits as LinkLayout has them.
     std::vector<std::uint32_t> block_;    ///< Higher orders.
@@ -74,13 +80,18 @@ class Links {
     std::size_t words_ = 0;
 };
 
-/// Links as an operator on what the leaves hold: unknown i n + k is node k of leaf number i. Pull, links, push.
+/// The least part of a hierarchy that holds all elements which links lead to or come from. `far`: those of clusters;
+/// may be null. What lies below its ends receives alike, and sends as a whole.
+ElementPart linked_part(const LinkSites& sites, const Links& links, const ClusterLinks* far);
+
+/// Links as an operator on what the ends of a part of the hierarchy hold: unknown i n + k is node k of end i. Pull,
+/// links, push. All elements that links touch must be in the part.
 class LinkOperator final : public TransportOperator {
   public:
     /// `far`: those of clusters; may be null.
-    LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const LeafNumbering& numbering);
+    LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part);
 
-    std::size_t size() const override { return numbering_->leaves.size() * sites_->nodes(); }
+    std::size_t size() const override { return part_->ends.size() * sites_->nodes(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
     /// No cheaper than gathering for all of them.
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
@@ -90,7 +101,7 @@ class LinkOperator final : public TransportOperator {
     const LinkSites* sites_;
     const Links* links_;
     const ClusterLinks* far_;
-    const LeafNumbering* numbering_;
+    const ElementPart* part_;
     mutable NodalField b_, E_;
 };
 

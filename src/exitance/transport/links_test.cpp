@@ -113,6 +113,33 @@ TEST(Links, BringInSinglePrecisionWhatTheyAreListedWith) {
     }
 }
 
+/// What lies below the elements that links touch receives as they do, and sends as a whole.
+TEST(LinkOperator, OnThePartThatLinksTouchBringsWhatItDoesOnAllLeaves) {
+    const Scene scene = built_scene("cornell");
+    for (const HierarchyBasis kind : all_kinds) {
+        const Linked linked(scene, kind, 0.05, [](const Point& x) { return 1 + x.z + x.x * x.y; });
+        const LinkSites& sites = linked.sites;
+        const Links links = linked.refiner.make_links();
+        const ElementPart all{sites.inner(), linked.tree.leaves()}, part = linked_part(sites, links, nullptr);
+        EXPECT_LT(part.ends.size(), all.ends.size()) << static_cast<int>(kind);
+        NodalField E[] = {NodalField(sites), NodalField(sites)};
+        for (const ElementPart* of : {&all, &part}) {
+            const LinkOperator F(sites, links, nullptr, *of);
+            std::vector<Spectrum> b, irradiance(F.size());
+            for (ElementId e : of->ends)
+                for (std::size_t k = 0; k < sites.nodes(); ++k) b.push_back(linked.b.node(e, k));
+            F.gather(b, irradiance);
+            NodalField& out = E[of == &part];
+            for (std::size_t i = 0; i < irradiance.size(); ++i)
+                out.set_node(of->ends[i / sites.nodes()], i % sites.nodes(), irradiance[i]);
+            out.push();
+        }
+        for (ElementId e : all.ends)  // single precision in the gather may round otherwise
+            for (std::size_t k = 0; k < sites.nodes(); ++k)
+                EXPECT_NEAR(E[1].node(e, k)[0], E[0].node(e, k)[0], 1e-6) << static_cast<int>(kind);
+    }
+}
+
 TEST(Links, AreTheSameOnAnyNumberOfThreads) {
     const Scene scene = built_scene("cornell");
     std::vector<double> before;
