@@ -37,7 +37,7 @@ namespace {
 
 /// Pairs a task: enough of them to pay for it, and not so many that threads wait for one another at the end of a round.
 std::size_t block_size_for(std::size_t pairs) {
-    constexpr std::size_t tasks = 256, least = 16, most = 128;
+    constexpr std::size_t tasks = 512, least = 8, most = 128;
     return std::clamp(pairs / tasks, least, most);
 }
 
