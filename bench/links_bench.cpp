@@ -66,7 +66,7 @@ struct Linked {
                 if (sites.nodes() == 1) {
                     link.factor = 1e-3f;
                 } else {
-                    link.block = Link::far;
+                    link.set_far(1);
                     for (std::size_t bit = 0; bit < sites.nodes() * sites.nodes(); ++bit)
                         if (random.uniform() >= hidden) link.set(bit);
                 }

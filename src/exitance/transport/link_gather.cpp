@@ -114,8 +114,8 @@ class ReceivedLight {
         }
     }
 
-    /// By the kernel, made anew; `visible` as Links keeps it.
-    void add(const SourceRecord<n>& q, const std::uint32_t* visible) {
+    /// By the kernel, made anew and scaled; `visible` as Links keeps it.
+    void add(const SourceRecord<n>& q, float scale, const std::uint32_t* visible) {
         float D[3];
         for (std::size_t axis = 0; axis < 3; ++axis)
             D[axis] = static_cast<float>(scale_ * (q.centre[axis] - centre_[axis]));
@@ -123,8 +123,8 @@ class ReceivedLight {
         send(q, D, y, light);
         keep_in_memory(y), keep_in_memory(light);
 
-        const Lanes there =
-            positive(q.normal[0] * (x_[0] - D[0]) + q.normal[1] * (x_[1] - D[1]) + q.normal[2] * (x_[2] - D[2]));
+        const Lanes there = scale * positive(q.normal[0] * (x_[0] - D[0]) + q.normal[1] * (x_[1] - D[1]) +
+                                             q.normal[2] * (x_[2] - D[2]));
         Lanes arrived[bands]{};
         for (std::size_t l = 0; l < n; ++l) {
             const Lanes dx = y[0][l] - x_[0], dy = y[1][l] - x_[1], dz = y[2][l] - x_[2];
@@ -133,7 +133,7 @@ class ReceivedLight {
             for (std::size_t band = 0; band < bands; ++band) arrived[band] += K * light[band][l];
         }
         for (std::size_t band = 0; band < bands; ++band) sum_[band] += there * arrived[band];
-        if constexpr (Layout::has_rest) add_rest(q, D, y, light, visible);
+        if constexpr (Layout::has_rest) add_rest(q, D, y, light, scale, visible);
     }
 
     /// By a block that was integrated.
@@ -197,10 +197,11 @@ class ReceivedLight {
     }
 
     void add_rest(const SourceRecord<n>& q, const float (&D)[3], const float (&y)[3][n], const float (&light)[bands][n],
-                  const std::uint32_t* visible) {
+                  float scale, const std::uint32_t* visible) {
         float there = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) there += q.normal[axis] * (rest_[axis] - D[axis]);
         if (there <= 0) return;
+        there *= scale;
         const Lanes dx = load<lanes>(y[0]) - rest_[0], dy = load<lanes>(y[1]) - rest_[1],
                     dz = load<lanes>(y[2]) - rest_[2];
         const Lanes rr = dx * dx + dy * dy + dz * dz;
@@ -270,8 +271,8 @@ void Links::gather_kernels(const NodalField& b, NodalField& E) const {
         ReceivedLight<Layout> receiver(*sites_, receiver_[row], scale);
         for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
             prefetch(sources[source_[std::min(i + ahead, source_.size() - 1)]]);
-            if (block_[i] == Link::far)
-                receiver.add(sources[source_[i]], &visible_[i * words_]);
+            if (Link::is_far(block_[i]))
+                receiver.add(sources[source_[i]], Link::scale(block_[i]), &visible_[i * words_]);
             else
                 receiver.add(&blocks_[block_[i]], b, sources_[source_[i]]);
             if (i % at_a_time == 0 || i + 1 == first_[row + 1]) receiver.flush(E, receiver_[row]);

@@ -5,6 +5,7 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/transport/direct_projection.hpp"
+#include "exitance/transport/form_factor.hpp"
 
 namespace exitance {
 
@@ -102,6 +103,7 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     const double gap = norm(sites_.centre(q) - sites_.centre(p)) - sites_.radius(p);
     const double ratio = sites_.radius(q) / std::max(gap, 1e-3 * sites_.radius(q));
     const int M = sites_.basis().order();
+    ratio_ = ratio;
 
     // The rule's error relative to what it gives falls like (size / distance)^(2 M).
     constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1;
@@ -138,7 +140,7 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
         if (n_ > 1) departure[i] = light(row(frame.at(checks.at[i]), n));
         for (std::size_t k = 0; k < n_; ++k) departure[i] -= checks.factors[i * n_ + k] * node_light_[k];
     }
-    const double unevenness = 0.5 * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
+    const double unevenness = (M == 1 ? 0.5 : 1.5) * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
     return (near_ ? 0 : most * rule_error) + tolerance_.systematic * unevenness;
 }
 
@@ -303,11 +305,33 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     return out;
 }
 
+double LinkJudge::scale_of_rule(ElementId p, ElementId q) {
+    constexpr double hardly = 1e-5;                                                // of what arrives
+    if (near_ || std::pow(ratio_, 2 * sites_.basis().order()) < hardly) return 1;  // receivers are no larger
+    const Normal& n = sites_.normal(p);
+    const std::vector<Point> outline = sites_.tree().outline(q);
+    double exact = 0, rule = 0;
+    const auto add = [&](double weight, const Point& x, const Row& row) {
+        exact += weight * point_to_polygon(x, n, outline);
+        for (std::size_t l = 0; l < n_; ++l) rule += weight * row[l];
+    };
+    if (n_ == 1) {
+        const Patch frame = sites_.frame(p);
+        for (Vec2 at : checks(frame.shape).at) add(1, frame.at(at), row(frame.at(at), n));
+    } else {
+        for (std::size_t k = 0; k < n_; ++k) add(sites_.weight(p, k), sites_.node(p, k), rows_[k]);
+    }
+    ++form_factors_;
+    constexpr double least = 0.5, most = 2;  // beyond, it is the horizon that cuts the source
+    return rule > 0 ? std::clamp(exact / rule, least, most) : 1;
+}
+
 /// What the rays have shown becomes bits where it is yes or no, and part of the block where it is in between.
 void LinkJudge::hand_over(bool open, Result& out) {
     if (n_ == 1) {
         const double share = open ? 1 : visible_[0];
-        out.link.factor = static_cast<float>(form_factor_ * share);
+        const double scale = scale_of_rule(out.link.receiver, out.link.source);
+        out.link.factor = static_cast<float>(scale * form_factor_ * share);
         for (double& d : out.departure) d *= share;
         return;
     }
@@ -324,6 +348,9 @@ void LinkJudge::hand_over(bool open, Result& out) {
             partial = share > 0 && share < 1;
         }
         if (partial && !near_) {
+            const double scale = scale_of_rule(out.link.receiver, out.link.source);
+            for (Row& row : rows_)
+                for (double& K : row) K *= scale;
             for (std::size_t k = 0; k < n_; ++k)
                 for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(rows_[k][l]));
             near_ = true;
@@ -339,7 +366,7 @@ void LinkJudge::hand_over(bool open, Result& out) {
                 out.shadowed[k] += rows_[k][l] * visible_[k * n_ + l] * source_light_[l];
     }
     out.near = near_;
-    out.link.block = Link::far;
+    if (!near_) out.link.set_far(static_cast<float>(scale_of_rule(out.link.receiver, out.link.source)));
     for (std::size_t i = 0; i < n_ * n_; ++i)
         if (open || near_ || visible_[i] > 0) out.link.set(i);
 }

@@ -100,6 +100,8 @@ class LinkJudge {
     double cast_many(ElementId p, ElementId q, unsigned each, bool few);
     enum class Cut { nothing, source, receiver };
     Cut what_to_cut(ElementId p, ElementId q, bool mixed) const;
+    /// By how much the rule's kernel is to be scaled, so that even light arrives exactly in the mean over the receiver.
+    double scale_of_rule(ElementId p, ElementId q);
     void hand_over(bool open, Result& out);
 
     struct Checks {
@@ -132,6 +134,7 @@ class LinkJudge {
     std::array<double, 9> variance_{};  ///< Of the light at the receiver's nodes.
     std::array<Row, 9> rows_;           ///< From the receiver's nodes.
     bool near_ = false;
+    double ratio_ = 0;        ///< Size of the source to its distance.
     double form_factor_ = 0;  ///< From the receiver's first node.
     std::size_t rays_ = 0, form_factors_ = 0;
 };

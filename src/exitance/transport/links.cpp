@@ -73,10 +73,10 @@ void Links::lay_out(const Link& link, std::size_t i) {
         for (std::size_t l = 0; l < n; ++l) {
             const std::size_t to = position(n, k, l);
             if (link.sees(k * n + l)) visible_[first + to / 32] |= 1u << (to % 32);
-            if (link.block != Link::far) block[to] = blocks_[link.block + k * n + l];
+            if (!Link::is_far(link.block)) block[to] = blocks_[link.block + k * n + l];
         }
     block_[i] = link.block;
-    if (link.block != Link::far) std::copy_n(block.begin(), n * n, blocks_.begin() + link.block);
+    if (!Link::is_far(link.block)) std::copy_n(block.begin(), n * n, blocks_.begin() + link.block);
 }
 
 std::size_t Links::memory_bytes() const {
@@ -90,14 +90,15 @@ double Links::mean_form_factor(std::size_t row, std::size_t link) const {
     const std::size_t n = sites_->nodes();
     const SourceNodes<groups> source(*sites_, sources_[source_[link]]);
     double sum = 0;
+    const bool far = Link::is_far(block_[link]);
+    const double scale = far ? static_cast<double>(Link::scale(block_[link])) : 1;
     for (std::size_t k = 0; k < n; ++k) {
         four::Real K[groups]{};
-        if (block_[link] == Link::far) source.kernel(sites_->node(p, k), sites_->normal(p), K);
+        if (far) source.kernel(sites_->node(p, k), sites_->normal(p), K);
         for (std::size_t l = 0; l < n; ++l) {
             const std::size_t at = position(n, k, l);
             if (!(visible_[link * words_ + at / 32] >> (at % 32) & 1u)) continue;
-            const double factor =
-                block_[link] == Link::far ? K[l / 4][l % 4] : static_cast<double>(blocks_[block_[link] + at]);
+            const double factor = far ? scale * K[l / 4][l % 4] : static_cast<double>(blocks_[block_[link] + at]);
             sum += sites_->weight(p, k) * factor;
         }
     }

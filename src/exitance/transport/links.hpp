@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,12 +19,16 @@ struct Link {
     ElementId receiver, source;
     /// Bit k n + l: is node l of the source visible from node k of the receiver? Of order 1: unused.
     std::array<std::uint32_t, 3> visible{};
-    /// Of order 1: form factor times visible share. Else where the link's block stands (Links::blocks_), or `far`.
+    /// Of order 1: form factor times visible share. Else where the link's block stands (Links::blocks_), or, far, the
+    /// number by which its kernel is scaled, with the sign set.
     union {
         float factor;
         std::uint32_t block;
     };
-    static constexpr std::uint32_t far = 0xffffffffu;
+    static constexpr std::uint32_t far = 0x80000000u;
+    static bool is_far(std::uint32_t block) { return block & far; }
+    static float scale(std::uint32_t block) { return std::bit_cast<float>(block & ~far); }
+    void set_far(float scale) { block = far | std::bit_cast<std::uint32_t>(scale); }
 
     bool sees(std::size_t bit) const { return visible[bit / 32] >> (bit % 32) & 1u; }
     void set(std::size_t bit) { visible[bit / 32] |= 1u << (bit % 32); }
@@ -35,7 +40,9 @@ struct Link {
 ///
 ///     E_k = sum_l K_kl V_kl b_l,    K_kl = w_l A cos cos / (pi r^2) between x_k and y_l
 ///
-/// over the nodes y_l of the source, with b_l its numbers: a rule as exact as the basis, made anew when it is applied.
+/// over the nodes y_l of the source, with b_l its numbers: a rule as exact as the basis, made anew when it is applied,
+/// and scaled, so that even light arrives exactly in the mean over the receiver: what the rule misses has the same sign
+/// from link to link, and would come back from every reflection.
 /// Where the source is so near that the rule is not exact enough, the block K is integrated once (NearRow) and kept.
 /// Source: [Hanrahan91], [Gortler93].
 class Links {

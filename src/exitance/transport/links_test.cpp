@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/transport/form_factor.hpp"
 #include "exitance/transport/link_refiner.hpp"
 #include "support/built_scene.hpp"
 #include "support/lit_elements.hpp"
@@ -109,6 +110,25 @@ TEST(Links, BringInSinglePrecisionWhatTheyAreListedWith) {
             for (std::size_t k = 0; k < linked.sites.nodes(); ++k) mean += linked.sites.weight(e, k) * E.node(e, k)[0];
             // Sums of some hundred floats; the list's kernels are double.
             EXPECT_NEAR(mean, listed[e], 3e-6 * std::max(listed[e], 0.01)) << static_cast<int>(kind);
+        }
+    }
+}
+
+/// A rule's error has one sign for all of a wall, and would come back from every reflection.
+TEST(Links, BringEvenLightExactlyInTheMeanOverTheirReceiver) {
+    const Scene box = box_scene(1, 1, 4, 0.8, 1);
+    for (const HierarchyBasis kind : all_kinds) {
+        const Linked linked(box, kind, 0.01, [](const Point& x) { return std::exp(-x.z); });
+        const LinkSites& sites = linked.sites;
+        for (const KeptLink& link : linked.refiner.make_links().list()) {
+            if (sites.nodes() == 1) continue;  // their receivers' mean is over other points
+            double exact = 0;
+            for (std::size_t k = 0; k < sites.nodes(); ++k)
+                exact += sites.weight(link.receiver, k) * point_to_polygon(sites.node(link.receiver, k),
+                                                                           sites.normal(link.receiver),
+                                                                           linked.tree.outline(link.source));
+            // Links are scaled where they can be off by 1e-5; blocks and scales are floats.
+            EXPECT_NEAR(link.form_factor, exact, 2e-5 * exact + 1e-9) << static_cast<int>(kind);
         }
     }
 }
