@@ -10,9 +10,11 @@
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/linked_by_rays.hpp"
 #include "exitance/methods/nodal_light.hpp"
+#include "exitance/solve/conserving_transport.hpp"
 #include "exitance/transport/cluster_refiner.hpp"
 #include "exitance/transport/leaf_links.hpp"
 #include "exitance/transport/link_refiner.hpp"
+#include "exitance/transport/open_share.hpp"
 #include "exitance/transport/ray_rows.hpp"
 #include "exitance/transport/rooms.hpp"
 
@@ -89,7 +91,10 @@ class Hierarchy {
             const double factor = std::clamp(0.8 * demand / missed, 0.1, 0.8);
             tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
         }
-        if (!light_.delivers && !input_.stop.requested()) correct_by_rays();
+        if (light_.delivers)
+            conserve();
+        else if (!input_.stop.requested())
+            correct_by_rays();
         hand_over();
         return std::move(light_);
     }
@@ -262,7 +267,9 @@ class Hierarchy {
     ///
     /// Solved on the part of the hierarchy that links touch. Below its ends, where the mesh follows direct light, all
     /// elements receive what the ends do, and the ends send what rhs and that come to: the answer is the same.
-    void solve_on_links(const NodalField& rhs, NodalField& x) {
+    ///
+    /// `closed`: with all light that leaves made to arrive; then `scale_` says by how much more than links bring.
+    void solve_on_links(const NodalField& rhs, NodalField& x, bool closed = false) {
         const ClusterLinks* const far = far_links_ ? &*far_links_ : nullptr;
         const ElementPart part = linked_part(sites_, *links_, far);
         const LinkOperator F(sites_, *links_, far, part);
@@ -283,10 +290,12 @@ class Hierarchy {
         const bool all_at_once = asked == Relaxation::jacobi || asked == Relaxation::chebyshev;
         const Relaxation method = all_at_once ? asked : Relaxation::gmres;
         const std::size_t before = light_.report.iterations;
-        light_.report = solve_radiosity({F, rho, first, area}, method, value,
-                                        {.residual = 0.1 * input_.knobs.residual,
-                                         .max_iterations = input_.knobs.max_iterations,
-                                         .request = &input_.stop});
+        ConservingTransport conserving(F, area);
+        light_.report = solve_conserving({conserving, rho, first, area}, conserving, closed, method, value,
+                                         {.residual = 0.1 * input_.knobs.residual,
+                                          .max_iterations = input_.knobs.max_iterations,
+                                          .request = &input_.stop});
+        scale_ = conserving.scale();
         light_.report.iterations += before;
         x.clear();
         parallel_for(part.ends.size(), 256, [&](std::size_t i) {
@@ -299,6 +308,15 @@ class Hierarchy {
             for (std::size_t k = 0; k < n; ++k) x.set_node(leaves[i], k, rhs.node(leaves[i], k) + x.node(leaves[i], k));
         });
         x.pull();
+    }
+
+    /// In a closed scene nothing of what is reflected may be lost.
+    void conserve() {
+        const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
+        if (!is_closed(input_.stage, light_.tree, light_.numbering, locator, input_.options.seed)) return;
+        input_.progress.phase("solve");
+        solve_on_links(first_, b_, true);
+        input_.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(scale_) - 1)));
     }
 
     /// Defect correction: rays, which know no links, find what these miss of F b in the mean of every leaf, and b = rho
@@ -341,6 +359,10 @@ class Hierarchy {
     NodalField gather() const {
         NodalField E(sites_);
         gather_by_links(b_, E);
+        parallel_for(light_.numbering.leaves.size(), 256, [&](std::size_t i) {
+            const ElementId e = light_.numbering.leaves[i];
+            for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, scale_ * E.node(e, k));
+        });
         for (std::size_t i = 0; i < missed_.size(); ++i) {
             const ElementId e = light_.numbering.leaves[i];
             for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, E.node(e, k) + missed_[i]);
@@ -387,6 +409,7 @@ class Hierarchy {
     std::optional<ClusterRefiner> far_;
     std::optional<Links> links_;
     std::optional<ClusterLinks> far_links_;
+    Spectrum scale_{1.0};           ///< Of what links bring, see ConservingTransport.
     std::vector<Spectrum> missed_;  ///< By the links, of E_ind; of every leaf, or empty.
 };
 

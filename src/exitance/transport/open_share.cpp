@@ -1,5 +1,8 @@
 #include "exitance/transport/open_share.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/transport/element_rays.hpp"
@@ -62,6 +65,20 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
         return Light{is_certainly_open(stage, tree, p, q) ? light : 0, light};
     });
     return sum.all > 0 ? sum.open / sum.all : 1;
+}
+
+bool is_closed(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+               const ElementLocator& locator, std::uint64_t seed) {
+    constexpr std::size_t each = 16;
+    const std::vector<ElementId> leaves = leaves_by_area(stage, tree, numbering);
+    const double missed = parallel_sum<double>(leaves.size(), [&](std::size_t k) {
+        ElementRays rays(stage, tree, locator);
+        std::array<std::uint32_t, each> hits{};
+        rays.cast(leaves[k], hash(seed, static_cast<std::uint64_t>(Stream::rows)), hits,
+                  static_cast<std::uint32_t>(each * k));
+        return static_cast<double>(std::count(hits.begin(), hits.end(), ElementRays::missed));
+    });
+    return missed == 0;
 }
 
 }  // namespace exitance

@@ -11,4 +11,9 @@ namespace exitance {
 double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                   const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed);
 
+/// Does whatever leaves a surface arrive at the front of one? As some ten thousand rays from everywhere tell: what less
+/// than that of the light escapes by is as good as closed.
+bool is_closed(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+               const ElementLocator& locator, std::uint64_t seed);
+
 }  // namespace exitance

@@ -109,5 +109,14 @@ TEST(OpenShare, IsAllWhereNothingStandsInBetweenAndLittleInARoomWithBoxes) {
     EXPECT_LT(cornell, 0.6) << "the floor sees nothing whole";
 }
 
+TEST(IsClosed, TellsABoxFromAnOpenRoom) {
+    const auto closed = [](Scene scene) {
+        const Rows r(std::move(scene), [](const Point&) { return 1.0; });
+        return is_closed(r.stage, r.tree, r.numbering, r.locator, 1);
+    };
+    EXPECT_TRUE(closed(box_scene(1, 2, 3, 0.5, 1)));
+    EXPECT_FALSE(closed(built_scene("spiral")));
+}
+
 }  // namespace
 }  // namespace exitance

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "exitance/solve/relaxation.hpp"
+
+namespace exitance {
+
+/// E = s F b, with a factor s a band for which no light is lost between elements: in a closed scene, where whatever
+/// leaves a surface arrives at one,
+///
+///     sum_i A_i E_i = sum_i A_i b_i.
+///
+/// What F misses is alike from place to place, comes back from every reflection, and so makes all of a bright room too
+/// dark by more than any link's error; s - 1 is that share, and small.
+class ConservingTransport final : public TransportOperator {
+  public:
+    /// `area`: of each unknown, m^2. Both must outlive it. To begin with, s = 1.
+    ConservingTransport(const TransportOperator& F, std::span<const double> area) : F_(F), area_(area) {}
+
+    /// Sets s for the light b. One gather. Where it would be far from 1, F is at fault otherwise, and s stays.
+    void conserve(std::span<const Spectrum> b);
+    const Spectrum& scale() const { return scale_; }
+
+    std::size_t size() const override { return F_.size(); }
+    void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
+    Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override {
+        return scale_ * F_.gather_at(receiver, radiosity);
+    }
+    std::size_t memory_bytes() const override { return F_.memory_bytes(); }
+
+  private:
+    const TransportOperator& F_;
+    std::span<const double> area_;
+    Spectrum scale_{1.0};
+};
+
+/// b = rhs + rho s F b, from the b given; `F` is system.F. Solves for the s that there is, and, in a closed scene, for
+/// that of the light found, twice: s hardly depends on b.
+SolveReport solve_conserving(const RadiositySystem& system, ConservingTransport& F, bool closed, Relaxation method,
+                             std::span<Spectrum> b, StopRule stop);
+
+}  // namespace exitance
