@@ -306,20 +306,14 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
 }
 
 double LinkJudge::scale_of_rule(ElementId p, ElementId q) {
-    constexpr double hardly = 1e-5;                                                // of what arrives
-    if (near_ || std::pow(ratio_, 2 * sites_.basis().order()) < hardly) return 1;  // receivers are no larger
+    constexpr double hardly = 1e-5;  // of what arrives
+    if (near_ || std::pow(ratio_, 2 * sites_.basis().order()) < hardly) return 1;
     const Normal& n = sites_.normal(p);
     const std::vector<Point> outline = sites_.tree().outline(q);
     double exact = 0, rule = 0;
-    const auto add = [&](double weight, const Point& x, const Row& row) {
-        exact += weight * point_to_polygon(x, n, outline);
-        for (std::size_t l = 0; l < n_; ++l) rule += weight * row[l];
-    };
-    if (n_ == 1) {
-        const Patch frame = sites_.frame(p);
-        for (Vec2 at : checks(frame.shape).at) add(1, frame.at(at), row(frame.at(at), n));
-    } else {
-        for (std::size_t k = 0; k < n_; ++k) add(sites_.weight(p, k), sites_.node(p, k), rows_[k]);
+    for (std::size_t k = 0; k < n_; ++k) {
+        exact += sites_.weight(p, k) * point_to_polygon(sites_.node(p, k), n, outline);
+        for (std::size_t l = 0; l < n_; ++l) rule += sites_.weight(p, k) * rows_[k][l];
     }
     ++form_factors_;
     constexpr double least = 0.5, most = 2;  // beyond, it is the horizon that cuts the source
@@ -330,8 +324,7 @@ double LinkJudge::scale_of_rule(ElementId p, ElementId q) {
 void LinkJudge::hand_over(bool open, Result& out) {
     if (n_ == 1) {
         const double share = open ? 1 : visible_[0];
-        const double scale = scale_of_rule(out.link.receiver, out.link.source);
-        out.link.factor = static_cast<float>(scale * form_factor_ * share);
+        out.link.factor = static_cast<float>(form_factor_ * share);
         for (double& d : out.departure) d *= share;
         return;
     }

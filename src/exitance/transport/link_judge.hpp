@@ -100,7 +100,8 @@ class LinkJudge {
     double cast_many(ElementId p, ElementId q, unsigned each, bool few);
     enum class Cut { nothing, source, receiver };
     Cut what_to_cut(ElementId p, ElementId q, bool mixed) const;
-    /// By how much the rule's kernel is to be scaled, so that even light arrives exactly in the mean over the receiver.
+    /// By how much the kernel of orders 2 and 3 is to be scaled, so that even light arrives exactly in the mean over
+    /// the receiver. Constants have rays to correct them.
     double scale_of_rule(ElementId p, ElementId q);
     void hand_over(bool open, Result& out);
 
