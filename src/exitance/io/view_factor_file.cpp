@@ -1,5 +1,6 @@
 #include "exitance/io/view_factor_file.hpp"
 
+#include <charconv>
 #include <cstdio>
 
 #include "exitance/io/atomic_file.hpp"
@@ -12,6 +13,12 @@ void append(std::string& text, const char* format, Values... values) {
     char buffer[64];
     const int length = std::snprintf(buffer, sizeof buffer, format, values...);
     text.append(buffer, static_cast<std::size_t>(length));
+}
+
+/// As by %.17g: no digit is lost; millions of entries are most of what writing takes.
+void append_exactly(std::string& text, double value) {
+    char buffer[64];
+    text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 17).ptr);
 }
 
 bool ends_with_vf(const std::string& path) {
@@ -32,7 +39,7 @@ std::string view_factors_csv(const ViewFactors& table) {
             if (F == 0)
                 text += ",0";
             else
-                append(text, ",%.17g", F);
+                append_exactly(text += ',', F);
         text += '\n';
     }
     return text;

@@ -74,6 +74,7 @@ class OccludedExchange {
     double apply(const Cell& cell, int points, Glance& glance);
     double seen_from(Vec2 p, Seen& seen);
 
+    static constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
     OccludedPair pair_;
     PlaneFrame frame_{{}, {0, 0, 1}};
     VisibleSource visible_;
