@@ -230,7 +230,7 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
     cuts_.clear();
     for (const Body& body : bodies_) {
         // What misses the source as a whole would miss every part of it, and most of many blockers do.
-        Pyramid pyramid;
+        Pyramid pyramid{};
         if (!find_box(body, pyramid)) continue;
         const std::size_t mark = lines_.size();
         bool inside = false;
@@ -269,7 +269,7 @@ bool VisibleSource::is_hidden_from(std::span<const Point> receiver) {
         bool hides = true;
         for (const Point& x : receiver) {
             look_from(x);
-            Pyramid pyramid;
+            Pyramid pyramid{};
             bool inside = false;
             hides = find_box(body, pyramid) && pyramid.low_u <= whole_.low_u && pyramid.high_u >= whole_.high_u &&
                     pyramid.low_v <= whole_.low_v && pyramid.high_v >= whole_.high_v &&
