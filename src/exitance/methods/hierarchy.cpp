@@ -55,6 +55,7 @@ class Hierarchy {
         const double first = coarse * demand / std::sqrt(links_in_a_sum);
         LinkTolerance tolerance = tolerance_of(first);
         tolerance.oracle = input_.options.oracle;
+        tolerance.hidden = hidden();
         tolerance.strongest = first_strength(first);
         constexpr int most_rounds = 8;
         int round = 0;
@@ -156,6 +157,19 @@ class Hierarchy {
                 .quadrature = input_.options.visibility == VisibilityKind::quadrature,
                 .triage = input_.options.triage,
                 .seed = input_.options.seed};
+    }
+
+    /// Bilinear sources hide most from near receivers, all with one sign. Where rays correct it, that does not matter.
+    double hidden() const {
+        constexpr double little = 0.5, by_bilinear = 1.5;
+        if (!is_polynomial_ || basis_.order() != 2) return little;
+        const LeafNumbering numbering(light_.tree);
+        const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
+        std::vector<Spectrum> light;
+        for (ElementId e : numbering.leaves) light.push_back(mean_over(sites_, first_, e));
+        const double open =
+            exitance::open_share(input_.stage, light_.tree, numbering, locator, light, input_.options.seed);
+        return open > mostly_open ? by_bilinear : little;
     }
 
     /// How much larger the error of light may be that is gathered once more.

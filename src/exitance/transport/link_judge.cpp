@@ -140,9 +140,7 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
         if (n_ > 1) departure[i] = light(row(frame.at(checks.at[i]), n));
         for (std::size_t k = 0; k < n_; ++k) departure[i] -= checks.factors[i * n_ + k] * node_light_[k];
     }
-    // Of the basis's own polynomials, bilinear ones hide most from near receivers, and all with one sign.
-    const double hidden = M == 2 ? 1.5 : 0.5;
-    const double unevenness = hidden * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
+    const double unevenness = tolerance_.hidden * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
     return (near_ ? 0 : most * rule_error) + tolerance_.systematic * unevenness;
 }
 

@@ -19,6 +19,8 @@ struct LinkTolerance {
     /// How much an error that is alike all over a receiver counts: it adds up from link to link and from reflection to
     /// reflection, where others cancel.
     double systematic = 1;
+    /// How much of what a source's polynomial misses of its light may be missed by a receiver as near as it is large.
+    double hidden = 0.5;
     /// When there are more links, sources and receivers are left as they are.
     std::size_t most_links = std::numeric_limits<std::size_t>::max();
     double least_area = 0;    ///< No element is cut below this, m^2.
