@@ -40,9 +40,16 @@ std::vector<WeightedPlace> cell_rule(const std::vector<Vec2>& domain, Vec2 centr
 
 std::vector<WeightedPlace> element_rule(const ElementTree& tree, ElementId e, RuleOrder order) {
     if (tree.is_cell(e)) return cell_rule(tree.domain(e), tree.centre(e), order);
-    const int finer = order == RuleOrder::nodes ? 0 : order == RuleOrder::fine ? 1 : 2;
-    constexpr int degree[] = {2, 5, 6};
-    return places_of(tree.patch(e).is_triangle() ? triangle_rule(degree[finer]) : square_rule(2 + finer));
+    const bool triangle = tree.patch(e).is_triangle();
+    switch (order) {
+        case RuleOrder::nodes:
+            return places_of(triangle ? triangle_rule(2) : square_rule(2));
+        case RuleOrder::fine:
+            return places_of(triangle ? triangle_rule(5) : square_rule(3));
+        case RuleOrder::finer:
+            break;
+    }
+    return places_of(triangle ? triangle_rule(8) : scattered_square_rule());
 }
 
 }  // namespace exitance

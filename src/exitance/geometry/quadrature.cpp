@@ -54,6 +54,12 @@ void add_orbit(std::vector<PlanarNode>& rule, double a, double weight) {
     rule.push_back({{a, 1 - 2 * a}, weight});
 }
 
+/// Adds the six points of the orbit (a, b, 1 - a - b).
+void add_orbit(std::vector<PlanarNode>& rule, double a, double b, double weight) {
+    const double c = 1 - a - b;
+    for (const Vec2& at : {Vec2{a, b}, {b, a}, {a, c}, {c, a}, {b, c}, {c, b}}) rule.push_back({at, weight});
+}
+
 /// The unit square collapsed onto the triangle, (s, t) -> (s, (1 - s) t): the factor 2 (1 - s) costs one degree in s.
 void add_collapsed(std::vector<PlanarNode>& rule, int degree) {
     const LineRule across = gauss_legendre(degree / 2 + 1), along = gauss_legendre((degree + 1) / 2 + 1);
@@ -80,6 +86,13 @@ std::vector<PlanarNode> make_triangle(int degree) {
         const double root = std::sqrt(15.0);
         add_orbit(rule, (6 - root) / 21, (155 - root) / 1200);
         add_orbit(rule, (6 + root) / 21, (155 + root) / 1200);
+    } else if (degree <= 8) {
+        // [Dunavant85] degree 8, its moments solved again to the last digits.
+        rule.push_back({{1.0 / 3, 1.0 / 3}, 0.14431560767778717});
+        add_orbit(rule, 0.45929258829272318, 0.09509163426728462);
+        add_orbit(rule, 0.17056930775176021, 0.10321737053471826);
+        add_orbit(rule, 0.05054722831703098, 0.03245849762319808);
+        add_orbit(rule, 0.00839477740995761, 0.26311282963463811, 0.02723031417443499);
     } else {
         add_collapsed(rule, degree);
     }
@@ -107,6 +120,30 @@ std::span<const PlanarNode> square_rule(int n) {
     static const auto tables = make_tables<std::vector<PlanarNode>>(1, largest_gauss_rule, make_square);
     EXI_CHECK(n >= 1 && n <= largest_gauss_rule);
     return tables[static_cast<std::size_t>(n)];
+}
+
+/// A solution of the 45 equations for the moments to degree 8 in 48 unknowns, by Levenberg and Marquardt's method; of
+/// some dozen with all points inside and weights above 0 the one nearest to the square's steps, kinks and slits.
+std::span<const PlanarNode> scattered_square_rule() {
+    static constexpr PlanarNode rule[] = {
+        {{0.94185584245143994, 0.02289524841317730}, 0.01542361653603885},
+        {{0.38141169573415867, 0.03208537295859170}, 0.04494342442083953},
+        {{0.03700348647058856, 0.05384784716110449}, 0.01873239823717280},
+        {{0.72778423569679396, 0.11687420712988911}, 0.08175005690820396},
+        {{0.17556355685977687, 0.21154725484121123}, 0.08862570441838508},
+        {{0.94781796133458340, 0.29794080262928596}, 0.05552051146046401},
+        {{0.51507976015212031, 0.33848692328968216}, 0.11860454097301544},
+        {{0.03568738589075465, 0.47536594612804761}, 0.04886737585595063},
+        {{0.36482378351422035, 0.54605479617312047}, 0.07473897315613481},
+        {{0.79907468279927329, 0.57966322272633930}, 0.11822598533419955},
+        {{0.21292427778539774, 0.71355041686225085}, 0.08993059369489548},
+        {{0.97707869218743637, 0.78293462606244213}, 0.03259817791603693},
+        {{0.57740413706498628, 0.84776949432928927}, 0.10770888006461948},
+        {{0.05493859599718458, 0.89534896390702723}, 0.03682122947100521},
+        {{0.85674709032411978, 0.96181346274631696}, 0.03537029880163623},
+        {{0.30707768997636326, 0.98451223936965993}, 0.03213823275140203},
+    };
+    return rule;
 }
 
 std::span<const PlanarNode> triangle_rule(int degree) {

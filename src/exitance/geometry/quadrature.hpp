@@ -28,8 +28,13 @@ struct PlanarNode {
 /// n x n Gauss points of the unit square, weights summing to 1, 1 <= n <= 32. Exact to degree 2n - 1 in each direction.
 std::span<const PlanarNode> square_rule(int n);
 
+/// 16 points of the unit square, weights summing to 1, exact to total degree 8; none of fewer is known [Wissmann86]. No two
+/// of them stand in line, so that they see what 4 x 4 Gauss points are blind to: Legendre's polynomial of degree 4,
+/// which vanishes at all of those, or a shadow no wider than the space between two rows.
+std::span<const PlanarNode> scattered_square_rule();
+
 /// A rule for the triangle {u, v >= 0, u + v <= 1}, weights summing to 1, all positive, exact to total degree `degree`,
-/// 0 to 30. Symmetric rules of 1, 3, 6 and 7 points to degree 5 ([Dunavant85], [Radon48]), collapsed Gauss above.
+/// 0 to 30. Symmetric rules of 1, 3, 6, 7 and 16 points to degree 8 ([Dunavant85], [Radon48]), collapsed Gauss above.
 std::span<const PlanarNode> triangle_rule(int degree);
 
 inline constexpr int largest_triangle_degree = 30;

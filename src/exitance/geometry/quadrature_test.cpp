@@ -40,6 +40,31 @@ TEST(SquareRule, IntegratesProductsOfMonomials) {
     }
 }
 
+TEST(ScatteredSquareRule, IntegratesEveryMonomialUpToDegreeEight) {
+    for (int p = 0; p <= 8; ++p)
+        for (int q = 0; p + q <= 8; ++q) {
+            double sum = 0;
+            for (const PlanarNode& k : scattered_square_rule()) {
+                EXPECT_GT(k.weight, 0);
+                sum += k.weight * std::pow(k.at.x, p) * std::pow(k.at.y, q);
+            }
+            EXPECT_NEAR(sum, 1.0 / ((p + 1) * (q + 1)), rounding) << "u^" << p << " v^" << q;
+        }
+}
+
+// What the 4 x 4 Gauss points hold for zero.
+TEST(ScatteredSquareRule, SeesLegendresPolynomialOfDegreeFour) {
+    const auto square_of_legendre = [](double u) {
+        const double x = 2 * u - 1, p = (35 * x * x * x * x - 30 * x * x + 3) / 8;
+        return 9 * p * p;  // its mean is 1
+    };
+    double scattered = 0, gauss = 0;
+    for (const PlanarNode& k : scattered_square_rule()) scattered += k.weight * square_of_legendre(k.at.x);
+    for (const PlanarNode& k : square_rule(4)) gauss += k.weight * square_of_legendre(k.at.x);
+    EXPECT_NEAR(scattered, 1, rounding);
+    EXPECT_NEAR(gauss, 0, rounding);
+}
+
 TEST(TriangleRule, IntegratesEveryMonomialUpToItsDegree) {
     for (int degree = 0; degree <= 14; ++degree)
         for (int p = 0; p <= degree; ++p)

@@ -38,8 +38,8 @@ struct LocalPassReport {
 };
 
 /// Indirect irradiance everywhere, by one gather over the light that a method found: E_ind = H b at the places of a
-/// quadrature rule on the elements of an adaptive mesh (`RuleOrder`: 3 x 3 on parallelograms, 4 x 4 for polynomials of
-/// second degree), and the polynomial nearest to them in the mean square. The gather smooths what is rough in b and
+/// quadrature rule on the elements of an adaptive mesh (`RuleOrder`: 3 x 3 on parallelograms, 16 that are no grid for
+/// polynomials of second degree), and the polynomial nearest to them in the mean square. The gather smooths what is rough in b and
 /// doubles its order (the iterated or Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber the
 /// polynomial's freedoms: what they leave over, less the rays' noise, is the error of interpolation, and elements are
 /// cut where that has more than its share of the tolerance. Rays are doubled until their noise is what is allowed: a
