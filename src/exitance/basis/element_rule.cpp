@@ -14,6 +14,26 @@ std::vector<WeightedPlace> places_of(std::span<const PlanarNode> rule) {
     return out;
 }
 
+/// The rule of the unit square on a convex quadrangle, or that of the triangle: their points at the same shares of the
+/// corners, weighted by how much of the area stands for them.
+std::vector<WeightedPlace> mapped_rule(const std::vector<Vec2>& domain) {
+    const Vec2 o = domain[0], a = domain[1] - o, b = domain.back() - o;
+    std::vector<WeightedPlace> rule;
+    if (domain.size() == 3) {
+        for (const auto& [at, weight] : triangle_rule(8)) rule.push_back({o + at.x * a + at.y * b, weight});
+        return rule;
+    }
+    const Vec2 bend = domain[2] - o - a - b;
+    double whole = 0;
+    for (const auto& [at, weight] : scattered_square_rule()) {
+        const double area = weight * cross(a + at.y * bend, b + at.x * bend);
+        rule.push_back({o + at.x * a + at.y * b + at.x * at.y * bend, area});
+        whole += area;
+    }
+    for (WeightedPlace& place : rule) place.weight /= whole;
+    return rule;
+}
+
 /// On the way from the centre to each corner, where Gauss's nodes of a parallelogram would stand; or the fan of
 /// triangles around the centre, each with the rule of three places.
 std::vector<WeightedPlace> cell_rule(const std::vector<Vec2>& domain, Vec2 centre, RuleOrder order) {
@@ -39,7 +59,11 @@ std::vector<WeightedPlace> cell_rule(const std::vector<Vec2>& domain, Vec2 centr
 }  // namespace
 
 std::vector<WeightedPlace> element_rule(const ElementTree& tree, ElementId e, RuleOrder order) {
-    if (tree.is_cell(e)) return cell_rule(tree.domain(e), tree.centre(e), order);
+    if (tree.is_cell(e)) {
+        const std::vector<Vec2> domain = tree.domain(e);
+        if (order == RuleOrder::finer && domain.size() <= 4) return mapped_rule(domain);
+        return cell_rule(domain, tree.centre(e), order);
+    }
     const bool triangle = tree.patch(e).is_triangle();
     switch (order) {
         case RuleOrder::nodes:

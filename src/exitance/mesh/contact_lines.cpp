@@ -1,6 +1,7 @@
 #include "exitance/mesh/contact_lines.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -74,6 +75,23 @@ bool clip_to_domain(const std::vector<Vec2>& domain, Vec2& a, Vec2& b) {
     a = start + first * d;
     b = start + last * d;
     return true;
+}
+
+/// Cuts a leaf along a line; a parallelogram along its own directions into parallelograms, else into cells. False, and
+/// nothing is done, when that leaves hardly anything on one side: so for a line along the border.
+bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
+    constexpr double least = 1e-5;     // of the area
+    constexpr double parallel = 1e-6;  // of the element that a line may be off a direction
+    if (!tree.is_cell(e) && !tree.patch(e).is_triangle())
+        for (const auto& [way, along, across] :
+             {std::tuple{Cut::u, line.normal.x, line.normal.y}, {Cut::v, line.normal.y, line.normal.x}}) {
+            if (std::abs(across) > parallel * std::abs(along)) continue;
+            const double ratio = line.offset / along;
+            if (ratio < least || ratio > 1 - least) return false;
+            tree.split(e, way, ratio);
+            return true;
+        }
+    return !tree.split_by_line(e, line, least).is_none();
 }
 
 }  // namespace
@@ -164,8 +182,7 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
             const Vec2 d = b - a;
             const double length = std::hypot(d.x, d.y);
             const Vec2 normal = {-d.y / length, d.x / length};
-            // A line along the domain's border leaves nothing on one side, and cuts nothing.
-            if (tree.split_by_line(e, {normal, dot(normal, a)}, 1e-5).is_none()) continue;
+            if (!cut_along(tree, e, {normal, dot(normal, a)})) continue;
             for (ElementId child : tree.children(e)) open.push_back({child, now.lines, now.in_vain});
             break;  // the children look for their own share of the other contacts
         }

@@ -30,7 +30,8 @@ class ContactLines {
     double tolerance_;         ///< Metres; what is nearer than this to a plane touches it.
 };
 
-/// Cuts every leaf of `from` along the contacts inside it, into cells.
+/// Cuts every leaf of `from` along the contacts inside it: into parallelograms where they run in its directions, else
+/// into cells.
 void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts);
 
 }  // namespace exitance

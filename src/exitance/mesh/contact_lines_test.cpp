@@ -27,6 +27,17 @@ TEST(ContactLines, AnElementIsCutWhereAPlateStandsOnIt) {
     EXPECT_NE(left, right);
     EXPECT_NEAR(tree.area(left), 4, 1e-9);
     EXPECT_NEAR(tree.area(right), 12, 1e-9);
+    // Along its own direction: what comes of it can do all that parallelograms can.
+    EXPECT_FALSE(tree.is_cell(left) || tree.is_cell(right));
+}
+
+TEST(ContactLines, AcrossItsDirectionsAnElementIsCutIntoCells) {
+    const Scene scene = floor_and_plate(0);
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0, 0, 0}, {3, 1, 0}, {-1, 3, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+    ASSERT_EQ(tree.leaves().size(), 2u);
+    for (ElementId e : tree.leaves()) EXPECT_TRUE(tree.is_cell(e));
 }
 
 TEST(ContactLines, AnEdgeThatHoversHasAStripOnEitherSide) {

@@ -32,7 +32,8 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     const double rays = (knobs.gather_curved ? 0.3 : 0.55) * std::pow(0.5 / error, 4.0 / 3);
     const double least = std::max(knobs.gather_curved ? 8.0 : 16.0, rays / 4);
     knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
-    knobs.gather_noise = 0.58 * error;
+    // What hides from all places of an element weighs more where there is less noise to hide in.
+    knobs.gather_noise = 0.75 * error * std::pow(std::min(1.0, error / 0.02), 0.1);
     knobs.gather_tolerance = 0.4 * error;
     if (error < 0.01) knobs.gather_relative_tolerance = 0.6 * error;
     knobs.gather_element_share = 0.05 * error;

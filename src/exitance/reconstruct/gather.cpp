@@ -20,7 +20,9 @@ Gathered estimate(std::array<Spectrum, 4> quarter, unsigned rays) {
         q *= 4.0 / rays;
         out.irradiance += 0.25 * q;
     }
-    for (const Spectrum& q : quarter) out.variance += 0.5 / 12 * ((q - out.irradiance) * (q - out.irradiance));
+    for (const Spectrum& q : quarter) out.quarters += 1.0 / 12 * ((q - out.irradiance) * (q - out.irradiance));
+    const Spectrum apart = 0.25 * (quarter[0] + quarter[1] - quarter[2] - quarter[3]);
+    out.halves = apart * apart;
     return out;
 }
 

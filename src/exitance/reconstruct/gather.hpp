@@ -55,9 +55,10 @@ struct GatherWorkspace {
 /// An estimate and how far it may be off.
 struct Gathered {
     Spectrum irradiance;  ///< W/m^2
-    /// Of `irradiance`, from the spread of four quarters of the rays, each stratified by itself. The whole is
-    /// stratified more finely: error ~ rays^-3/4 makes its variance half of what independent quarters would leave.
-    Spectrum variance;
+    /// Of `irradiance`, from the spread of four quarters of the rays, and of two halves, as if those were independent.
+    /// The whole is stratified more finely. Where variance ~ rays^-p, p = 1 by chance and 3/2 where light is even,
+    /// quarters tell 4^(p - 1) times the variance and halves 2^(p - 1) times: it is halves^2 / quarters.
+    Spectrum quarters, halves;
 };
 
 /// Irradiance at x by what surfaces reflect, E(x) = int G V b dA, by `rays` rays (a power of two, at least 4) with

@@ -34,9 +34,10 @@ bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const L
     return sampled.misfit_squared > share * share + 2.3 * sampled.noise_in_misfit;
 }
 
-/// All places' light: summed over elements, exact but for what they may miss, or by rays.
-void LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b, unsigned rays,
-                          const LocalPassDemand& demand, Workspace& w) const {
+/// All places' light: summed over elements, exact but for what they may miss, or by rays, twice as many at every second
+/// place if there are to be `more`. Returns how many that makes.
+unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b,
+                              unsigned rays, bool more, const LocalPassDemand& demand, Workspace& w) const {
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
     w.gathered.assign(places.size(), {});
@@ -44,16 +45,19 @@ void LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& places,
         const Point x = tree_.patch(e).at(places[i].uv);
         if (demand.elements == nullptr) {
             const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, i);
-            w.growing[i].grow(stage_, x, n, region, rays, key, b, w.rays);
+            w.growing[i].grow(stage_, x, n, region, more && i % 2 == 1 ? 2 * rays : rays, key, b, w.rays);
             w.gathered[i] = w.growing[i].gathered();
         } else if (!stage_.occluders.is_covered(x, n, region)) {
             w.gathered[i].irradiance = (*demand.elements)(x, n, region, demand.element_share, w.elements);
         }
     }
+    const auto count = static_cast<unsigned>(places.size());
+    return rays * (count + (more ? count / 2 : 0));
 }
 
-/// Gathers with the fewer rays that the element's area suggests or that it or its parent took before, and with twice as
-/// many until the noise is what is allowed. An element that is seen to be cut is left noisy: its pieces are gathered.
+/// Gathers with the fewer rays that the element's area suggests or that it or its parent took before, and with half as
+/// many more, twice as many and so on until the noise is what is allowed. An element that is seen to be cut is left
+/// noisy: its pieces are gathered.
 SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
                                  Workspace& w) const {
     const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(demand.curved));
@@ -67,12 +71,12 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     unsigned rays = std::max({4u, first, before});
     w.growing.assign(places.size(), {});
     constexpr double tolerated = 1.2;  // the noise is itself an estimate
-    for (;; rays *= 2) {
-        gather_at(e, places, b, rays, demand, w);
-        SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, demand.curved);
+    for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
+        const unsigned cast = gather_at(e, places, b, rays, more, demand, w);
+        SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, demand.curved, spread_.gain());
         out.place_rays = rays;
         // Summed light has no noise, and what judges it should have little, too.
-        out.rays = (demand.elements != nullptr ? 4 : 1) * rays * static_cast<unsigned>(places.size());
+        out.rays = (demand.elements != nullptr ? 4 : 1) * cast;
         if (may_cut && is_too_rough(e, out, demand)) return out;
         if (noise_excess(e, out, demand) <= tolerated || 2 * rays > demand.rays.most) {
             if (may_cut && demand.elements == nullptr) look_between(e, out, b, demand, w);
@@ -101,7 +105,7 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
         const Vec2 uv = tree_.uniform(e, random(k, 0), random(k, 1));
         const Gathered g = gather_reflected(stage_, tree_.patch(e).at(uv), n, region, rays, hash(key, k), b, w.rays);
         misfit += squared(rho * (g.irradiance - polynomial.at(uv))) / static_cast<double>(bands) / count;
-        noise += mean(rho * rho * g.variance) / count;
+        noise += spread_.gain() * mean(rho * rho * g.quarters) / count;
     }
     sampled.rays += rays * count;
     const double allowed = allowed_misfit(e, sampled.light, demand);
@@ -173,6 +177,11 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
                                     note_touched("rays", sampled_[active[i]].rays);
                             },
                             {"gather", [&](std::size_t i) { return tree_.region(active[first + i]).value; }});
+            for (std::size_t i = first; i < std::min(first + slice, active.size()); ++i) {
+                const SampledElement& s = sampled_[active[i]];
+                spread_.quarters += tree_.area(active[i]) * s.quarters;
+                spread_.halves += tree_.area(active[i]) * s.halves;
+            }
             // The first round is about half of the work, every further one half of what is left.
             const double done = static_cast<double>(first) / static_cast<double>(active.size());
             progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));

@@ -39,11 +39,11 @@ struct LocalPassReport {
 
 /// Indirect irradiance everywhere, by one gather over the light that a method found: E_ind = H b at the places of a
 /// quadrature rule on the elements of an adaptive mesh (`RuleOrder`: 3 x 3 on parallelograms, 16 that are no grid for
-/// polynomials of second degree), and the polynomial nearest to them in the mean square. The gather smooths what is rough in b and
-/// doubles its order (the iterated or Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber the
-/// polynomial's freedoms: what they leave over, less the rays' noise, is the error of interpolation, and elements are
-/// cut where that has more than its share of the tolerance. Rays are doubled until their noise is what is allowed: a
-/// polynomial of many places needs few from each, which is why elements as large as light allows are what makes this
+/// polynomials of second degree), and the polynomial nearest to them in the mean square. The gather smooths what is
+/// rough in b and doubles its order (the iterated or Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber
+/// the polynomial's freedoms: what they leave over, less the rays' noise, is the error of interpolation, and elements
+/// are cut where that has more than its share of the tolerance. Rays are doubled until their noise is what is allowed:
+/// a polynomial of many places needs few from each, which is why elements as large as light allows are what makes this
 /// cheap. What is delivered are straight elements for all that. O(elements x rays).
 ///
 /// Mesh and gathers stay: called again with a stricter demand, only what falls short of it is done again; with other
@@ -61,7 +61,7 @@ class LocalPass {
     /// Mesh and gathers, for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(tree_, sampled_, mean_area_);
+        a(tree_, sampled_, mean_area_, spread_);
     }
 
   private:
@@ -73,10 +73,23 @@ class LocalPass {
         std::vector<Gathered> gathered;
     };
 
+    /// Sums over all elements sampled so far of their area times what quarters and halves of their rays tell of the
+    /// variance, (W/m^2)^2 m^2; to begin with of rays between chance and even light (`Gathered`), of no weight.
+    struct Spread {
+        double quarters = 1e-100, halves = 0.85e-100;
+
+        /// The variance of what is gathered in what quarters tell of it. A mean over elements, since one alone has too
+        /// few places to tell.
+        double gain() const {
+            const double ratio = std::clamp(halves / quarters, std::sqrt(0.5), 1.0);
+            return ratio * ratio;
+        }
+    };
+
     SampledElement sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
                           Workspace& workspace) const;
-    void gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b, unsigned rays,
-                   const LocalPassDemand& demand, Workspace& workspace) const;
+    unsigned gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b, unsigned rays,
+                       bool more, const LocalPassDemand& demand, Workspace& workspace) const;
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
@@ -90,6 +103,7 @@ class LocalPass {
     ElementTree tree_;
     Field<ElementId, SampledElement> sampled_;
     double mean_area_ = 0;
+    Spread spread_;
 };
 
 }  // namespace exitance

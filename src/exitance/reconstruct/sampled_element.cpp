@@ -13,7 +13,7 @@ double mean_square(const Spectrum& s) {
 }  // namespace
 
 SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
-                            std::span<const Gathered> gathered, const Spectrum& rho, bool curved) {
+                            std::span<const Gathered> gathered, const Spectrum& rho, bool curved, double gain) {
     const ElementPolynomials polynomials(tree, e, places, curved);
     std::array<Spectrum, ElementPolynomials::most> c{};
     std::array<double, ElementPolynomials::most> noise{};  // of each coefficient, as of rho E
@@ -22,7 +22,10 @@ SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vec
     out.curved = curved;
     double whole_noise = 0, square = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const double w = places[i].weight, variance = mean(rho * rho * gathered[i].variance);
+        const double w = places[i].weight, quarters = mean(rho * rho * gathered[i].quarters);
+        const double variance = gain * quarters;
+        out.quarters += w * quarters;
+        out.halves += w * mean(rho * rho * gathered[i].halves);
         phi.push_back(polynomials.at(places[i].uv));
         for (std::size_t k = 0; k < polynomials.size(); ++k) {
             c[k] += (w * phi[i][k]) * gathered[i].irradiance;

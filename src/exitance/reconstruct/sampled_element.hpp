@@ -9,20 +9,22 @@ namespace exitance {
 /// A polynomial fitted to irradiance gathered at the places of an element, and what the places say of it.
 struct SampledElement {
     std::array<std::array<float, bands>, ElementPolynomials::most> coefficient;  ///< Of ElementPolynomials, W/m^2.
-    bool curved = false;         ///< Are those of second degree among them?
-    double light = 0;            ///< RMS of rho E over places and bands, W/m^2.
-    double noise_squared = 0;    ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
-    double misfit_squared = 0;   ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
-    double noise_in_misfit = 0;  ///< How much of that the rays' noise makes, on average.
-    unsigned rays = 0;           ///< Spent in all.
-    unsigned place_rays = 0;     ///< Of one place; 0: not gathered yet.
+    bool curved = false;              ///< Are those of second degree among them?
+    double light = 0;                 ///< RMS of rho E over places and bands, W/m^2.
+    double noise_squared = 0;         ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
+    double misfit_squared = 0;        ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
+    double noise_in_misfit = 0;       ///< How much of that the rays' noise makes, on average.
+    double quarters = 0, halves = 0;  ///< Means over the places of rho^2 `Gathered::quarters`, `halves`, (W/m^2)^2.
+    unsigned rays = 0;                ///< Spent in all.
+    unsigned place_rays = 0;          ///< Of one place; 0: not gathered yet.
 };
 
 /// The polynomial nearest to what was gathered at `places`, in the weighted mean square. Where it is `curved`, its part
 /// of second degree is drawn towards zero by as much as noise makes of it on average (James and Stein's estimator,
-/// [Efron73]), so that even light is no noisier for it. `rho`: the element's reflectance.
+/// [Efron73]), so that even light is no noisier for it. `rho`: the element's reflectance; `gain`: the variance of what
+/// was gathered, in what quarters of the rays tell of it.
 SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
-                            std::span<const Gathered> gathered, const Spectrum& rho, bool curved);
+                            std::span<const Gathered> gathered, const Spectrum& rho, bool curved, double gain);
 
 /// The rule whose places `fit_gathered` has enough of.
 inline RuleOrder rule_order(bool curved) {

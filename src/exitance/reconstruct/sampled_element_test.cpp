@@ -21,11 +21,11 @@ struct Noisy {
         for (const WeightedPlace& p : places) {
             const double uniform = 2 * random.uniform() - 1;  // of variance 1/3
             gathered.push_back(
-                {Spectrum(f(p.uv) + deviation * std::sqrt(3.0) * uniform), Spectrum(deviation * deviation)});
+                {Spectrum(f(p.uv) + deviation * std::sqrt(3.0) * uniform), Spectrum(deviation * deviation), {}});
         }
     }
     SampledElement fit(bool curved = true) const {
-        return fit_gathered(tree, ElementId(0), places, gathered, Spectrum(0.5), curved);
+        return fit_gathered(tree, ElementId(0), places, gathered, Spectrum(0.5), curved, 1);
     }
 };
 
