@@ -20,7 +20,8 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // A strip of width w along a concave edge, where light varies like w^0.7, has a share of w^1.2 in the error.
     const int strips = static_cast<int>(std::ceil(std::log2(std::max(1.0, 0.25 / error)) / 1.2));
     Knobs knobs;
-    knobs.solve_mesh = {edge_for_elements(pieces, count(16)), strips + (error < 0.01 ? 1 : 0)};
+    // Beyond those that the pieces are: a thousand books are no reason to leave the floor whole.
+    knobs.solve_mesh = {edge_for_elements(pieces, pieces.size() + count(16)), strips + (error < 0.01 ? 1 : 0)};
     knobs.solve_rays = {.average = std::clamp(1.5 / error, 32.0, 256.0), .least = 16, .most = 1024};
     // What is projected is only gathered from, and its means are right; unless it is what is delivered.
     knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
@@ -33,7 +34,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     const double least = std::max(knobs.gather_curved ? 8.0 : 16.0, rays / 4);
     knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
     // What hides from all places of an element weighs more where there is less noise to hide in.
-    knobs.gather_noise = 0.75 * error * std::pow(std::min(1.0, error / 0.02), 0.1);
+    knobs.gather_noise = 0.75 * error * std::pow(std::min(1.0, error / 0.02), 0.2);
     knobs.gather_tolerance = 0.4 * error;
     if (error < 0.01) knobs.gather_relative_tolerance = 0.6 * error;
     knobs.gather_element_share = 0.05 * error;

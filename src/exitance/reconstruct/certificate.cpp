@@ -90,8 +90,7 @@ double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span
     return std::sqrt(largest(u) * largest(w));
 }
 
-constexpr std::size_t batches = 32;  ///< Of samples, for the spread of their mean.
-constexpr std::size_t sample_count = 40 * batches;
+constexpr std::size_t batches = 32;   ///< Of samples, for the spread of their mean.
 constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
 
 /// The mean of batches, and how uncertain it is.
@@ -113,14 +112,14 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
     // Where light is reflected often, a small mean of the residual makes a large error, and has to be told from noise.
     const double often = std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, 8.0);
     const double wanted =
-        often * 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(sample_count)));
+        often * 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(options.points)));
     const auto rays_at = [&](ElementId leaf) {
         const double known = options.leaves ? 0.05 * (*options.leaves)[leaf].rays : wanted;
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
     const std::vector<WeightedSample> places =
-        options.places.empty() ? stratified_places(stage, indirect.tree, options.leaves, sample_count, options.seed)
-                               : in_turn(options.places, sample_count);
+        options.places.empty() ? stratified_places(stage, indirect.tree, options.leaves, options.points, options.seed)
+                               : in_turn(options.places, options.points);
     std::vector<Sample> samples(places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         GatherWorkspace workspace;

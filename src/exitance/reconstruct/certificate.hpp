@@ -9,6 +9,7 @@ namespace exitance {
 struct CertificateOptions {
     double error = 0.02;  ///< The relative error that is to be resolved: it sets the number of points and rays.
     std::uint64_t seed = 1;
+    std::size_t points = 1280;        ///< How many the residual is measured at.
     bool direct_in_elements = false;  ///< Does the delivered function hold the emitters' light too?
     /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
     /// rays in proportion to those that it took. Null when there was none.

@@ -109,7 +109,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
     };
     // Where elements or emitters are few, or emitters large, all of them are looked at well. Then the elements tell what
     // share of the squared error one may have.
-    constexpr std::size_t few = 8000, few_emitters = 8;
+    constexpr std::size_t few = 2000, few_emitters = 8;
     constexpr double small = 0.25;  // of all area
     double emitting = 0;
     for (const DirectLight::Emitter& emitter : stage.direct.emitters())
