@@ -20,8 +20,9 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // A strip of width w along a concave edge, where light varies like w^0.7, has a share of w^1.2 in the error.
     const int strips = static_cast<int>(std::ceil(std::log2(std::max(1.0, 0.25 / error)) / 1.2));
     Knobs knobs;
-    // Beyond those that the pieces are: a thousand books are no reason to leave the floor whole.
-    knobs.solve_mesh = {edge_for_elements(pieces, pieces.size() + count(16)), strips + (error < 0.01 ? 1 : 0)};
+    // Half of them beyond those that the pieces are: a thousand books are no reason to leave the floor whole.
+    const std::size_t elements = std::max(count(16), pieces.size() + count(8));
+    knobs.solve_mesh = {edge_for_elements(pieces, elements), strips + (error < 0.01 ? 1 : 0)};
     knobs.solve_rays = {.average = std::clamp(1.5 / error, 32.0, 256.0), .least = 16, .most = 1024};
     // What is projected is only gathered from, and its means are right; unless it is what is delivered.
     knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
