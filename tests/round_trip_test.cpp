@@ -86,8 +86,8 @@ TEST(RoundTrip, ASceneHasTheSameLightInEveryFormat) {
             const RadiosityFunction function(solution);
             // Coordinates in single precision move shadow edges by 1e-7 of the scene: far below the 0.2% that is asked.
             EXPECT_LT(difference(direct, function.at(points, Component::direct)), 1e-4) << other->file();
-            // Each is within 5% of the truth.
-            EXPECT_LT(difference(total, function.at(points)), 0.05) << other->file();
+            // Each is within 5% of the truth, and their noise is not the same: together sqrt(2) times as much.
+            EXPECT_LT(difference(total, function.at(points)), 0.07) << other->file();
         }
     }
 }
