@@ -35,7 +35,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     const double least = std::max(knobs.gather_curved ? 8.0 : 16.0, rays / 4);
     knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
     // What hides from all places of an element weighs more where there is less noise to hide in.
-    knobs.gather_noise = 0.75 * error * std::pow(std::min(1.0, error / 0.02), 0.2);
+    knobs.gather_noise = 0.75 * error * std::pow(std::min(1.0, error / 0.02), 0.15);
     knobs.gather_tolerance = 0.4 * error;
     if (error < 0.01) knobs.gather_relative_tolerance = 0.6 * error;
     knobs.gather_element_share = 0.05 * error;

@@ -60,6 +60,28 @@ TEST_F(OneBrightFace, IsGatheredWithTheErrorThatTheReportTells) {
     }
 }
 
+TEST_F(OneBrightFace, HasTheVarianceThatQuartersAndHalvesOfTheRaysTell) {
+    const Point x = {0.9, 0.6, 0.4};
+    const Normal n = normalized(Vec3{0.3, 0.2, 0.1} - scene.regions()[bright].plane.n);
+    constexpr unsigned gathers = 1000;
+    GatherWorkspace workspace;
+    double told = 0, by_chance = 0;  // logarithms of what is told of the variance over what it is
+    for (const unsigned rays : {32u, 64u, 128u, 256u}) {
+        double sum = 0, square = 0, quarters = 0, halves = 0;
+        for (unsigned k = 0; k < gathers; ++k) {
+            const Gathered g = gather_reflected(stage, x, n, RegionId(), rays, k, b, workspace);
+            sum += g.irradiance[0], square += g.irradiance[0] * g.irradiance[0];
+            quarters += g.quarters[0], halves += g.halves[0];
+        }
+        const double variance = square - sum * sum / gathers;
+        told += 0.25 * std::log(halves / quarters * halves / variance);
+        by_chance += 0.25 * std::log(quarters / variance);
+    }
+    // Powers of 4 fill the square better than their doubles: a power law holds for both together, to a third.
+    EXPECT_NEAR(std::exp(told), 1, 0.35);
+    EXPECT_GT(std::exp(by_chance), 1.5);
+}
+
 TEST_F(OneBrightFace, IsNotGatheredAgainWhereItIsGoodEnough) {
     LocalPassReport first, same, finer, anew;
     const ElementFunction once = gather(coarse, first);
