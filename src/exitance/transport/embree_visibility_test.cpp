@@ -70,11 +70,16 @@ TEST(RayTracer, NeverMeetsTheRegionThatARayStartsOnNorLeavesAClosedBox) {
         }
 }
 
-TEST(RayTracer, FindsSegmentsBlockedOnlyByWhatStandsBetweenTheirEnds) {
+/// A floor at z = 0, a ceiling at z = 2, and half-way a plate over x > 0.
+Scene half_a_plate_between() {
     const std::vector<Point> floor = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     const std::vector<Point> ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
     const std::vector<Point> plate = {{0, -1, 1}, {1, -1, 1}, {1, 1, 1}, {0, 1, 1}};
-    const Scene scene = test::make({{floor}, {ceiling}, {plate}});
+    return test::make({{floor}, {ceiling}, {plate}});
+}
+
+TEST(RayTracer, FindsSegmentsBlockedOnlyByWhatStandsBetweenTheirEnds) {
+    const Scene scene = half_a_plate_between();
     const RayTracer tracer(scene);
     RandomStream random(4, Stream::visibility);
     std::vector<Point> from, to;
@@ -90,10 +95,7 @@ TEST(RayTracer, FindsSegmentsBlockedOnlyByWhatStandsBetweenTheirEnds) {
 }
 
 TEST(RayTracer, SaysOfEndsMadeInAdvanceWhatItSaysOfPoints) {
-    const std::vector<Point> floor = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    const std::vector<Point> ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
-    const std::vector<Point> plate = {{0, -1, 1}, {1, -1, 1}, {1, 1, 1}, {0, 1, 1}};
-    const Scene scene = test::make({{floor}, {ceiling}, {plate}});
+    const Scene scene = half_a_plate_between();
     const RayTracer tracer(scene);
     const RegionId receiver = scene.surfaces()[SurfaceId(0)].region, source = scene.surfaces()[SurfaceId(1)].region;
     RandomStream random(5, Stream::visibility);
