@@ -140,6 +140,72 @@ ConvexBlocker make_sheet(std::span<const Point> outline, const Plane& plane) {
     return sheet;
 }
 
+bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, ConvexBlocker& part) {
+    part = {};
+    std::vector<double> height;
+    bool any_in = false, any_out = false;
+    for (const Point& p : body.points) {
+        const double d = plane.signed_distance(p);
+        height.push_back(std::abs(d) <= slack ? 0 : d);
+        any_in |= height.back() > 0, any_out |= height.back() < 0;
+    }
+    if (!any_in) return true;
+    if (!any_out) return part = body, true;
+    if (body.faces.size() + 1 >= ConvexBlocker::most_faces) return false;
+
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;  // of a corner, or where an edge is cut
+    const auto number = [&](std::uint32_t a, std::uint32_t b) {
+        const auto [known, is_new] =
+            numbers.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(part.points.size()));
+        if (is_new) {
+            const auto [low, high] = std::minmax(a, b);
+            const double t = low == high ? 0 : height[low] / (height[low] - height[high]);
+            part.points.push_back(body.points[low] + t * (body.points[high] - body.points[low]));
+        }
+        return known->second;
+    };
+    std::map<std::uint32_t, std::uint32_t> border;  // of the new face: from each of its corners to the next
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int32_t> left_of;
+    const auto add_face = [&](const Plane& face, const std::vector<std::uint32_t>& loop) {
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            left_of[{loop[i], loop[(i + 1) % loop.size()]}] = static_cast<std::int32_t>(part.faces.size());
+        part.faces.push_back(face);
+        part.loops.push_back(loop);
+    };
+    for (std::size_t k = 0; k < body.faces.size(); ++k) {
+        std::vector<std::uint32_t> loop;
+        std::vector<bool> lies_on;
+        const std::vector<std::uint32_t>& whole = body.loops[k];
+        for (std::size_t i = 0; i < whole.size(); ++i) {
+            const std::uint32_t a = whole[i], b = whole[(i + 1) % whole.size()];
+            if (height[a] >= 0) loop.push_back(number(a, a)), lies_on.push_back(height[a] == 0);
+            if (height[a] * height[b] < 0) loop.push_back(number(a, b)), lies_on.push_back(true);
+        }
+        if (std::find(lies_on.begin(), lies_on.end(), false) == lies_on.end()) continue;
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const std::size_t next = (i + 1) % loop.size();
+            if (lies_on[i] && lies_on[next]) border[loop[next]] = loop[i];
+        }
+        add_face(body.faces[k], loop);
+    }
+    std::vector<std::uint32_t> cap;
+    if (border.size() < 3) return false;
+    for (std::uint32_t at = border.begin()->first; cap.size() < border.size(); at = border[at]) {
+        if (!border.contains(at)) return false;
+        cap.push_back(at);
+    }
+    if (border[cap.back()] != cap.front()) return false;
+    add_face({-plane.n, -plane.offset}, cap);
+    std::size_t sides = 0;
+    for (const auto& loop : part.loops) sides += loop.size();
+    for (const auto& [ends, face] : left_of) {
+        const auto back = left_of.find({ends.second, ends.first});
+        if (back == left_of.end()) return false;
+        if (ends.first < ends.second) part.edges.push_back({ends.first, ends.second, face, back->second});
+    }
+    return 2 * part.edges.size() == sides && part.points.size() + part.faces.size() == part.edges.size() + 2;
+}
+
 std::vector<ConvexBlocker> make_convex_blockers(const Occluders& occluders, double slack) {
     const Scene& scene = occluders.scene();
     std::vector<bool> used(scene.regions().size(), false);

@@ -30,6 +30,11 @@ struct ConvexBlocker {
 /// A sheet of its own: one convex outline.
 ConvexBlocker make_sheet(std::span<const Point> outline, const Plane& plane);
 
+/// The part of a closed body in front of a plane, closed by a face in that plane; nothing (no points) when there is
+/// none. What lies nearer to the plane than `slack` (metres) lies in it. False, and `part` of no use, when rounding
+/// leaves no closed body, or one of too many faces.
+bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, ConvexBlocker& part);
+
 /// What can block light in a scene: closed convex bodies, then the pieces of everything else. Sheets that have the
 /// whole scene on one side (the walls of a convex room) can block nothing and are left out. O(n log n).
 /// slack  metres: points nearer to a plane than this lie in it

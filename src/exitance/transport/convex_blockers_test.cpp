@@ -48,6 +48,42 @@ TEST(ConvexBlockers, AreBodiesAndSheetsButNotTheWallsOfAConvexRoom) {
     EXPECT_EQ(blockers[2].edges.size(), 3u);
 }
 
+double volume(const ConvexBlocker& body) {
+    double sum = 0;
+    for (std::size_t k = 0; k < body.faces.size(); ++k) {
+        std::vector<Point> outline;
+        for (std::uint32_t c : body.loops[k]) outline.push_back(body.points[c]);
+        sum += dot(area_vector(outline), outline[0]) / 3;
+    }
+    return sum;
+}
+
+TEST(ConvexBlockers, AreClosedAgainWhenAPlaneCutsThem) {
+    const Scene scene = room_with_two_boxes_and_a_sheet();
+    const ConvexBlocker box = make_convex_blockers(Occluders(scene), 1e-7)[0];
+    ConvexBlocker front, back;
+    for (const Vec3& direction : {Vec3{0, 0, 1}, Vec3{1, 2, 0}, Vec3{1, -2, 3}, Vec3{-0.1, 1, 0.2}}) {
+        const Normal n = normalized(direction);
+        const Plane plane = {n, dot(n, Point{1.4, 1.6, 0.7})};
+        ASSERT_TRUE(clip_body(box, plane, 1e-7, front));
+        ASSERT_TRUE(clip_body(box, {-n, -plane.offset}, 1e-7, back));
+        EXPECT_NEAR(volume(front) + volume(back), 0.5, 1e-14);  // outlines run outwards, the new ones too
+        EXPECT_EQ(front.points.size() + front.faces.size(), front.edges.size() + 2);
+        for (const ConvexBlocker* part : {&front, &back})
+            for (const Plane& face : part->faces)
+                for (const Point& p : part->points) EXPECT_LE(face.signed_distance(p), 1e-14);
+    }
+    // Along a diagonal through four corners, and beside it.
+    const Normal n = normalized(Vec3{1, -1, 0});
+    ASSERT_TRUE(clip_body(box, {n, 0}, 1e-7, front));
+    EXPECT_EQ(front.points.size(), 6u);
+    EXPECT_NEAR(volume(front), 0.25, 1e-15);
+    ASSERT_TRUE(clip_body(box, {{0, 0, 1}, 1}, 1e-7, front));
+    EXPECT_TRUE(front.points.empty());
+    ASSERT_TRUE(clip_body(box, {{0, 0, 1}, 0.5}, 1e-7, front));
+    EXPECT_EQ(front.faces.size(), 6u);
+}
+
 TEST(ConvexBlockers, ABoxWithoutItsBottomIsFiveSheets) {
     SceneDescription d;
     d.materials.push_back({"grey", Spectrum(0.5), Spectrum()});

@@ -40,6 +40,7 @@ class RowWorker {
     double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
     double occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                            std::span<const Point> s, bool& unoccluded);
+    void add_clipped(ConvexBlocker&& part, const ViewFace& receiver, const ViewFace& source);
     void add_unoccluded(std::size_t i, std::size_t j, bool cut);
     void flush_batches(std::size_t i, std::span<double> row);
     void make_nodes(const ViewFace& receiver, int points);
@@ -159,6 +160,15 @@ double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& sour
     return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
 }
 
+/// Keeps what is left of a blocker, if it may still hide something.
+void RowWorker::add_clipped(ConvexBlocker&& part, const ViewFace& receiver, const ViewFace& source) {
+    const std::uint8_t by_r = pairs_.standing(part, receiver.plane), by_s = pairs_.standing(part, source.plane);
+    if (!(by_r & ViewPairs::in_front) || !(by_s & ViewPairs::in_front)) return;
+    if (sides(part, receiver.outline, pairs_.slack()) & sides(part, source.outline, pairs_.slack())) return;
+    clipped_.push_back(std::move(part));
+    standing_between_.push_back(&clipped_.back());
+}
+
 /// F_ij with blockers between. A blocker that crosses the plane of either face counts with its part before both.
 double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded) {
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
@@ -170,19 +180,18 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
             standing_between_.push_back(&blocker);
             continue;
         }
+        ConvexBlocker before_source, before_both;
+        if (blocker.is_solid() && clip_body(blocker, source.plane, pairs_.slack(), before_source) &&
+            clip_body(before_source, receiver.plane, pairs_.slack(), before_both)) {
+            if (!before_both.points.empty()) add_clipped(std::move(before_both), receiver, source);
+            continue;
+        }
         for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
             front_r_.clear();
             for (std::uint32_t c : blocker.loops[k]) front_r_.push_back(blocker.points[c]);
             clip(front_r_, source.plane, front_s_);
             clip(front_s_, receiver.plane, front_r_);
-            if (front_r_.empty()) continue;
-            ConvexBlocker sheet = make_sheet(front_r_, blocker.faces[k]);
-            const std::uint8_t by_r = pairs_.standing(sheet, receiver.plane),
-                               by_s = pairs_.standing(sheet, source.plane);
-            if (!(by_r & ViewPairs::in_front) || !(by_s & ViewPairs::in_front)) continue;
-            if (sides(sheet, receiver.outline, pairs_.slack()) & sides(sheet, source.outline, pairs_.slack())) continue;
-            clipped_.push_back(std::move(sheet));
-            standing_between_.push_back(&clipped_.back());
+            if (!front_r_.empty()) add_clipped(make_sheet(front_r_, blocker.faces[k]), receiver, source);
         }
     }
     if (standing_between_.empty()) return unoccluded = true, 0;
