@@ -2,20 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace exitance {
 
+void CriticalLineFinder::find_corners(const SeenEdges& blocker) {
+    is_seen_.assign(blocker.body->points.size(), 0);
+    corners_.clear();
+    for (std::uint32_t k : blocker.edges)
+        for (std::uint32_t c : {blocker.body->edges[k].a, blocker.body->edges[k].b})
+            if (!std::exchange(is_seen_[c], 1)) corners_.push_back(c);
+}
+
 /// Corners seen over edges of another blocker, in front of the source: the gap between the two closes there.
-void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& far,
-                                  const ConvexBlocker& near, std::vector<CriticalLine>& lines) const {
-    for (const Point& w : far.points) {
+void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& far,
+                                  const SeenEdges& near, std::vector<CriticalLine>& lines) {
+    find_corners(far);
+    const ConvexBlocker& body = *near.body;
+    for (std::uint32_t c : corners_) {
+        const Point& w = far.body->points[c];
         const Vec2 from = frame.flat(w);
         const double high = frame.height(w);
         if (high <= nearness_) continue;
-        for (const ConvexBlocker::Edge& e : near.edges) {
-            const Point &a = near.points[e.a], &b = near.points[e.b];
-            const auto faces_w = [&](std::int32_t k) {
-                return near.faces[static_cast<std::size_t>(k)].signed_distance(w) > 0;
+        for (std::uint32_t k : near.edges) {
+            const ConvexBlocker::Edge& e = body.edges[k];
+            const Point &a = body.points[e.a], &b = body.points[e.b];
+            const auto faces_w = [&](std::int32_t f) {
+                return body.faces[static_cast<std::size_t>(f)].signed_distance(w) > 0;
             };
             if (e.right != ConvexBlocker::no_face && faces_w(e.left) == faces_w(e.right)) continue;
             const double low_a = std::max(0.0, frame.height(a)), low_b = std::max(0.0, frame.height(b));
@@ -35,9 +48,15 @@ void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point
 }
 
 /// Where a face is seen edge-on and its plane cuts the source, the silhouette passes from one edge to another.
-void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& body,
-                                   std::vector<CriticalLine>& lines) const {
-    for (const Plane& face : body.faces) {
+void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& blocker,
+                                   std::vector<CriticalLine>& lines) {
+    is_seen_.assign(blocker.body->faces.size(), 0);
+    for (std::uint32_t k : blocker.edges)
+        for (std::int32_t f : {blocker.body->edges[k].left, blocker.body->edges[k].right})
+            if (f != ConvexBlocker::no_face) is_seen_[static_cast<std::size_t>(f)] = 1;
+    for (std::size_t k = 0; k < is_seen_.size(); ++k) {
+        if (!is_seen_[k]) continue;
+        const Plane& face = blocker.body->faces[k];
         bool over = false, under = false;
         for (const Point& s : source) {
             const double d = face.signed_distance(s);
@@ -107,11 +126,13 @@ void CriticalLineFinder::keep(CriticalLine line, std::vector<CriticalLine>& line
 }
 
 void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> receiver, std::span<const Point> source,
-                              std::span<const ConvexBlocker* const> blockers, double nearness, std::size_t most,
+                              std::span<const SeenEdges> blockers, double nearness, std::size_t most,
                               std::vector<CriticalLine>& lines) {
     receiver_ = receiver, nearness_ = nearness, most_ = most;
     lines.clear();
-    for (const ConvexBlocker* blocker : blockers) {
+    for (const SeenEdges& seen : blockers) {
+        const ConvexBlocker* const blocker = seen.body;
+        find_corners(seen);
         const std::size_t corners = blocker->points.size(), faces = blocker->faces.size();
         shadows_.resize(source.size() * corners);
         in_front_.resize(source.size() * faces);
@@ -120,7 +141,7 @@ void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> rec
             const double high = frame.height(source[s]);
             for (std::size_t k = 0; k < faces; ++k)
                 in_front_[s * faces + k] = blocker->faces[k].signed_distance(source[s]) > 0;
-            for (std::size_t c = 0; c < corners; ++c) {
+            for (std::uint32_t c : corners_) {
                 const Vec2 p = frame.flat(blocker->points[c]);
                 const double low = std::max(0.0, frame.height(blocker->points[c]));
                 shadows_[s * corners + c] = {p.x * high - from.x * low, p.y * high - from.y * low, high - low};
@@ -128,7 +149,8 @@ void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> rec
         }
         outlines_.assign(source.size() * corners, 0);
         for (std::size_t s = 0; s < source.size(); ++s)
-            for (const ConvexBlocker::Edge& e : blocker->edges) {
+            for (std::uint32_t k : seen.edges) {
+                const ConvexBlocker::Edge& e = blocker->edges[k];
                 const bool silhouette =
                     e.right == ConvexBlocker::no_face || in_front_[s * faces + static_cast<std::size_t>(e.left)] !=
                                                              in_front_[s * faces + static_cast<std::size_t>(e.right)];
@@ -141,15 +163,15 @@ void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> rec
             // Faces seen alike from both ends of an edge are seen alike from all of it.
             const bool alike =
                 std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
-            for (std::size_t c = 0; c < corners; ++c)
+            for (std::uint32_t c : corners_)
                 if (!alike || outlines_[s * corners + c])
                     add(shadows_[s * corners + c], shadows_[next * corners + c], lines);
         }
-        add_faces(frame, source, *blocker, lines);
+        add_faces(frame, source, seen, lines);
     }
-    for (const ConvexBlocker* far : blockers)
-        for (const ConvexBlocker* near : blockers)
-            if (far != near) add_gaps(frame, source, *far, *near, lines);
+    for (const SeenEdges& far : blockers)
+        for (const SeenEdges& near : blockers)
+            if (far.body != near.body) add_gaps(frame, source, far, near, lines);
 }
 
 }  // namespace exitance

@@ -34,27 +34,34 @@ struct PlaneFrame {
     Point at(Vec2 p) const { return origin + p.x * u + p.y * v; }
 };
 
+/// A blocker, and those of its edges that may be seen before the source.
+struct SeenEdges {
+    const ConvexBlocker* body;
+    std::span<const std::uint32_t> edges;  ///< In the blocker's.
+};
+
 /// The lines that cross a convex receiver on which a corner of the source is seen over an edge of a blocker's
 /// silhouette, an edge of the source over a blocker's corner (the VE and EV events of discontinuity meshing), or a
 /// blocker's corner over another's edge in front of the source, or over its own body's (NEV). Events of three edges are
 /// left out.
 /// Source: [Heckbert92]. Lines nearer than `nearness` (metres) to each other are one; at most `most` are given, in an
-/// order that depends on the input alone. Blockers lie in front of the source's plane. O(corners^2) a blocker.
+/// order that depends on the input alone. Blockers lie in front of the source's plane. O(corners^2) a blocker, of edges
+/// that are seen.
 class CriticalLineFinder {
   public:
     void find(const PlaneFrame& frame, std::span<const Vec2> receiver, std::span<const Point> source,
-              std::span<const ConvexBlocker* const> blockers, double nearness, std::size_t most,
-              std::vector<CriticalLine>& lines);
+              std::span<const SeenEdges> blockers, double nearness, std::size_t most, std::vector<CriticalLine>& lines);
 
   private:
     /// A point of the plane times its weight; a place at infinity or beyond has weight <= 0.
     struct Shadow {
         double x, y, weight;
     };
-    void add_gaps(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& far,
-                  const ConvexBlocker& near, std::vector<CriticalLine>& lines) const;
-    void add_faces(const PlaneFrame& frame, std::span<const Point> source, const ConvexBlocker& body,
-                   std::vector<CriticalLine>& lines) const;
+    void add_gaps(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& far, const SeenEdges& near,
+                  std::vector<CriticalLine>& lines);
+    void add_faces(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& blocker,
+                   std::vector<CriticalLine>& lines);
+    void find_corners(const SeenEdges& blocker);
     bool crosses_receiver(const CriticalLine& line) const;
     void keep(CriticalLine line, std::vector<CriticalLine>& lines) const;
     void add(const Shadow& a, const Shadow& b, std::vector<CriticalLine>& lines) const;
@@ -63,7 +70,8 @@ class CriticalLineFinder {
     double nearness_ = 0;
     std::size_t most_ = 0;
     std::vector<Shadow> shadows_;
-    std::vector<std::uint8_t> in_front_, outlines_;
+    std::vector<std::uint8_t> in_front_, outlines_, is_seen_;
+    std::vector<std::uint32_t> corners_;  ///< Ends of the edges at hand.
 };
 
 }  // namespace exitance

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace exitance {
 namespace {
@@ -15,8 +16,15 @@ std::vector<CriticalLine> lines_of(const Outline& receiver, const Outline& sourc
     const PlaneFrame frame(receiver[0], normalized(area_vector(receiver)));
     std::vector<Vec2> flat;
     for (const Point& p : receiver) flat.push_back(frame.flat(p));
+    std::vector<std::vector<std::uint32_t>> all;
+    std::vector<SeenEdges> seen;
+    for (const ConvexBlocker* blocker : blockers) {
+        all.emplace_back(blocker->edges.size());
+        std::iota(all.back().begin(), all.back().end(), 0u);
+    }
+    for (std::size_t k = 0; k < blockers.size(); ++k) seen.push_back({blockers[k], all[k]});
     std::vector<CriticalLine> lines;
-    CriticalLineFinder().find(frame, flat, source, blockers, 1e-6, 64, lines);
+    CriticalLineFinder().find(frame, flat, source, seen, 1e-6, 64, lines);
     return lines;
 }
 

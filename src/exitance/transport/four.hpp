@@ -66,10 +66,9 @@ EXITANCE_INLINE Real min(const Real& a, const Real& b) {
     return a < b ? a : b;
 }
 
-/// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
-/// quotients share one division; then a polynomial in t^2 that interpolates atan(t)/t at Chebyshev points to 4e-17.
+/// atan(t) / t for |t| <= tan(pi/8) from z = t^2: a polynomial that interpolates it at Chebyshev points to 4e-17.
 template <class Real>
-EXITANCE_INLINE Real angle_over_sine(const Real& y, const Real& x) {
+EXITANCE_INLINE Real angle_over_tangent(const Real& z) {
     constexpr double c[11] = {1.0,
                               -0.3333333333332844,
                               0.1999999999885511,
@@ -81,13 +80,20 @@ EXITANCE_INLINE Real angle_over_sine(const Real& y, const Real& x) {
                               0.056883492268090106,
                               -0.04348052215716462,
                               0.021135373157693246};
+    const Real w = z * z, v = w * w;
+    // Estrin's scheme: short chains, so that edges overlap in the pipeline.
+    return (c[0] + c[1] * z) + w * (c[2] + c[3] * z) + v * ((c[4] + c[5] * z) + w * (c[6] + c[7] * z)) +
+           v * v * ((c[8] + c[9] * z) + w * c[10]);
+}
+
+/// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
+/// quotients share one division.
+template <class Real>
+EXITANCE_INLINE Real angle_over_sine(const Real& y, const Real& x) {
     const Real away = max(x, -x), low = min(y, away), high = max(y, away);
     const auto turned = low > 0.41421356237309503 * high;
     const Real under = turned ? low + high : high, inverse = 1 / (under * y);
-    const Real t = (turned ? low - high : low) * y * inverse, z = t * t, w = z * z, v = w * w;
-    // Estrin's scheme: short chains, so that edges overlap in the pipeline.
-    const Real p = (c[0] + c[1] * z) + w * (c[2] + c[3] * z) + v * ((c[4] + c[5] * z) + w * (c[6] + c[7] * z)) +
-                   v * v * ((c[8] + c[9] * z) + w * c[10]);
+    const Real t = (turned ? low - high : low) * y * inverse, p = angle_over_tangent(t * t);
     // The angle is base + sign t p, by octant.
     const auto steep = y > away, back = x < 0;
     const Real eighth = turned ? Real{} + pi / 4 : Real{};
@@ -120,6 +126,14 @@ EXITANCE_INLINE int bits(const Mask& m) {
 }
 inline bool any(const Mask& m) {
     return bits(m) != 0;
+}
+/// atan2(y, x) / y from y^2: small angles need no root.
+EXITANCE_INLINE Real angle_over_root(const Real& squared_y, const Real& x) {
+    if (!any((x <= 0) | (squared_y > 0.17157287525380988 * x * x))) {
+        const Real inverse = 1 / x;
+        return angle_over_tangent(squared_y * inverse * inverse) * inverse;
+    }
+    return angle_over_sine(max(sqrt(squared_y), Real{} + 1e-200), x);
 }
 
 }  // namespace exitance::four

@@ -44,7 +44,7 @@ bool OccludedExchange::cut(const Cell& cell, const CriticalLine& line, Cell& fro
 /// Cuts a part of the receiver along the critical lines where their events lie, and adds triangles and quadrilaterals
 /// to cells_. A part with too many lines is halved first, as each half has fewer.
 void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
-    finder_.find(frame_, part.corners(), pair_.source, pair_.blockers, nearest_line * size_, most_lines, lines_);
+    finder_.find(frame_, part.corners(), pair_.source, visible_.seen_edges(), nearest_line * size_, most_lines, lines_);
     Cell front, back;
     if (lines_.size() >= most_lines && depth < most_searches) {
         std::size_t longest = 0;
@@ -92,21 +92,23 @@ void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
     }
 }
 
-/// Gauss points of a triangle or quadrilateral: n x n on the square, on triangles those of degree 2n - 1.
+/// Adds Gauss points of a triangle or quadrilateral: n x n on the square, on triangles those of degree 2n - 1.
 void OccludedExchange::place_nodes(const Cell& cell, int points) {
-    nodes_.clear();
     const Vec2 o = cell.corner[0], a = cell.corner[1] - o;
     if (cell.count == 3) {
         const Vec2 b = cell.corner[2] - o;
         const double area = std::abs(cross(a, b)) / 2;
-        for (const PlanarNode& k : triangle_rule(points == 2 ? 2 : 2 * points - 1))
-            nodes_.push_back({frame_.at(o + k.at.x * a + k.at.y * b), area * k.weight});
+        for (const PlanarNode& k : triangle_rule(points == 2 ? 2 : 2 * points - 1)) {
+            nodes_.push_back(o + k.at.x * a + k.at.y * b);
+            weights_.push_back(area * k.weight);
+        }
         return;
     }
     const Vec2 b = cell.corner[3] - o, c = cell.corner[2] - cell.corner[1] - b;
     for (const PlanarNode& k : square_rule(points)) {
         const double u = k.at.x, v = k.at.y;
-        nodes_.push_back({frame_.at(o + u * a + v * b + (u * v) * c), k.weight * cross(a + v * c, b + u * c)});
+        nodes_.push_back(o + u * a + v * b + (u * v) * c);
+        weights_.push_back(k.weight * cross(a + v * c, b + u * c));
     }
 }
 

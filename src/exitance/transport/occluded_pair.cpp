@@ -54,49 +54,42 @@ double distance(const Point& x, std::span<const Point> polygon, const Normal& n)
 
 }  // namespace
 
-double OccludedExchange::seen_from(Vec2 p, Seen& seen) {
-    ++evaluations;
-    return visible_(frame_.at(p), frame_.n, seen);
-}
-
-/// Looks at a cell with two Gauss points a side.
-void OccludedExchange::look(Cell& cell) {
-    cell.area = std::max(0.0, cross_area(cell.corners()));
-    cell.glance = {};
-    cell.two_points = apply(cell, 2, cell.glance);
-}
-
-/// The rule's sum of visible form factors: four points at a time while they see alike.
-double OccludedExchange::apply(const Cell& cell, int points, Glance& glance) {
-    place_nodes(cell, points);
+/// What the points placed so far see.
+void OccludedExchange::look_from_nodes() {
     evaluations += nodes_.size();
-    double sum = 0;
-    const auto take = [&](double weight, double F, Seen seen) {
-        sum += weight * F;
-        ++glance.count, glance.dark += seen == Seen::nothing, glance.lit += seen == Seen::all;
-        glance.black += seen <= Seen::nothing_past_several;
-        glance.lowest = std::min(glance.lowest, F), glance.highest = std::max(glance.highest, F);
-    };
-    for (std::size_t first = 0; first < nodes_.size(); first += 4) {
-        const std::size_t used = std::min<std::size_t>(4, nodes_.size() - first);
-        std::array<Point, 4> x;
-        for (std::size_t i = 0; i < 4; ++i) x[i] = nodes_[first + std::min(i, used - 1)].at;
-        std::array<double, 4> F;
-        Seen seen;
-        if (used > 1 && visible_from_four_(pair_.source, pair_.blockers, x, frame_.n, F, seen)) {
-            for (std::size_t i = 0; i < used; ++i) take(nodes_[first + i].weight, F[i], seen);
-            continue;
-        }
-        for (std::size_t i = 0; i < used; ++i) {
-            const double alone = visible_(x[i], frame_.n, seen);
-            take(nodes_[first + i].weight, alone, seen);
-        }
-    }
-    return sum;
+    factors_.resize(nodes_.size()), seen_.resize(nodes_.size());
+    visible_(nodes_, lasts_, factors_, seen_);
 }
 
-double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int depth) {
-    // Across the longest edge, and for a quadrilateral across the edge opposite to it.
+void OccludedExchange::Glance::take(double F, Seen seen) {
+    ++count, dark += seen == Seen::nothing, lit += seen == Seen::all;
+    black += seen <= Seen::nothing_past_several;
+    lowest = std::min(lowest, F), highest = std::max(highest, F);
+}
+
+/// Looks at cells with two Gauss points a side and one in the middle.
+void OccludedExchange::look_at_cells(std::span<Cell* const> cells) {
+    nodes_.clear(), weights_.clear(), lasts_.clear();
+    for (const Cell* cell : cells) place_nodes(*cell, 2), lasts_.push_back(nodes_.size());
+    std::size_t k = 0, middle = nodes_.size();
+    for (const Cell* cell : cells) nodes_.push_back(middle_of(cell->corners())), lasts_.push_back(nodes_.size());
+    look_from_nodes();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        Cell& cell = *cells[i];
+        cell.area = std::max(0.0, cross_area(cell.corners()));
+        cell.glance = {};
+        cell.two_points = 0;
+        for (; k < lasts_[i]; ++k) {
+            cell.two_points += weights_[k] * factors_[k];
+            cell.glance.take(factors_[k], seen_[k]);
+        }
+        cell.middle = factors_[middle++];
+    }
+}
+
+/// The halves of a cell: across the longest edge, and for a quadrilateral across the edge opposite to it.
+void OccludedExchange::halve(const Task& task) {
+    const Cell& cell = task.cell;
     std::size_t longest = 0;
     double most = 0;
     for (std::size_t i = 0; i < cell.count; ++i) {
@@ -105,18 +98,16 @@ double OccludedExchange::integrate_halves(const Cell& cell, double allowed, int 
     }
     const auto at = [&](std::size_t i) { return cell.corner[(longest + i) % cell.count]; };
     const Vec2 p = 0.5 * (at(0) + at(1));
-    Cell one, two;
+    Task one{{}, 0, 0.5 * task.allowed, 0, {}, task.depth + 1}, two = one;
     if (cell.count == 3) {
-        one.add(p), one.add(at(1)), one.add(at(2));
-        two.add(p), two.add(at(2)), two.add(at(0));
+        one.cell.add(p), one.cell.add(at(1)), one.cell.add(at(2));
+        two.cell.add(p), two.cell.add(at(2)), two.cell.add(at(0));
     } else {
         const Vec2 q = 0.5 * (at(2) + at(3));
-        one.add(p), one.add(at(1)), one.add(at(2)), one.add(q);
-        two.add(p), two.add(q), two.add(at(3)), two.add(at(0));
+        one.cell.add(p), one.cell.add(at(1)), one.cell.add(at(2)), one.cell.add(q);
+        two.cell.add(p), two.cell.add(q), two.cell.add(at(3)), two.cell.add(at(0));
     }
-    look(one), look(two);
-    return integrate(one, distance_to_source(one), 0.5 * allowed, depth + 1) +
-           integrate(two, distance_to_source(two), 0.5 * allowed, depth + 1);
+    halves_.push_back(one), halves_.push_back(two);
 }
 
 /// A lower bound: boxes of slanting faces reach far beyond them, so that the source is asked itself.
@@ -157,9 +148,10 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double d, double all
         return exchange_area(std::span(corners).first(cell.count), pair_.source,
                              std::clamp(allowed / whole, 1e-12, 1e-3));
     }
+    nodes_.clear(), weights_.clear();
     place_nodes(cell, points);
     double sum = 0;
-    for (const Node& node : nodes_) sum += node.weight * visible_.unoccluded(node.at, frame_.n);
+    for (std::size_t k = 0; k < nodes_.size(); ++k) sum += weights_[k] * visible_.unoccluded(nodes_[k]);
     return sum;
 }
 
@@ -180,59 +172,108 @@ bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
     return false;
 }
 
-/// A rising row of rules until two agree, else halves. The difference of two rules is the error of the lesser one; the
-/// better one's is a small share of it, but no less than the source's distance lets expect. Two points a side need a
-/// second witness, as bends of opposite sign cancel in their difference from the middle: exp(a s) on [-1, 1] errs by
-/// a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones, every bend counts.
-/// Shares are from cells of rooms with blocks: of a hundred cells accepted one errs by more than its allowance, none by
-/// ten times that.
-double OccludedExchange::integrate(const Cell& cell, double d, double allowed, int depth) {
+/// Does a look at a cell tell its integral? The difference of two rules is the error of the lesser one. Two points a
+/// side need a second witness, as bends of opposite sign cancel in their difference from the middle: exp(a s) on
+/// [-1, 1] errs by a^4 / 270 and varies by a / sqrt 3 at the points; where the entry is among its row's large ones,
+/// every bend counts.
+bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
+    const Cell& cell = task.cell;
+    if (cell.glance.black > 0 || (dominates_ && is_under_an_edge(cell))) return false;
+    const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
+    const double far = 2 * cell.area * brightest(task.distance), middle = std::max(cell.middle, 1e-300);
+    const double most = std::max(cell.glance.highest / middle - 1, 1 - cell.glance.lowest / middle),
+                 varies = 3 * most * most;
+    const double witness =
+        cell.two_points * (varies * varies / 270 + (matters_ ? 0.005 * most : 0)) + far * step * step;
+    const double part = cell.count == 3 ? 0.2 : 0.03;  // three points of a triangle are but of degree 2
+    return part * std::abs(cell.two_points - cell.area * middle) + witness <= task.allowed;
+}
+
+/// Applies a rule to the cells of all tasks.
+void OccludedExchange::apply(int points) {
+    nodes_.clear(), weights_.clear(), lasts_.clear();
+    for (const Task& task : tasks_) place_nodes(task.cell, points), lasts_.push_back(nodes_.size());
+    look_from_nodes();
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+        tasks_[i].sum = 0;
+        tasks_[i].glance = {};
+        for (; k < lasts_[i]; ++k) {
+            tasks_[i].sum += weights_[k] * factors_[k];
+            tasks_[i].glance.take(factors_[k], seen_[k]);
+        }
+    }
+}
+
+/// A rising row of rules until two agree, else halves. The better one's error is a small share of their difference, but
+/// no less than the source's distance lets expect. Shares are from cells of rooms with blocks: of a hundred cells
+/// accepted one errs by more than its allowance, none by ten times that.
+double OccludedExchange::integrate_tasks() {
     const bool fine = relative_ < 1e-5 || dominates_;
-    const double rho = convergence(cell, d), step = 1 / (rho * rho);
-    const double far = 2 * cell.area * brightest(d);
-    const bool near = dominates_ && is_under_an_edge(cell);
-    Glance glance = cell.glance;
-    double before = cell.two_points;
-    if (fine) {
-        before = apply(cell, 3, glance);
-    } else if (glance.black == 0 && !near) {
-        Seen seen;
-        const double middle = std::max(seen_from(middle_of(cell.corners()), seen), 1e-300);
-        const double most = std::max(glance.highest / middle - 1, 1 - glance.lowest / middle), varies = 3 * most * most;
-        const double witness = before * (varies * varies / 270 + (matters_ ? 0.005 * most : 0)) + far * step * step;
-        const double part = cell.count == 3 ? 0.2 : 0.03;  // three points of a triangle are but of degree 2
-        if (part * std::abs(before - cell.area * middle) + witness <= allowed) return before;
+    double total = 0;
+    while (!tasks_.empty()) {
+        if (fine)
+            apply(3);
+        else
+            std::erase_if(tasks_, [&](const Task& task) {
+                const bool settled = is_settled_by_two_points(task);
+                if (settled) total += task.cell.two_points;
+                return settled;
+            });
+        for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
+            befores_.clear();
+            for (const Task& task : tasks_) befores_.push_back(task.sum);
+            apply(points);
+            std::size_t i = 0;
+            std::erase_if(tasks_, [&](const Task& task) {
+                const double before = befores_[i++];
+                if (task.glance.black == task.glance.count) return true;
+                const Cell& cell = task.cell;
+                const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
+                const double far = 2 * cell.area * brightest(task.distance);
+                const double share = dominates_ && is_under_an_edge(cell) ? near_share : fine || matters_ ? 0.1 : 0.03;
+                const bool good = share * std::abs(task.sum - before) + far * std::pow(step, points) <= task.allowed;
+                if (good) total += task.sum;
+                return good;
+            });
+            if (!fine) break;
+        }
+        halves_.clear();
+        for (const Task& task : tasks_) {
+            if (task.depth >= deepest || evaluations > enough_)
+                total += task.sum;
+            else
+                halve(task);
+        }
+        looking_.clear();
+        for (Task& half : halves_) looking_.push_back(&half.cell);
+        look_at_cells(looking_);
+        for (Task& half : halves_) half.distance = distance_to_source(half.cell), half.sum = half.cell.two_points;
+        tasks_.swap(halves_);
     }
-    for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
-        const double sum = apply(cell, points, glance);
-        if (glance.black == glance.count) return 0;
-        const double share = near ? near_share : fine || matters_ ? 0.1 : 0.03;
-        if (share * std::abs(sum - before) + far * std::pow(step, points) <= allowed) return sum;
-        before = sum;
-        if (!fine) break;
-    }
-    if (depth >= deepest || evaluations > enough_) return before;
-    return integrate_halves(cell, allowed, depth);
+    return total;
 }
 
 double OccludedExchange::operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded) {
     unoccluded = false;
     pair_ = pair;
     relative_ = demand.relative;
-    visible_.set(pair.source, pair.blockers);
-    if (visible_.is_hidden_from(pair.receiver)) return 0;
-
     frame_ = PlaneFrame(pair.receiver[0], pair.receiver_plane.n);
     Cell whole;
     for (const Point& p : pair.receiver) whole.add(frame_.flat(p));
+    const auto outlook = visible_.set(frame_, whole.corners(), pair.source, pair.blockers);
+    if (outlook == VisibleFromMany::Outlook::hidden) return 0;
+    if (outlook == VisibleFromMany::Outlook::clear) return unoccluded = true, 0;
     size_ = diameter(whole.corners());
     cells_.clear();
     cut_into_cells(whole, 0);
+    looking_.clear();
+    for (Cell& cell : cells_) looking_.push_back(&cell);
+    look_at_cells(looking_);
 
     bool all = true;
     double estimate = 0;
-    for (Cell& cell : cells_) {
-        look(cell);
+    for (const Cell& cell : cells_) {
         all &= cell.complete && cell.glance.lit == cell.glance.count;
         estimate += cell.two_points;
     }
@@ -244,10 +285,8 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     source_area_ = norm(area_vector(pair.source));
     const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
     double total = 0;
-    enough_ = evaluations;
+    tasks_.clear();
     for (const Cell& cell : cells_) {
-        // What a cell leaves of its ration goes to the cells after it, so that none starves another.
-        enough_ += (relative_ < 1e-5 ? 1000 : 50) * (1 + 1000 / cells_.size());
         if (cell.complete && cell.glance.dark == cell.glance.count) continue;
         const double d = distance_to_source(cell);
         if (cell.complete && cell.glance.lit == cell.glance.count)
@@ -255,9 +294,10 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
         else if (cell.area * brightest(d) < 0.3 * share)
             total += cell.two_points;
         else
-            total += integrate(cell, d, share, 0);
+            tasks_.push_back({cell, d, share, cell.two_points, cell.glance, 0});
     }
-    return total;
+    enough_ = evaluations + cells_.size() * (relative_ < 1e-5 ? 1000 : 50) * (1 + 1000 / cells_.size());
+    return total + integrate_tasks();
 }
 
 }  // namespace exitance

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "exitance/transport/critical_lines.hpp"
-#include "exitance/transport/visible_from_four.hpp"
-#include "exitance/transport/visible_source.hpp"
+#include "exitance/transport/visible_from_many.hpp"
 
 namespace exitance {
 
@@ -40,6 +39,7 @@ class OccludedExchange {
         std::size_t count = 0, lit = 0, dark = 0;  ///< Of how many points, seeing all, hidden by one blocker alone.
         std::size_t black = 0;                     ///< Seeing nothing.
         double lowest = HUGE_VAL, highest = 0;
+        void take(double F, Seen seen);
     };
 
     struct Cell {
@@ -47,6 +47,7 @@ class OccludedExchange {
         std::size_t count = 0;
         std::array<Vec2, most> corner;
         double area = 0, two_points = 0;  ///< m^2; the second is the integral by two Gauss points a side.
+        double middle = 0;                ///< Form factor to what is seen from the middle.
         Glance glance;
         bool complete = false;  ///< No critical line that crosses it was left out.
 
@@ -55,31 +56,41 @@ class OccludedExchange {
         }
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
     };
-
-    struct Node {
-        Point at;
-        double weight;  ///< m^2
+    /// A cell that is not done.
+    struct Task {
+        Cell cell;
+        double distance, allowed;  ///< Metres to the source; m^2.
+        double sum;                ///< m^2, by the best rule so far.
+        Glance glance;             ///< Of that rule.
+        int depth;
     };
+
     void cut_into_cells(const Cell& part, int depth);
     bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
-    void look(Cell& cell);
     double distance_to_source(const Cell& cell) const;
     double brightest(double d) const;
     bool is_under_an_edge(const Cell& cell) const;
     double convergence(const Cell& cell, double d) const;
-    double integrate(const Cell& cell, double d, double allowed, int depth);
     double integrate_smooth(const Cell& cell, double d, double allowed);
-    double integrate_halves(const Cell& cell, double allowed, int depth);
     void place_nodes(const Cell& cell, int points);
-    double apply(const Cell& cell, int points, Glance& glance);
-    double seen_from(Vec2 p, Seen& seen);
+    void look_from_nodes();
+    void look_at_cells(std::span<Cell* const> cells);
+    bool is_settled_by_two_points(const Task& task) const;
+    void apply(int points);
+    void halve(const Task& task);
+    double integrate_tasks();
 
     static constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
     OccludedPair pair_;
     PlaneFrame frame_{{}, {0, 0, 1}};
-    VisibleSource visible_;
-    VisibleFromFour visible_from_four_;
-    std::vector<Node> nodes_;
+    VisibleFromMany visible_;
+    std::vector<Vec2> nodes_;
+    std::vector<double> weights_, factors_;  ///< m^2; form factors from the nodes.
+    std::vector<Seen> seen_;
+    std::vector<std::size_t> lasts_;  ///< Where the nodes of each cell end.
+    std::vector<double> befores_;
+    std::vector<Task> tasks_, halves_;
+    std::vector<Cell*> looking_;
     CriticalLineFinder finder_;
     std::vector<CriticalLine> lines_;
     std::vector<Cell> cells_, parts_, next_;

@@ -43,10 +43,9 @@ class VisibleFromFour::Work {
         Polygon& whole = pool_[fragments_++];
         whole.count = 0;
         size_ = Real{};
-        towards_ = spread({});
+        towards_ = spread(-area_vector(source));
         for (const Point& p : source) {
             const Vec r = spread(p) - x_;
-            towards_ = towards_ + r;
             size_ = max(size_, absolute(r.x) + absolute(r.y) + absolute(r.z));
             whole.corner[whole.count++] = r;
         }
