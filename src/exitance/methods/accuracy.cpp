@@ -26,7 +26,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     knobs.solve_rays = {.average = std::clamp(1.5 / error, 32.0, 256.0), .least = 16, .most = 1024};
     // What is projected is only gathered from, and its means are right; unless it is what is delivered.
     knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
-    knobs.residual = 0.05 * error;
+    knobs.residual = 0.02 * error;
     knobs.link_error = 0.45 * error;
     // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each.
     knobs.gather_curved = error < 0.03;

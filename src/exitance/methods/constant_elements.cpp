@@ -1,23 +1,24 @@
 #include "exitance/methods/constant_elements.hpp"
 
+#include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/direct_share.hpp"
 
 namespace exitance {
 namespace {
 
 /// b = first + rho F b to convergence, starting from `light.reflected`.
-void solve(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
-           std::span<const Spectrum> first, GlobalLight& light) {
-    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
-    light.report = solve_radiosity(
-        {F, rho, first, area}, input.options.relaxation.value_or(Relaxation::gmres), light.reflected,
+void solve(const MethodInput& input, ConservingTransport& F, std::span<const Spectrum> rho,
+           std::span<const Spectrum> first, std::span<const double> area, GlobalLight& light) {
+    light.report = solve_conserving(
+        {F, rho, first, area}, F, !light.kept.empty(), input.options.relaxation.value_or(Relaxation::gmres),
+        light.reflected,
         {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop});
 }
 
 /// Where surfaces glow all over, the direct light that F finds by its own rays, F M, takes the share c of the exact
 /// one's place: E_ind = F (b + c M) - c E_dir. Then the noise of F meets only what varies of b + c M.
-void agree_with_direct_share(const MethodInput& input, const TransportOperator& F, std::span<const Spectrum> rho,
-                             GlobalLight& light) {
+void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, std::span<const Spectrum> rho,
+                             std::span<const double> area, GlobalLight& light) {
     const ElementLocator locator(light.tree, input.stage.scene.regions().size());
     const Spectrum c = find_direct_share(input.stage, light, locator, input.options.seed);
     if (squared(c) == 0 || input.stop.requested()) return;
@@ -25,13 +26,15 @@ void agree_with_direct_share(const MethodInput& input, const TransportOperator& 
     std::vector<Spectrum> M(n), correction(n), first(n);
     for (std::size_t i = 0; i < n; ++i)
         M[i] = input.stage.scene.material(light.tree.region(light.numbering.leaves[i])).exitance;
-    F.gather(M, correction);
+    ConservingTransport of_emitted = F;  // the noise of that is its own
+    if (!light.kept.empty()) of_emitted.conserve(M);
+    of_emitted.gather(M, correction);
     for (std::size_t i = 0; i < n; ++i) {
         correction[i] = c * (correction[i] - light.direct[i]);
         first[i] = rho[i] * (light.direct[i] + correction[i]);
     }
     const std::size_t before = light.report.iterations;
-    solve(input, F, rho, first, light);
+    solve(input, F, rho, first, area, light);
     light.report.iterations += before;
     F.gather(light.reflected, light.indirect);
     for (std::size_t i = 0; i < n; ++i) light.indirect[i] += correction[i];
@@ -40,8 +43,10 @@ void agree_with_direct_share(const MethodInput& input, const TransportOperator& 
 
 }  // namespace
 
-void relax_constant_elements(const MethodInput& input, const TransportOperator& F, GlobalLight& light) {
+void relax_constant_elements(const MethodInput& input, const TransportOperator& rows, GlobalLight& light) {
     input.progress.phase("solve");
+    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
+    ConservingTransport F(rows, area, light.kept);
     const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
     std::vector<Spectrum> first(rho.size());
     for (std::size_t i = 0; i < rho.size(); ++i) first[i] = rho[i] * light.direct[i];
@@ -55,9 +60,9 @@ void relax_constant_elements(const MethodInput& input, const TransportOperator& 
         }
         light.report = {.iterations = static_cast<std::size_t>(input.options.bounces), .converged = true};
     } else {
-        solve(input, F, rho, first, light);
+        solve(input, F, rho, first, area, light);
         F.gather(light.reflected, light.indirect);
-        agree_with_direct_share(input, F, rho, light);
+        agree_with_direct_share(input, F, rho, area, light);
     }
     light.link_memory_bytes = F.memory_bytes();
 }

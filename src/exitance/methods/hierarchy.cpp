@@ -341,6 +341,9 @@ class Hierarchy {
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         const RayRows rows(input_.stage, light_.tree, light_.numbering, locator, input_.knobs.solve_rays,
                            input_.options.seed);
+        const std::vector<double> area = leaf_areas(light_.tree, light_.numbering);
+        light_.kept = rows.kept();
+        ConservingTransport conserving(rows, area, light_.kept);
         const std::vector<ElementId>& leaves = light_.numbering.leaves;
         std::vector<Spectrum> b(leaves.size()), E(leaves.size());
         missed_.assign(leaves.size(), Spectrum());
@@ -348,7 +351,8 @@ class Hierarchy {
         constexpr int steps = 2;
         for (int step = 0; step < steps && !input_.stop.requested(); ++step) {
             for (std::size_t i = 0; i < leaves.size(); ++i) b[i] = mean_over(sites_, b_, leaves[i]);
-            rows.gather(b, E);
+            conserving.conserve(b);
+            conserving.gather(b, E);
             const NodalField found = gather();
             for (std::size_t i = 0; i < leaves.size(); ++i) {
                 const Spectrum missed = E[i] - mean_over(sites_, found, leaves[i]),

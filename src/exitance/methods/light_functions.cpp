@@ -1,5 +1,10 @@
 #include "exitance/methods/light_functions.hpp"
 
+#include <cmath>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/solve/conserving_transport.hpp"
+
 namespace exitance {
 
 ElementFunction dark(const Stage& stage) {
@@ -93,6 +98,26 @@ void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> va
             b = material.reflectance * (b + direct_weight_ * direct[i]) + c_ * material.exitance;
         }
     }
+}
+
+void keep_flux(ElementFunction& gathered, const ElementFunction& from, std::span<const double> kept) {
+    const auto flux = [](const ElementFunction& f, std::span<const double> share) {
+        const std::vector<ElementId> leaves = f.tree.leaves();
+        EXI_ASSERT(share.empty() || share.size() == leaves.size());
+        // A linear or bilinear function has its mean at the centre of its element.
+        return parallel_sum<Spectrum>(leaves.size(), [&](std::size_t i) {
+            return (share.empty() ? 1 : share[i]) * f.tree.area(leaves[i]) *
+                   f.at({leaves[i], f.tree.centre(leaves[i])});
+        });
+    };
+    constexpr double small = 0.05;  // beyond which more is wrong than rays
+    const Spectrum all = flux(from, {}), sent = flux(from, kept), received = flux(gathered, {});
+    if (mean(sent) < ConservingTransport::least_kept * mean(all)) return;
+    Spectrum scale(1.0);
+    for (std::size_t b = 0; b < bands; ++b)
+        if (std::abs(sent[b] - received[b]) < small * received[b]) scale[b] = sent[b] / received[b];
+    for (std::array<float, bands>& value : gathered.values)
+        for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(scale[b] * value[b]);
 }
 
 double rms_standard_error(const Stage& stage, const GlobalLight& light) {

@@ -23,6 +23,11 @@ ElementFunction polynomials_on_leaves(const GlobalLight& light);
 ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                                const Spectrum& c);
 
+/// Scales what was gathered from a function on the leaves of `kept`, by leaf number, to the flux that of it arrives,
+/// band by band: what rays and places of a local pass miss in the mean, a share of about 1e-3, would come back from
+/// every reflection and show in the energy balance. Nothing happens where much escapes (`ConservingTransport`).
+void keep_flux(ElementFunction& gathered, const ElementFunction& from, std::span<const double> kept);
+
 /// Reflected light of what a solution delivers, plus the share c of what is emitted: rho (E_ind + (1 - c) E_dir) + c M,
 /// where `indirect` holds E_ind + c E_dir and direct light is read as projected.
 class DeliveredLight final : public ReflectedLight {

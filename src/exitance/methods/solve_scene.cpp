@@ -102,8 +102,12 @@ class Solver {
     }
 
   private:
-    /// The estimate is itself uncertain by a fifth: it has to be below this share of the demand.
-    static constexpr double margin = 0.82;
+    /// The estimate by so many points is itself uncertain, by a fifth where they are as few as at first: it has to be
+    /// below this share of the demand.
+    static double margin(std::size_t points) {
+        const double first = static_cast<double>(CertificateOptions().points);
+        return 1 - 0.18 * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
+    }
 
     /// What comes next within an attempt.
     enum class Step : std::uint8_t { project, solve, gather, certify, decide };
@@ -167,7 +171,7 @@ class Solver {
             const Stopwatch watch;
             attempt();
             if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-            if (!demand || certificate_.estimate <= margin * *demand) {
+            if (!demand || certificate_.estimate <= margin(certificate_.points) * *demand) {
                 if (statistics().stopped_by.empty() || demand)
                     statistics().converged = true, statistics().stopped_by.clear();
                 return;
@@ -233,7 +237,7 @@ class Solver {
         certify_solution(look);
         // Few points tell an estimate to a tenth or so. One just too large is looked at again, which is cheaper than
         // another attempt for nothing.
-        const double limit = margin * options_.error_demand().value_or(HUGE_VAL);
+        const double limit = margin(look.points) * options_.error_demand().value_or(HUGE_VAL);
         if (certificate_.estimate > limit && certificate_.estimate < 1.25 * limit && !stop_.requested()) {
             look.points *= 4;
             certify_solution(look);
@@ -259,6 +263,7 @@ class Solver {
         if (gathers() && ElementGather::suits(stage_)) elements.emplace(stage_, light);
         gathered_ = {};
         ElementFunction indirect = gathers() ? gather(b, elements ? &*elements : nullptr, fresh_) : on_leaves();
+        if (gathers() && !light_->kept.empty()) keep_flux(indirect, light, light_->kept);
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
             if (certificate_.points > 0) return false;

@@ -39,6 +39,18 @@ TEST_P(EveryMethod, AFurnaceGlowsEverywhereAlike) {
     for (const Light& l : light.at(points)) EXPECT_NEAR(l.irradiance[0], 1 / (1 - rho), tolerance / (1 - rho));
 }
 
+TEST(SolveScene, LosesNoLightInClosedScenes) {
+    // The legs of the chairs are open at their ends, and dark inside; light in the tube is reflected again and again.
+    // Rays alone would leave up to 6e-3.
+    for (const char* name : {"tube", "complex"})
+        for (std::uint64_t seed : {1, 2, 3})
+            EXPECT_LT(solved(built_scene(name), {.method = Method::matrix, .seed = seed}).statistics.energy.defect,
+                      1e-3)
+                << name << " " << seed;
+    const Solution by_links = solved(built_scene("complex"), {.method = Method::hierarchical});
+    EXPECT_LT(by_links.statistics.energy.defect, 1e-3);
+}
+
 TEST_P(EveryMethod, HasTheSameBitsOnAnyNumberOfThreads) {
     const Scene scene = built_scene("gcr2");
     const SolveOptions one{.method = GetParam(), .error = 0.05, .threads = 1};

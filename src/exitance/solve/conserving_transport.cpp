@@ -10,10 +10,12 @@ namespace exitance {
 void ConservingTransport::conserve(std::span<const Spectrum> b) {
     std::vector<Spectrum> E(b.size());
     F_.gather(b, E);
-    const auto power = [&](std::span<const Spectrum> x) {
-        return parallel_sum<Spectrum>(x.size(), [&](std::size_t i) { return area_[i] * x[i]; });
+    const auto power = [&](std::span<const Spectrum> x, std::span<const double> share) {
+        return parallel_sum<Spectrum>(x.size(),
+                                      [&](std::size_t i) { return (share.empty() ? 1 : share[i]) * area_[i] * x[i]; });
     };
-    const Spectrum sent = power(b), received = power(E);
+    const Spectrum all = power(b, {}), sent = power(b, kept_), received = power(E, {});
+    if (mean(sent) < least_kept * mean(all)) return;
     constexpr double small = 0.05;
     for (std::size_t band = 0; band < bands; ++band) {
         const double s = received[band] > 0 ? sent[band] / received[band] : 1;

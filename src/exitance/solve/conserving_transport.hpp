@@ -4,21 +4,24 @@
 
 namespace exitance {
 
-/// E = s F b, with a factor s a band for which no light is lost between elements: in a closed scene, where whatever
-/// leaves a surface arrives at one,
+/// E = s F b, with a factor s a band for which no light is lost between elements but what escapes:
 ///
-///     sum_i A_i E_i = sum_i A_i b_i.
+///     sum_i A_i E_i = sum_j k_j A_j b_j,
 ///
-/// What F misses is alike from place to place, comes back from every reflection, and so makes all of a bright room too
-/// dark by more than any link's error; s - 1 is that share, and small.
+/// where the share k_j of what leaves element j arrives at some front: all of it in a closed scene. What F misses is
+/// alike from place to place, comes back from every reflection, and so makes all of a bright room too dark by more than
+/// any link's error; s - 1 is that share, and small.
 class ConservingTransport final : public TransportOperator {
   public:
-    /// `area`: of each unknown, m^2. Both must outlive it. To begin with, s = 1.
-    ConservingTransport(const TransportOperator& F, std::span<const double> area) : F_(F), area_(area) {}
+    /// `area`: of each unknown, m^2; `kept`: k of each, all 1 if empty. All must outlive it. To begin with, s = 1.
+    ConservingTransport(const TransportOperator& F, std::span<const double> area, std::span<const double> kept = {})
+        : F_(F), area_(area), kept_(kept) {}
 
-    /// Sets s for the light b. One gather. Where it would be far from 1, F is at fault otherwise, and s stays.
+    /// Sets s for the light b. One gather. Where it would be far from 1, F is at fault otherwise, and s stays; so it
+    /// does where much escapes, of which k tells too little.
     void conserve(std::span<const Spectrum> b);
     const Spectrum& scale() const { return scale_; }
+    static constexpr double least_kept = 0.98;  ///< Of all that leaves.
 
     std::size_t size() const override { return F_.size(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
@@ -29,7 +32,7 @@ class ConservingTransport final : public TransportOperator {
 
   private:
     const TransportOperator& F_;
-    std::span<const double> area_;
+    std::span<const double> area_, kept_;
     Spectrum scale_{1.0};
 };
 

@@ -56,5 +56,23 @@ TEST(ConservingTransport, LeavesAloneWhatIsNoSmallLoss) {
     EXPECT_EQ(absorbed(leaky, true), absorbed(leaky, false));
 }
 
+TEST(ConservingTransport, LetsEscapeWhatEscapes) {
+    const LeakyTransport leaky(1.1e-2);
+    const std::vector<double> kept(4, 0.99);
+    const std::vector<Spectrum> b = {Spectrum(1.0), Spectrum(2.0), Spectrum(0.5), Spectrum(0.1)};
+    ConservingTransport F(leaky, leaky.area(), kept);
+    F.conserve(b);
+    // All elements see each other by area, so that whatever b is the same share of it arrives.
+    EXPECT_NEAR(F.scale()[0], 0.99 / (1 - 1.1e-2), 1e-12);
+}
+
+TEST(ConservingTransport, LeavesAnOpenSceneAlone) {
+    const LeakyTransport leaky(0.11);
+    const std::vector<double> kept(4, 0.9);
+    ConservingTransport F(leaky, leaky.area(), kept);
+    F.conserve(std::vector<Spectrum>(4, Spectrum(1.0)));
+    EXPECT_EQ(F.scale()[0], 1);
+}
+
 }  // namespace
 }  // namespace exitance

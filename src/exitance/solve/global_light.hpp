@@ -35,6 +35,10 @@ struct GlobalLight {
     /// arrives, and `direct` is zero.
     bool holds_direct = false;
 
+    /// By leaf number, where the method saw to it that no light is lost but what escapes: the share of what leaves it
+    /// that arrives at some front. Empty otherwise.
+    std::vector<double> kept = {};
+
     /// Did the method stop refining for want of memory?
     bool limited_by_memory = false;
 

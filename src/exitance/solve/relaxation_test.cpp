@@ -114,7 +114,8 @@ TEST(Relaxation, ChebyshevNeedsTheRootOfJacobisGathersWhereLightIsReflectedOften
         EXPECT_TRUE(report.converged);
         return report.iterations;
     };
-    // ln 1e-8 / ln 0.95 = 359, less what the light on one element alone begins with; and with (1 - (1 - r^2)^(1/2)) / r = 0.72 in place of r = 0.95: 57.
+    // ln 1e-8 / ln 0.95 = 359, less what the light on one element alone begins with; and with (1 - (1 - r^2)^(1/2)) / r
+    // = 0.72 in place of r = 0.95: 57.
     EXPECT_NEAR(static_cast<double>(gathers(Relaxation::jacobi)), 359, 15);
     EXPECT_LE(gathers(Relaxation::chebyshev), 65u);
 }

@@ -87,4 +87,13 @@ void RayRows::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> ir
     parallel_for(size(), 64, [&](std::size_t i) { irradiance[i] = gather_at(i, radiosity); });
 }
 
+std::vector<double> RayRows::kept() const {
+    std::vector<double> out(size());
+    parallel_for(size(), 256, [&](std::size_t i) {
+        const std::span<const std::uint32_t> row = hits(i);
+        out[i] = 1 - static_cast<double>(std::count(row.begin(), row.end(), missed)) / static_cast<double>(row.size());
+    });
+    return out;
+}
+
 }  // namespace exitance

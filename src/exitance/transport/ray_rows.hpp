@@ -44,6 +44,9 @@ class RayRows final : public TransportOperator {
         return std::span(hits_).subspan(first_[i], first_[i + 1] - first_[i]);
     }
 
+    /// Of every row, the share of its rays that hit a front.
+    std::vector<double> kept() const;
+
   private:
     std::vector<std::size_t> first_;  ///< Row i stands in hits_[first_[i], first_[i + 1]).
     std::vector<std::uint32_t> hits_;
