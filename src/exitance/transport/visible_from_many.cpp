@@ -68,23 +68,18 @@ bool VisibleFromMany::find_outline(const ConvexBlocker::Edge& e, bool is_sheet, 
     return true;
 }
 
-/// Adds the lines of a blocker that may cross the source.
-VisibleFromMany::Kept VisibleFromMany::add_blocker(const ConvexBlocker& shape) {
-    SightTables::Blocker blocker;
-    const bool is_sheet = !shape.is_solid();
-    points_.clear();
-    for (const Point& p : shape.points) points_.push_back(place(p));
+/// Adds the planes of a blocker's faces that turn. False when it is a sheet that all of the receiver sees edge-on.
+bool VisibleFromMany::add_faces(const ConvexBlocker& shape, SightTables::Blocker& blocker) {
     facing_.clear();
     turning_.assign(shape.faces.size(), 0);
     blocker.first_face = static_cast<std::uint32_t>(tables_.faces.size());
+    const double none = rounding * reach_;
     for (std::size_t k = 0; k < shape.faces.size(); ++k) {
         const Plane& face = shape.faces[k];
         const Affine height = {face.signed_distance(frame_.origin), dot(face.n, frame_.u), dot(face.n, frame_.v)};
         double low, high;
         bound(height, low, high);
-        const double none = rounding * reach_;
-        const bool edge_on = high <= none && low >= -none;
-        if (edge_on && is_sheet) return Kept::nothing;
+        if (!shape.is_solid() && high <= none && low >= -none) return false;
         facing_.push_back(high <= none ? Facing::back : low >= -none ? Facing::front : Facing::turning);
         blocker.is_seen |= facing_.back() == Facing::front;
         if (facing_.back() != Facing::turning) continue;
@@ -92,57 +87,71 @@ VisibleFromMany::Kept VisibleFromMany::add_blocker(const ConvexBlocker& shape) {
         tables_.faces.push_back(height);
     }
     blocker.last_face = static_cast<std::uint32_t>(tables_.faces.size());
-    blocker.may_hold = !is_sheet && !blocker.is_seen;
+    return true;
+}
+
+/// Adds an edge of a silhouette, unless it never crosses the source. Tells whether all of the source is always outside.
+bool VisibleFromMany::add_line(Line line, const Vec3& a, const Vec3& b, std::uint32_t edge) {
+    const std::size_t corners = tables_.corners.size();
+    line.a = a, line.along = b - a;
+    const double scale = norm(line.along) * reach_ * reach_;
+    line.none = rounding * scale, line.tie = fall_together * scale;
+    line.over = static_cast<std::uint32_t>(tables_.heights.size());
+    std::uint32_t nil = 0;  // corners on the line wherever it is seen from
+    bool all_out = true;
+    for (std::size_t s = 0; s < corners; ++s) {
+        Affine height = determinant(a, b, tables_.corners[s]);
+        double low, high;
+        bound(height, low, high);
+        all_out &= high <= line.none;
+        if (low < -line.none || runs_either_way(line)) line.cuts |= 1u << s;
+        if (std::max(high, -low) <= one_line * scale) height = {}, nil |= 1u << s;
+        tables_.heights.push_back(height);
+    }
+    if (line.cuts == 0) {
+        tables_.heights.resize(line.over);
+        return all_out;
+    }
+    for (std::size_t s = 0; s < corners; ++s) {
+        const std::size_t next = s + 1 == corners ? 0 : s + 1;
+        const Affine of_a = determinant(tables_.corners[s], tables_.corners[next], a),
+                     of_b = determinant(tables_.corners[s], tables_.corners[next], b);
+        tables_.heights.push_back(of_a), tables_.heights.push_back(of_b);
+        double low_a, high_a, low_b, high_b;
+        bound(of_a, low_a, high_a), bound(of_b, low_b, high_b);
+        if (low_a < 0 || low_b < 0) line.cut_by |= 1u << s;
+        // Outside, or on one line with the source's edge, which is counted then.
+        if ((high_a <= 0 && high_b <= 0) || ((nil >> s & 1) && (nil >> next & 1))) line.is_drawn = false;
+    }
+    tables_.lines.push_back(line);
+    edges_.push_back(edge);
+    return all_out;
+}
+
+/// Adds the lines of a blocker that may cross the source.
+VisibleFromMany::Kept VisibleFromMany::add_blocker(const ConvexBlocker& shape) {
+    SightTables::Blocker blocker;
+    const std::size_t mark = tables_.heights.size();
     blocker.first = static_cast<std::uint32_t>(tables_.lines.size());
-    const std::size_t corners = tables_.corners.size(), mark = tables_.heights.size();
-    const auto drop = [&] {
-        tables_.lines.resize(blocker.first), edges_.resize(blocker.first), tables_.heights.resize(mark);
-        tables_.faces.resize(blocker.first_face);
-    };
-    for (std::uint32_t k = 0; k < shape.edges.size(); ++k) {
+    if (!add_faces(shape, blocker)) return Kept::nothing;
+    blocker.may_hold = shape.is_solid() && !blocker.is_seen;
+    points_.clear();
+    for (const Point& p : shape.points) points_.push_back(place(p));
+    bool is_beside = false;
+    for (std::uint32_t k = 0; k < shape.edges.size() && !is_beside; ++k) {
         const ConvexBlocker::Edge& e = shape.edges[k];
         Line line;
         bool turned = false;
-        if (!find_outline(e, is_sheet, line, turned)) continue;
-        const Vec3 a = points_[turned ? e.b : e.a], b = points_[turned ? e.a : e.b];
-        line.a = a, line.along = b - a;
-        const double scale = norm(line.along) * reach_ * reach_;
-        line.none = rounding * scale, line.tie = fall_together * scale;
-        line.over = static_cast<std::uint32_t>(tables_.heights.size());
-        bool crosses = runs_either_way(line), all_out = true, lies_on_one = false, before_was_nil = false,
-             first_is_nil = false;
-        for (std::size_t s = 0; s < corners; ++s) {
-            Affine height = determinant(a, b, tables_.corners[s]);
-            double low, high;
-            bound(height, low, high);
-            crosses |= low < -line.none, all_out &= high <= line.none;
-            const bool nil = std::max(high, -low) <= one_line * scale;
-            lies_on_one |= nil && before_was_nil;
-            if (s == 0) first_is_nil = nil;
-            before_was_nil = nil;
-            if (nil) height = {};
-            tables_.heights.push_back(height);
-        }
-        lies_on_one |= before_was_nil && first_is_nil;
-        if (all_out && line.outline == SightTables::Outline::always && !blocker.may_hold) return drop(), Kept::nothing;
-        if (!crosses) {
-            tables_.heights.resize(line.over);
-            continue;
-        }
-        line.is_drawn = !lies_on_one;
-        for (std::size_t s = 0; s < corners; ++s) {
-            const Vec3 &p = tables_.corners[s], q = tables_.corners[s + 1 == corners ? 0 : s + 1];
-            const Affine of_a = determinant(p, q, a), of_b = determinant(p, q, b);
-            tables_.heights.push_back(of_a), tables_.heights.push_back(of_b);
-            double low_a, high_a, low_b, high_b;
-            bound(of_a, low_a, high_a), bound(of_b, low_b, high_b);
-            if (high_a <= 0 && high_b <= 0) line.is_drawn = false;
-        }
-        tables_.lines.push_back(line);
-        edges_.push_back(k);
+        if (!find_outline(e, !shape.is_solid(), line, turned)) continue;
+        const bool all_out = add_line(line, points_[turned ? e.b : e.a], points_[turned ? e.a : e.b], k);
+        is_beside = all_out && line.outline == SightTables::Outline::always && !blocker.may_hold;
     }
     blocker.last = static_cast<std::uint32_t>(tables_.lines.size());
-    if (blocker.last == blocker.first) return drop(), Kept::hides_all;
+    if (is_beside || blocker.last == blocker.first) {
+        tables_.lines.resize(blocker.first), edges_.resize(blocker.first), tables_.heights.resize(mark);
+        tables_.faces.resize(blocker.first_face);
+        return is_beside ? Kept::nothing : Kept::hides_all;
+    }
     is_crowded_ |= blocker.last - blocker.first > SightTables::most_lines;
     tables_.blockers.push_back(blocker);
     seen_edges_.push_back({&shape, {}});

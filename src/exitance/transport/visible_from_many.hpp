@@ -43,6 +43,8 @@ class VisibleFromMany {
 
     enum class Kept : std::uint8_t { nothing, hides_all, some };
     Kept add_blocker(const ConvexBlocker& shape);
+    bool add_faces(const ConvexBlocker& shape, SightTables::Blocker& blocker);
+    bool add_line(Line line, const Vec3& a, const Vec3& b, std::uint32_t edge);
     bool find_outline(const ConvexBlocker::Edge& e, bool is_sheet, Line& line, bool& turned) const;
     Affine determinant(const Vec3& a, const Vec3& b, const Vec3& p) const;
     void bound(const Affine& f, double& low, double& high) const;

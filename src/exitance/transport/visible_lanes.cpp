@@ -123,7 +123,7 @@ struct Group {
                 const Real h = over(line, tables.heights[line.over + s], shadow.side[i]);
                 heights[i][s] = h;
                 any_in |= h > line.none;
-                reaches_out |= h < -line.none;
+                if (line.cuts >> s & 1) reaches_out |= h < -line.none;
             }
             shadow.beside |= ~any_in;
         }
@@ -137,8 +137,10 @@ struct Group {
         for (std::size_t s = 0; s < count; ++s) {
             const std::size_t next = s + 1 == count ? 0 : s + 1;
             Part part = all;
+            const std::uint32_t ends = 1u << s | 1u << next;
             for (std::uint32_t i = 0; i < blocker.last - blocker.first; ++i)
-                clip(heights[i][s], heights[i][next], tables.lines[blocker.first + i].tie, part, doubtful);
+                if (tables.lines[blocker.first + i].cuts & ends)
+                    clip(heights[i][s], heights[i][next], tables.lines[blocker.first + i].tie, part, doubtful);
             shadow.of_source[s] = part;
         }
         for (std::uint32_t l = blocker.first; l < blocker.last; ++l) {
@@ -149,8 +151,9 @@ struct Group {
             if (!line.is_drawn) part.from = Real{} + 2;
             Mask untold = Mask{};  // ties were met above
             for (std::size_t s = 0; s < count && line.is_drawn; ++s)
-                clip(at(tables.heights[line.over + count + 2 * s]), at(tables.heights[line.over + count + 2 * s + 1]),
-                     0, part, untold);
+                if (line.cut_by >> s & 1)
+                    clip(at(tables.heights[line.over + count + 2 * s]),
+                         at(tables.heights[line.over + count + 2 * s + 1]), 0, part, untold);
             shadow.of_line[i] = part;
             if (any(part.from < part.to))
                 shadow.line[i] = Edge({line.a.x - u, line.a.y - v, Real{} + line.a.z}, line.along);

@@ -35,9 +35,11 @@ struct SightTables {
         double none = 0, tie = 0;  ///< m^3: below it a height is none; two edges may be one.
         Outline outline = Outline::always;
         std::uint32_t left = 0, right = 0;  ///< In faces.
-        std::uint32_t over = 0;  ///< In heights: of the source's corners over this line, then of a and of b over
-                                 ///< each of the source's edges, two an edge.
-        bool is_drawn = true;    ///< May the edge lie before the source?
+        std::uint32_t over = 0;    ///< In heights: of the source's corners over this line, then of a and of b over
+                                   ///< each of the source's edges, two an edge.
+        std::uint32_t cuts = 0;    ///< Corners of the source that may lie outside, a bit each.
+        std::uint32_t cut_by = 0;  ///< Edges of the source that may have some of it outside.
+        bool is_drawn = true;      ///< May the edge lie before the source?
     };
     struct Blocker {
         std::uint32_t first = 0, last = 0;            ///< In lines.
