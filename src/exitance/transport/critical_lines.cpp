@@ -84,6 +84,12 @@ void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<Criti
     if (lines.size() >= most_ || (a.weight <= 0 && b.weight <= 0)) return;
     // The line joins them in homogeneous coordinates, wherever they lie.
     const double x = a.y * b.weight - a.weight * b.y, y = a.weight * b.x - a.x * b.weight, z = a.x * b.y - a.y * b.x;
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    for (Vec2 p : receiver_) {
+        const double d = x * p.x + y * p.y + z;
+        lowest = std::min(lowest, d), highest = std::max(highest, d);
+    }
+    if (lowest >= 0 || highest <= 0) return;  // most miss the receiver
     const double length = std::sqrt(x * x + y * y);
     if (!(length > 0)) return;
     CriticalLine line{{x / length, y / length}, -z / length, 0, 0};

@@ -67,16 +67,11 @@ void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
     for (const CriticalLine& line : lines_) {
         complete &= parts_.size() <= most_cells;
         if (!complete && parts_.size() > most_cells) break;
-        next_.clear();
-        for (const Cell& cell : parts_) {
-            if (cut(cell, line, front, back)) {
-                next_.push_back(front);
-                next_.push_back(back);
-            } else {
-                next_.push_back(cell);
+        for (std::size_t i = 0, count = parts_.size(); i < count; ++i)
+            if (cut(parts_[i], line, front, back)) {
+                parts_[i] = front;
+                parts_.push_back(back);
             }
-        }
-        parts_.swap(next_);
     }
     for (const Cell& cell : parts_) {
         std::size_t first = 1;

@@ -93,7 +93,7 @@ class OccludedExchange {
     std::vector<Cell*> looking_;
     CriticalLineFinder finder_;
     std::vector<CriticalLine> lines_;
-    std::vector<Cell> cells_, parts_, next_;
+    std::vector<Cell> cells_, parts_;
     double size_ = 0, source_area_ = 0;
     double relative_ = 0;
     bool matters_ = false, dominates_ = false;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/transport/four.hpp"
+
 namespace exitance {
 namespace {
 
@@ -29,13 +31,17 @@ VisibleFromMany::Affine VisibleFromMany::determinant(const Vec3& a, const Vec3& 
     return {dot(n, p), -n.x, -n.y};
 }
 
-/// Least and largest value on the receiver.
-void VisibleFromMany::bound(const Affine& f, double& low, double& high) const {
-    low = HUGE_VAL, high = -HUGE_VAL;
-    for (Vec2 x : receiver_) {
-        const double value = f.c + f.u * x.x + f.v * x.y;
-        low = std::min(low, value), high = std::max(high, value);
-    }
+/// Is a value found on the receiver that is less than this one? Corners decide.
+bool VisibleFromMany::any_below(const Affine& f, double value) const {
+    for (std::size_t k = 0; k < receiver_u_.size(); k += four::lanes)
+        if (four::any(f.c + f.u * four::load(&receiver_u_[k]) + f.v * four::load(&receiver_v_[k]) < value)) return true;
+    return false;
+}
+
+bool VisibleFromMany::any_above(const Affine& f, double value) const {
+    for (std::size_t k = 0; k < receiver_u_.size(); k += four::lanes)
+        if (four::any(f.c + f.u * four::load(&receiver_u_[k]) + f.v * four::load(&receiver_v_[k]) > value)) return true;
+    return false;
 }
 
 /// When is an edge of the silhouette, and which side is inside? `turned` when it runs from b to a. False when it never
@@ -77,10 +83,9 @@ bool VisibleFromMany::add_faces(const ConvexBlocker& shape, SightTables::Blocker
     for (std::size_t k = 0; k < shape.faces.size(); ++k) {
         const Plane& face = shape.faces[k];
         const Affine height = {face.signed_distance(frame_.origin), dot(face.n, frame_.u), dot(face.n, frame_.v)};
-        double low, high;
-        bound(height, low, high);
-        if (!shape.is_solid() && high <= none && low >= -none) return false;
-        facing_.push_back(high <= none ? Facing::back : low >= -none ? Facing::front : Facing::turning);
+        const bool above = any_above(height, none), below = any_below(height, -none);
+        if (!shape.is_solid() && !above && !below) return false;
+        facing_.push_back(!above ? Facing::back : !below ? Facing::front : Facing::turning);
         blocker.is_seen |= facing_.back() == Facing::front;
         if (facing_.back() != Facing::turning) continue;
         turning_[k] = static_cast<std::uint32_t>(tables_.faces.size());
@@ -101,11 +106,10 @@ bool VisibleFromMany::add_line(Line line, const Vec3& a, const Vec3& b, std::uin
     bool all_out = true;
     for (std::size_t s = 0; s < corners; ++s) {
         Affine height = determinant(a, b, tables_.corners[s]);
-        double low, high;
-        bound(height, low, high);
-        all_out &= high <= line.none;
-        if (low < -line.none || runs_either_way(line)) line.cuts |= 1u << s;
-        if (std::max(high, -low) <= one_line * scale) height = {}, nil |= 1u << s;
+        const bool above = any_above(height, line.none), below = any_below(height, -line.none);
+        all_out &= !above;
+        if (below || runs_either_way(line)) line.cuts |= 1u << s;
+        if (!any_above(height, one_line * scale) && !any_below(height, -one_line * scale)) height = {}, nil |= 1u << s;
         tables_.heights.push_back(height);
     }
     if (line.cuts == 0) {
@@ -117,11 +121,10 @@ bool VisibleFromMany::add_line(Line line, const Vec3& a, const Vec3& b, std::uin
         const Affine of_a = determinant(tables_.corners[s], tables_.corners[next], a),
                      of_b = determinant(tables_.corners[s], tables_.corners[next], b);
         tables_.heights.push_back(of_a), tables_.heights.push_back(of_b);
-        double low_a, high_a, low_b, high_b;
-        bound(of_a, low_a, high_a), bound(of_b, low_b, high_b);
-        if (low_a < 0 || low_b < 0) line.cut_by |= 1u << s;
+        if (any_below(of_a, 0) || any_below(of_b, 0)) line.cut_by |= 1u << s;
         // Outside, or on one line with the source's edge, which is counted then.
-        if ((high_a <= 0 && high_b <= 0) || ((nil >> s & 1) && (nil >> next & 1))) line.is_drawn = false;
+        if ((!any_above(of_a, 0) && !any_above(of_b, 0)) || ((nil >> s & 1) && (nil >> next & 1)))
+            line.is_drawn = false;
     }
     tables_.lines.push_back(line);
     edges_.push_back(edge);
@@ -166,9 +169,8 @@ void VisibleFromMany::join(std::size_t k, std::size_t j) {
         for (std::uint32_t l = other.first; l < other.last; ++l) {
             const Line &e = tables_.lines[i], &f = tables_.lines[l];
             Affine of_a = determinant(f.a, f.a + f.along, e.a), of_b = determinant(f.a, f.a + f.along, e.a + e.along);
-            double low_a, high_a, low_b, high_b;
-            bound(of_a, low_a, high_a), bound(of_b, low_b, high_b);
-            if (std::max({high_a, high_b, -low_a, -low_b}) <= one_line * norm(f.along) * reach_ * reach_)
+            const double nil = one_line * norm(f.along) * reach_ * reach_;
+            if (!any_above(of_a, nil) && !any_below(of_a, -nil) && !any_above(of_b, nil) && !any_below(of_b, -nil))
                 of_a.u = SightTables::on_one_line, of_a.c = dot(e.along, f.along);
             tables_.heights.push_back(of_a), tables_.heights.push_back(of_b);
         }
@@ -177,12 +179,15 @@ void VisibleFromMany::join(std::size_t k, std::size_t j) {
 VisibleFromMany::Outlook VisibleFromMany::set(const PlaneFrame& frame, std::span<const Vec2> receiver,
                                               std::span<const Point> source,
                                               std::span<const ConvexBlocker* const> blockers) {
-    frame_ = frame, receiver_ = receiver, source_ = source, blockers_ = blockers;
+    frame_ = frame, source_ = source, blockers_ = blockers;
     single_is_set_ = false;
     tables_.corners.clear(), tables_.along.clear(), tables_.blockers.clear(), tables_.lines.clear();
     tables_.faces.clear(), tables_.heights.clear(), edges_.clear(), seen_edges_.clear();
     Box box;
-    for (Vec2 x : receiver) box.add(Point{x.x, x.y, 0});
+    receiver_u_.clear(), receiver_v_.clear();
+    for (Vec2 x : receiver) box.add(Point{x.x, x.y, 0}), receiver_u_.push_back(x.x), receiver_v_.push_back(x.y);
+    while (receiver_u_.size() % four::lanes != 0)
+        receiver_u_.push_back(receiver_u_.back()), receiver_v_.push_back(receiver_v_.back());
     for (const Point& p : source) tables_.corners.push_back(place(p)), box.add(tables_.corners.back());
     for (std::size_t s = 0; s < source.size(); ++s)
         tables_.along.push_back(tables_.corners[s + 1 == source.size() ? 0 : s + 1] - tables_.corners[s]);

@@ -47,13 +47,14 @@ class VisibleFromMany {
     bool add_line(Line line, const Vec3& a, const Vec3& b, std::uint32_t edge);
     bool find_outline(const ConvexBlocker::Edge& e, bool is_sheet, Line& line, bool& turned) const;
     Affine determinant(const Vec3& a, const Vec3& b, const Vec3& p) const;
-    void bound(const Affine& f, double& low, double& high) const;
+    bool any_below(const Affine& f, double value) const;
+    bool any_above(const Affine& f, double value) const;
     void join(std::size_t k, std::size_t j);
     Vec3 place(const Point& p) const;
     void look_otherwise(std::span<const Vec2> points, std::span<double> F, std::span<Seen> seen);
 
     PlaneFrame frame_{{}, {0, 0, 1}};
-    std::span<const Vec2> receiver_;
+    std::vector<double> receiver_u_, receiver_v_;  ///< Its corners, the last one again to fill groups of four.
     std::span<const Point> source_;
     std::span<const ConvexBlocker* const> blockers_;
     double reach_ = 0;  ///< Metres between any two of the places at hand, at most.
