@@ -47,8 +47,11 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     Knobs out = knobs;
     if (error < 0.01) {
         out.solve_mesh.longest_end = out.gather_mesh.longest_end = 4;
-        // Two strips more than the mean square needs: at an edge, too, light is to be right.
+        // Two strips more than the mean square needs: at an edge, too, light is to be right. Within, a coarser mesh does.
         out.gather_mesh.grading_levels += 2;
+        constexpr double coarser = 1.5;
+        out.solve_mesh.edge *= coarser, out.gather_mesh.edge *= coarser;
+        out.gather_element_share *= 2;
         return out;
     }
     // Coarser than this, and the certificate, which reads the light that the method's elements hold, sees too little.
