@@ -67,13 +67,12 @@ void OccludedExchange::Glance::take(double F, Seen seen) {
     lowest = std::min(lowest, F), highest = std::max(highest, F);
 }
 
-/// Looks at cells with two Gauss points a side and one in the middle.
+/// Looks at cells with two Gauss points a side.
 void OccludedExchange::look_at_cells(std::span<Cell* const> cells) {
     nodes_.clear(), weights_.clear(), lasts_.clear();
     for (const Cell* cell : cells) place_nodes(*cell, 2), lasts_.push_back(nodes_.size());
-    std::size_t k = 0, middle = nodes_.size();
-    for (const Cell* cell : cells) nodes_.push_back(middle_of(cell->corners())), lasts_.push_back(nodes_.size());
     look_from_nodes();
+    std::size_t k = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
         Cell& cell = *cells[i];
         cell.area = std::max(0.0, cross_area(cell.corners()));
@@ -83,8 +82,19 @@ void OccludedExchange::look_at_cells(std::span<Cell* const> cells) {
             cell.two_points += weights_[k] * factors_[k];
             cell.glance.take(factors_[k], seen_[k]);
         }
-        cell.middle = factors_[middle++];
     }
+}
+
+/// Looks from the middles of those cells that two points a side may settle.
+void OccludedExchange::look_from_middles() {
+    nodes_.clear(), weights_.clear(), lasts_.clear();
+    for (const Task& task : tasks_)
+        if (task.cell.glance.black == 0)
+            nodes_.push_back(middle_of(task.cell.corners())), lasts_.push_back(nodes_.size());
+    look_from_nodes();
+    std::size_t k = 0;
+    for (Task& task : tasks_)
+        if (task.cell.glance.black == 0) task.cell.middle = factors_[k++];
 }
 
 /// The halves of a cell: across the longest edge, and for a quadrilateral across the edge opposite to it.
@@ -212,14 +222,16 @@ double OccludedExchange::integrate_tasks() {
     const bool fine = relative_ < 1e-5 || dominates_;
     double total = 0;
     while (!tasks_.empty()) {
-        if (fine)
+        if (fine) {
             apply(3);
-        else
+        } else {
+            look_from_middles();
             std::erase_if(tasks_, [&](const Task& task) {
                 const bool settled = is_settled_by_two_points(task);
                 if (settled) total += task.cell.two_points;
                 return settled;
             });
+        }
         for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
             befores_.clear();
             for (const Task& task : tasks_) befores_.push_back(task.sum);

@@ -75,6 +75,7 @@ class OccludedExchange {
     void place_nodes(const Cell& cell, int points);
     void look_from_nodes();
     void look_at_cells(std::span<Cell* const> cells);
+    void look_from_middles();
     bool is_settled_by_two_points(const Task& task) const;
     void apply(int points);
     void halve(const Task& task);
