@@ -18,6 +18,11 @@ bool runs_either_way(const SightTables::Line& line) {
     return line.outline == SightTables::Outline::between_two || line.outline == SightTables::Outline::of_a_turning_one;
 }
 
+/// Of a corner or edge of the source; those that are more than the tables take share the last one.
+constexpr std::uint32_t bit(std::size_t s) {
+    return 1u << std::min<std::size_t>(s, 31);
+}
+
 }  // namespace
 
 Vec3 VisibleFromMany::place(const Point& p) const {
@@ -108,8 +113,8 @@ bool VisibleFromMany::add_line(Line line, const Vec3& a, const Vec3& b, std::uin
         Affine height = determinant(a, b, tables_.corners[s]);
         const bool above = any_above(height, line.none), below = any_below(height, -line.none);
         all_out &= !above;
-        if (below || runs_either_way(line)) line.cuts |= 1u << s;
-        if (!any_above(height, one_line * scale) && !any_below(height, -one_line * scale)) height = {}, nil |= 1u << s;
+        if (below || runs_either_way(line)) line.cuts |= bit(s);
+        if (!any_above(height, one_line * scale) && !any_below(height, -one_line * scale)) height = {}, nil |= bit(s);
         tables_.heights.push_back(height);
     }
     if (line.cuts == 0) {
@@ -121,9 +126,9 @@ bool VisibleFromMany::add_line(Line line, const Vec3& a, const Vec3& b, std::uin
         const Affine of_a = determinant(tables_.corners[s], tables_.corners[next], a),
                      of_b = determinant(tables_.corners[s], tables_.corners[next], b);
         tables_.heights.push_back(of_a), tables_.heights.push_back(of_b);
-        if (any_below(of_a, 0) || any_below(of_b, 0)) line.cut_by |= 1u << s;
+        if (any_below(of_a, 0) || any_below(of_b, 0)) line.cut_by |= bit(s);
         // Outside, or on one line with the source's edge, which is counted then.
-        if ((!any_above(of_a, 0) && !any_above(of_b, 0)) || ((nil >> s & 1) && (nil >> next & 1)))
+        if ((!any_above(of_a, 0) && !any_above(of_b, 0)) || ((nil & bit(s)) != 0 && (nil & bit(next)) != 0))
             line.is_drawn = false;
     }
     tables_.lines.push_back(line);

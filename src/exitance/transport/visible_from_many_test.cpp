@@ -55,12 +55,12 @@ Outline floor_square(double x, double y, double half) {
 
 /// Compares points of a square of the floor with points by themselves.
 void compare(double x, double y, double half, std::span<const ConvexBlocker* const> blockers, RandomStream& random,
-             const std::string& what) {
+             const std::string& what, const Outline& source = ceiling) {
     const std::vector<Vec2> receiver = corners_of(floor_square(x, y, half));
     VisibleFromMany many;
     VisibleSource alone;
-    const auto outlook = many.set(floor_frame, receiver, ceiling, blockers);
-    alone.set(ceiling, blockers);
+    const auto outlook = many.set(floor_frame, receiver, source, blockers);
+    alone.set(source, blockers);
     std::vector<Vec2> points;
     for (int k = 0; k < 21; ++k)
         points.push_back(
@@ -123,6 +123,20 @@ TEST(VisibleFromMany, IsSureOfEdgesThatFallTogether) {
         for (int k = 0; k < 50; ++k)
             compare(2 * random.uniform() - 1, 2 * random.uniform() - 1, 0.2 * random.uniform(), cases[i], random,
                     "case " + std::to_string(i));
+}
+
+TEST(VisibleFromMany, TakesSourcesOfManyCorners) {
+    Outline disc;
+    constexpr int corners = 40;
+    for (int k = corners; k-- > 0;) {
+        const double t = 2 * pi * k / corners;
+        disc.push_back({std::cos(t), std::sin(t), 2});
+    }
+    const ConvexBlocker a = box({-0.3, -0.2, 0.5}, {0.2, 0.4, 1.1}), b = box({0.3, -0.6, 0.7}, {0.8, 0.1, 0.9});
+    const std::vector<const ConvexBlocker*> both = {&a, &b};
+    RandomStream random(4, Stream::mesh);
+    for (int k = 0; k < 30; ++k)
+        compare(2 * random.uniform() - 1, 2 * random.uniform() - 1, 0.5 * random.uniform(), both, random, "disc", disc);
 }
 
 TEST(VisibleFromMany, KnowsWhenOneBlockerHidesAllAndWhenNoneHidesAny) {
