@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "exitance/io/atomic_file.hpp"
 #include "exitance/io/export.hpp"
 #include "exitance/io/hdf5_file.hpp"
 #include "exitance/io/solution_file.hpp"
 #include "exitance/io/solution_groups.hpp"
+#include "exitance/mesh/element_locator.hpp"
 #include "fuzz/solution_target.hpp"
 #include "support/run.hpp"
 #include "support/sample_solution.hpp"
@@ -139,6 +142,14 @@ TEST(HostileSolutions, WithElementsApartFromTheSceneAreErrors) {
     EXPECT_NE(outcome(with_root(bad)), "");
     bad = good, bad.b = bad.a;  // no area, no coordinates
     EXPECT_NE(outcome(with_root(bad)).find("makes no tree at element 0"), std::string::npos);
+}
+
+TEST(HostileSolutions, AreDarkAtPointsThatAreNotFinite) {
+    // A damaged scene may have rays hit there.
+    const Solution s = sample_solution();
+    const ElementLocator locator(s.indirect.tree, s.scene.regions().size());
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (RegionId r : s.scene.regions().ids()) EXPECT_EQ(s.indirect.at(locator.find(r, {nan, nan, nan})), Spectrum());
 }
 
 TEST(HostileSolutions, MayNotChangeTheKindOfASet) {

@@ -17,7 +17,7 @@ struct ElementFunction {
     std::vector<std::array<float, bands>> values;
 
     void add_value(const Spectrum& value);
-    /// The value at (u, v) of a leaf.
+    /// The value at (u, v) of a leaf; 0 for none, as a locator finds it for a point that is not finite.
     Spectrum at(ElementTree::Place place) const;
 };
 
