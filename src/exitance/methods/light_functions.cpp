@@ -110,12 +110,9 @@ void keep_flux(ElementFunction& gathered, const ElementFunction& from, std::span
                    f.at({leaves[i], f.tree.centre(leaves[i])});
         });
     };
-    constexpr double small = 0.05;  // beyond which more is wrong than rays
-    const Spectrum all = flux(from, {}), sent = flux(from, kept), received = flux(gathered, {});
-    if (mean(sent) < ConservingTransport::least_kept * mean(all)) return;
-    Spectrum scale(1.0);
-    for (std::size_t b = 0; b < bands; ++b)
-        if (std::abs(sent[b] - received[b]) < small * received[b]) scale[b] = sent[b] / received[b];
+    const Spectrum arriving = flux(from, kept);
+    if (!is_kept(arriving, flux(from, {}))) return;
+    const Spectrum scale = conserving_scale(arriving, flux(gathered, {}));
     for (std::array<float, bands>& value : gathered.values)
         for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(scale[b] * value[b]);
 }

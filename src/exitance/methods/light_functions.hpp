@@ -25,7 +25,7 @@ ElementFunction gathered_light(const Scene& scene, const DirectProjection& direc
 
 /// Scales what was gathered from a function on the leaves of `kept`, by leaf number, to the flux that of it arrives,
 /// band by band: what rays and places of a local pass miss in the mean, a share of about 1e-3, would come back from
-/// every reflection and show in the energy balance. Nothing happens where much escapes (`ConservingTransport`).
+/// every reflection and show in the energy balance. Nothing happens where much escapes (`is_kept`).
 void keep_flux(ElementFunction& gathered, const ElementFunction& from, std::span<const double> kept);
 
 /// Reflected light of what a solution delivers, plus the share c of what is emitted: rho (E_ind + (1 - c) E_dir) + c M,

@@ -7,20 +7,31 @@
 
 namespace exitance {
 
-void ConservingTransport::conserve(std::span<const Spectrum> b) {
-    std::vector<Spectrum> E(b.size());
-    F_.gather(b, E);
+bool is_kept(const Spectrum& arriving, const Spectrum& sent) {
+    constexpr double least = 0.98;
+    return mean(arriving) >= least * mean(sent);
+}
+
+Spectrum conserving_scale(const Spectrum& arriving, const Spectrum& received) {
+    constexpr double small = 0.05;
+    Spectrum scale(1.0);
+    for (std::size_t band = 0; band < bands; ++band)
+        if (std::abs(arriving[band] - received[band]) < small * received[band])
+            scale[band] = arriving[band] / received[band];
+    return scale;
+}
+
+bool ConservingTransport::conserve(std::span<const Spectrum> b) {
     const auto power = [&](std::span<const Spectrum> x, std::span<const double> share) {
         return parallel_sum<Spectrum>(x.size(),
                                       [&](std::size_t i) { return (share.empty() ? 1 : share[i]) * area_[i] * x[i]; });
     };
-    const Spectrum all = power(b, {}), sent = power(b, kept_), received = power(E, {});
-    if (mean(sent) < least_kept * mean(all)) return;
-    constexpr double small = 0.05;
-    for (std::size_t band = 0; band < bands; ++band) {
-        const double s = received[band] > 0 ? sent[band] / received[band] : 1;
-        if (std::abs(s - 1) < small) scale_[band] = s;
-    }
+    const Spectrum arriving = power(b, kept_);
+    if (!is_kept(arriving, power(b, {}))) return false;
+    std::vector<Spectrum> E(b.size());
+    F_.gather(b, E);
+    scale_ = conserving_scale(arriving, power(E, {}));
+    return true;
 }
 
 void ConservingTransport::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
@@ -33,7 +44,7 @@ SolveReport solve_conserving(const RadiositySystem& system, ConservingTransport&
     SolveReport report = solve_radiosity(system, method, b, stop);
     constexpr int times = 2;
     for (int i = 0; closed && i < times && !(stop.request && stop.request->requested()); ++i) {
-        F.conserve(b);
+        if (!F.conserve(b)) break;
         const std::size_t before = report.iterations + 1;
         report = solve_radiosity(system, method, b, stop);
         report.iterations += before;

@@ -4,6 +4,14 @@
 
 namespace exitance {
 
+/// Is so much of what is sent sure to arrive (power, W, by band) that none of it need be lost? Where over 2% escapes,
+/// it is not known well enough how much.
+bool is_kept(const Spectrum& arriving, const Spectrum& sent);
+
+/// What makes power received into power that arrives, band by band; 1 where they are over 5% apart, which is no small
+/// loss but some other fault.
+Spectrum conserving_scale(const Spectrum& arriving, const Spectrum& received);
+
 /// E = s F b, with a factor s a band for which no light is lost between elements but what escapes:
 ///
 ///     sum_i A_i E_i = sum_j k_j A_j b_j,
@@ -17,11 +25,9 @@ class ConservingTransport final : public TransportOperator {
     ConservingTransport(const TransportOperator& F, std::span<const double> area, std::span<const double> kept = {})
         : F_(F), area_(area), kept_(kept) {}
 
-    /// Sets s for the light b. One gather. Where it would be far from 1, F is at fault otherwise, and s stays; so it
-    /// does where much escapes, of which k tells too little.
-    void conserve(std::span<const Spectrum> b);
+    /// Sets s for the light b. One gather. False, and s stays, where much escapes (`is_kept`).
+    bool conserve(std::span<const Spectrum> b);
     const Spectrum& scale() const { return scale_; }
-    static constexpr double least_kept = 0.98;  ///< Of all that leaves.
 
     std::size_t size() const override { return F_.size(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;

@@ -10,9 +10,13 @@
 #include "exitance/core/random.hpp"
 #include "exitance/transport/form_factor.hpp"
 #include "exitance/transport/visible_from_four.hpp"
+#include "support/blockers.hpp"
 
 namespace exitance {
 namespace {
+
+using test::box;
+using test::sheet;
 
 using Outline = std::vector<Point>;
 
@@ -23,32 +27,6 @@ constexpr Normal up = {0, 0, 1};
 Outline level_square(double x, double y, double z, double half) {
     return {{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}};
 }
-ConvexBlocker sheet(const Outline& outline) {
-    const Normal n = normalized(area_vector(outline));
-    return make_sheet(outline, {n, dot(n, outline[0])});
-}
-
-/// A closed box.
-ConvexBlocker box(const Point& lo, const Point& hi) {
-    ConvexBlocker body;
-    for (int i = 0; i < 8; ++i) body.points.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
-    body.loops = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (const auto& loop : body.loops) {
-        const Normal n =
-            normalized(cross(body.points[loop[1]] - body.points[loop[0]], body.points[loop[2]] - body.points[loop[1]]));
-        body.faces.push_back({n, dot(n, body.points[loop[0]])});
-    }
-    for (std::size_t f = 0; f < 6; ++f)
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t g = 0; g < 6; ++g)
-                for (std::size_t j = 0; j < 4; ++j) {
-                    const std::uint32_t a = body.loops[f][i], b = body.loops[f][(i + 1) % 4];
-                    if (a < b && body.loops[g][j] == b && body.loops[g][(j + 1) % 4] == a)
-                        body.edges.push_back({a, b, static_cast<std::int32_t>(f), static_cast<std::int32_t>(g)});
-                }
-    return body;
-}
-
 double seen(const Point& x, const Normal& n, const Outline& source, const std::vector<const ConvexBlocker*>& blockers,
             Seen& how) {
     VisibleSource visible;
