@@ -52,7 +52,7 @@ void points_to_quads(benchmark::State& state) {
         benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(count),
                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(points_to_quads)->ArgsProduct({{16, 256, 4096}, {2, 20, 100}})->ArgNames({"quads", "distance"});
+BENCHMARK(points_to_quads)->ArgsProduct({{16, 256, 4096}, {2, 20, 100, 1000}})->ArgNames({"quads", "distance"});
 
 void point_to_quad_scalar(benchmark::State& state) {
     const Sources sources = make_sources(256, static_cast<double>(state.range(0)));

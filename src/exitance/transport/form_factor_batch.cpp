@@ -10,33 +10,66 @@
 namespace exitance {
 namespace {
 
-// Eight quads at a time: one register of AVX-512, two of AVX2.
+// As many quads at a time as one register holds: eight with AVX-512, else four. No lane looks at another, so that
+// nothing depends on which it is.
 using namespace lanes_of;
-constexpr std::size_t lanes = 8;
-using Real = double __attribute__((vector_size(64)));
-using Mask = long long __attribute__((vector_size(64)));
-using Vec = VecOf<Real>;
+using EightReals = double __attribute__((vector_size(64)));
+template <class Real>
+constexpr std::size_t lanes = sizeof(Real) / sizeof(double);
+template <class Real>
+constexpr int all_lanes = (1 << lanes<Real>)-1;
+constexpr std::size_t most_lanes = lanes<EightReals>;
 
-EXITANCE_INLINE int bits(const Mask& m) {
-    four::Mask half[2];
-    __builtin_memcpy(half, &m, sizeof m);
-    return four::bits(half[0]) | four::bits(half[1]) << 4;
+/// A bit for each lane in which a < b.
+EXITANCE_INLINE int where_less(const four::Real& a, const four::Real& b) {
+    return four::bits(a < b);
 }
-EXITANCE_INLINE bool any(const Mask& m) {
-    return bits(m) != 0;
+EXITANCE_INLINE int where_less(const EightReals& a, const EightReals& b) {  // a half is one instruction
+    four::Real left[2], right[2];
+    __builtin_memcpy(left, &a, sizeof a), __builtin_memcpy(right, &b, sizeof b);
+    return where_less(left[0], right[0]) | where_less(left[1], right[1]) << 4;
 }
 
 /// Lambert's sum over the four edges of quads wholly above the horizon. The normal is one, or one a lane.
-template <class Direction>
-EXITANCE_INLINE Real contour(const Direction& n, const Vec (&r)[4]) {
+template <class Real, class Direction>
+EXITANCE_INLINE Real contour(const Direction& n, const VecOf<Real> (&r)[4]) {
     Real sum{};
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
-        const Vec &a = r[i], &b = r[(i + 1) & 3], c = cross(a, b - a);
+        const VecOf<Real>&a = r[i], &b = r[(i + 1) & 3], c = cross(a, b - a);
         const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);  // an edge without length, or that points at x: c = 0
         sum -= angle_over_sine(sine, dot(a, b)) * dot(n, c);
     }
     return sum * (1 / (2 * pi));
+}
+
+constexpr double most_squared_tangent = 0.17157287525380988;  // tan^2(pi/8)
+
+/// The same where no edge looks longer than 45 degrees, as `squared_tangent` tells: it stays below the constant above,
+/// else it is larger or no number. Half the angle has the tangent |a x b| / (|a| |b| + a . b): no octants, no root of
+/// |a x b|, and four quotients share one division.
+template <class Real, class Direction>
+EXITANCE_INLINE Real narrow_contour(const Direction& n, const VecOf<Real> (&r)[4], Real& squared_tangent) {
+    Real squared[4], u[4], z[4], share[4];
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) squared[i] = dot(r[i], r[i]);
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) u[i] = sqrt(squared[i] * squared[(i + 1) & 3]) + dot(r[i], r[(i + 1) & 3]);
+    const Real u01 = u[0] * u[1], u23 = u[2] * u[3], inverse = 1 / (u01 * u23);
+    const Real inverse01 = inverse * u23, inverse23 = inverse * u01;
+    const Real over[4] = {inverse01 * u[1], inverse01 * u[0], inverse23 * u[3], inverse23 * u[2]};
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+        const VecOf<Real> c = cross(r[i], r[(i + 1) & 3] - r[i]);
+        z[i] = dot(c, c) * (over[i] * over[i]);
+        share[i] = dot(n, c) * over[i];
+    }
+    squared_tangent =
+        max(max(max(z[0], z[1]), z[2]), z[3]);  // where u is 0 somewhere, the last one is no number either
+    Real sum{};
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) sum -= angle_over_tangent(z[i]) * share[i];
+    return sum * (1 / pi);
 }
 
 /// Two points of a rule over the square [-1, 1]^2, (s, t) and (-s, -t), and their shares together.
@@ -44,27 +77,18 @@ struct NodePair {
     double s, t, weight;
 };
 
-/// Degree 5 in 7 points [Radon48], and degree 7 in 12 points [Tyler53]: fewer than 3 x 3 and 4 x 4 Gauss points. Both
-/// are symmetric about the middle; the pair (0, 0) is the middle itself.
-struct SmallRules {
-    NodePair seven[4], twelve[6];
-    SmallRules() {
+/// Degree 5 in 7 points [Radon48], fewer than 3 x 3 Gauss points, symmetric about the middle. The pair (0, 0) is the
+/// middle itself.
+struct SmallRule {
+    NodePair seven[4];
+    SmallRule() {
         const auto pair = [](double s, double t, double weight) { return NodePair{s, t, weight / 2}; };
         const double q = std::sqrt(14.0 / 15), r = std::sqrt(0.6), h = std::sqrt(1.0 / 3);
         seven[0] = pair(0, 0, 4.0 / 7), seven[1] = pair(0, q, 20.0 / 63);
         seven[2] = pair(r, h, 5.0 / 9), seven[3] = pair(r, -h, 5.0 / 9);
-        const double root = 3 * std::sqrt(583.0), axis = std::sqrt(6.0 / 7);
-        const double near = std::sqrt((114 - root) / 287), far = std::sqrt((114 + root) / 287);
-        // Weights of the diagonal points from the moments 1 and s^2.
-        const double axis_weight = 98.0 / 405, rest = 1 - axis_weight;
-        const double moment = (4.0 / 3 - 2 * axis_weight * axis * axis) / 4;
-        const double far_weight = (moment - rest * near * near) / (far * far - near * near);
-        twelve[0] = pair(axis, 0, axis_weight), twelve[1] = pair(0, axis, axis_weight);
-        twelve[2] = pair(near, near, rest - far_weight), twelve[3] = pair(near, -near, rest - far_weight);
-        twelve[4] = pair(far, far, far_weight), twelve[5] = pair(far, -far, far_weight);
     }
 };
-const SmallRules small_rules;
+const SmallRule small_rule;
 
 /// The kernel at a rule's points of the bilinear map d(s, t) = m + s a + t b + s t c from [-1, 1]^2 onto the quad.
 /// `unit` is one over a squared distance to the quad, which keeps products of squares near one.
@@ -73,11 +97,12 @@ const SmallRules small_rules;
 /// parts P, E agree and their odd parts p, o differ in sign, so that a pair of points is
 ///
 ///     (P + p) / (E + o)^2 + (P - p) / (E - o)^2 = 2 (P (E^2 + o^2) - 2 p E o) / (E^2 - o^2)^2
-template <class Direction, std::size_t count>
-EXITANCE_INLINE Real cubature(const Direction& n, const Vec (&r)[4], const Real& unit, const NodePair (&nodes)[count]) {
-    const Vec p = r[0] + r[2], q = r[1] + r[3];
-    const Vec m = 0.25 * (p + q), c = 0.25 * (p - q);
-    const Vec a = 0.25 * ((r[1] - r[0]) + (r[2] - r[3])), b = 0.25 * ((r[3] - r[0]) + (r[2] - r[1]));
+template <class Real, class Direction>
+EXITANCE_INLINE Real cubature(const Direction& n, const VecOf<Real> (&r)[4], const Real& unit,
+                              const NodePair (&nodes)[4]) {
+    const VecOf<Real> p = r[0] + r[2], q = r[1] + r[3];
+    const VecOf<Real> m = 0.25 * (p + q), c = 0.25 * (p - q);
+    const VecOf<Real> a = 0.25 * ((r[1] - r[0]) + (r[2] - r[3])), b = 0.25 * ((r[3] - r[0]) + (r[2] - r[1]));
     // The area vector is a x b + s a x c + t c x b. All of a planar quad's are parallel: each times -m is the plane's
     // height over x times its length, and so is each times -d.
     const Real J = -dot(cross(a, b), m), J_s = -dot(cross(a, c), m), J_t = -dot(cross(c, b), m);
@@ -86,8 +111,8 @@ EXITANCE_INLINE Real cubature(const Direction& n, const Vec (&r)[4], const Real&
     const Real st = 2 * unit * (dot(a, b) + dot(m, c)), ma = 2 * unit * dot(m, a), mb = 2 * unit * dot(m, b);
     const Real ac = 2 * unit * dot(a, c), bc = 2 * unit * dot(b, c);
     Real sum{}, above_before{}, below_before{};
-#pragma GCC unroll 6
-    for (std::size_t k = 0; k < count; ++k) {
+#pragma GCC unroll 4
+    for (std::size_t k = 0; k < 4; ++k) {
         const double s = nodes[k].s, t = nodes[k].t;
         const Real E = mm + (s * s) * aa + (t * t) * bb + (s * t) * (st + (s * t) * cc);
         const Real o = s * (ma + (s * t) * ac) + t * (mb + (s * t) * bc);
@@ -103,83 +128,168 @@ EXITANCE_INLINE Real cubature(const Direction& n, const Vec (&r)[4], const Real&
     return sum * 4 * unit * unit * (1 / pi);
 }
 
-/// Form factors of eight quads from x, r their corners and `middle` their middles relative to it. Returns a bit for
-/// each that the horizon cuts, whose form factor is none.
-template <class Direction>
-EXITANCE_INLINE int form_factors(const Direction& n, const Vec (&r)[4], const Vec& middle, const Real& radius,
-                                 double* out) {
-    Real lowest = Real{} + HUGE_VAL, highest = -lowest;
-#pragma GCC unroll 4
-    for (const Vec& corner : r) {
-        const Real height = dot(n, corner);
+/// How quads relative to x are met: their corners, their middles, the radii of balls about these that hold them.
+template <class Real>
+struct Quads {
+    VecOf<Real> r[4], middle;
+    Real radius;
+};
+
+/// Positive where a quad looks so large that its edges are summed; smaller ones take points.
+template <class Real>
+EXITANCE_INLINE Real size_over_least(const Quads<Real>& quads) {
+    constexpr double least = 0.006;
+    return 4 * quads.radius * quads.radius - least * least * dot(quads.middle, quads.middle);
+}
+
+/// The lowest and highest of a quad's corners over the horizon.
+template <class Real, class Direction>
+EXITANCE_INLINE void find_heights(const Direction& n, const Quads<Real>& quads, Real& lowest, Real& highest) {
+    lowest = highest = dot(n, quads.r[0]);
+#pragma GCC unroll 3
+    for (int i = 1; i < 4; ++i) {
+        const Real height = dot(n, quads.r[i]);
         lowest = min(lowest, height), highest = max(highest, height);
     }
-    const Real squared = 4 * radius * radius, distance = dot(middle, middle);
-    Real F;
-    if (!any(squared > 3.6e-5 * distance))
-        F = cubature(n, r, 1 / distance, small_rules.seven);
-    else if (!any(squared > 0.0049 * distance))
-        F = cubature(n, r, 1 / distance, small_rules.twelve);
-    else
-        F = contour(n, r);
-    F = highest > 0 ? min(max(F, Real{}), Real{} + 1) : Real{};
-    store(F, out);
-    return bits((lowest < 0) & (highest > 0));
 }
 
-/// Of eight quads and one point, `column` the quads' coordinates in the order of QuadBatch::columns.
-EXITANCE_INLINE int group(const Point& x, const Normal& n, const double* const (&column)[16], double* out) {
-    const Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
-    Vec r[4];
-#pragma GCC unroll 4
-    for (std::size_t i = 0; i < 4; ++i)
-        r[i] = Vec{load<Real>(column[3 * i]), load<Real>(column[3 * i + 1]), load<Real>(column[3 * i + 2])} - origin;
-    const Vec middle = Vec{load<Real>(column[12]), load<Real>(column[13]), load<Real>(column[14])} - origin;
-    return form_factors(n, r, middle, load<Real>(column[15]), out);
+/// What a quad is given to: the first of these that takes it. All leave those that the horizon cuts.
+enum class Rule : std::uint8_t {
+    narrow_edges,  ///< Not small, no edge longer than 45 degrees.
+    points,        ///< Small ones.
+    edges,         ///< The others, and those behind the horizon.
+};
+
+/// Form factors of eight quads by one rule: a bit for each that it takes. What F holds of the others is of no use.
+template <Rule rule, class Real, class Direction>
+EXITANCE_INLINE int apply(const Direction& n, const Quads<Real>& quads, Real& F) {
+    Real lowest, highest;
+    find_heights(n, quads, lowest, highest);
+    const Real size = size_over_least(quads);
+    const int whole = all_lanes<Real> & ~where_less(lowest, Real{});
+    int taken;
+    if constexpr (rule == Rule::edges) {
+        F = highest > 0 ? contour(n, quads.r) : Real{};
+        taken = whole | (all_lanes<Real> & ~where_less(Real{}, highest));
+    } else {
+        taken = whole & where_less(Real{}, min(rule == Rule::points ? -size : size, highest));
+        if (taken == 0) return 0;
+        if constexpr (rule == Rule::points) {
+            F = cubature(n, quads.r, 1 / dot(quads.middle, quads.middle), small_rule.seven);
+        } else {
+            Real squared_tangent;
+            F = narrow_contour(n, quads.r, squared_tangent);
+            taken &= where_less(squared_tangent, Real{} + most_squared_tangent);
+        }
+    }
+    F = min(max(F, Real{}), Real{} + 1);
+    return taken;
 }
 
-/// Of one quad and eight points, `column` the points' coordinates and then their normals'.
-EXITANCE_INLINE int points_group(const std::array<Point, 4>& quad, const Point& centre, double radius,
-                                 const double* const (&column)[6], double* out) {
-    const Vec x = {load<Real>(column[0]), load<Real>(column[1]), load<Real>(column[2])};
-    const Vec n = {load<Real>(column[3]), load<Real>(column[4]), load<Real>(column[5])};
-    const auto from_x = [&](const Point& p) __attribute__((always_inline)) {
-        return Vec{p.x - x.x, p.y - x.y, p.z - x.z};
+/// The quads whose coordinates stand from k on in the order of QuadBatch::columns.
+template <class Real>
+EXITANCE_INLINE Quads<Real> load_quads(const Point& x, const double* const (&column)[16], std::size_t k) {
+    const VecOf<Real> origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
+    const auto at = [&](std::size_t i) __attribute__((always_inline)) {
+        return VecOf<Real>{load<Real>(column[i] + k), load<Real>(column[i + 1] + k), load<Real>(column[i + 2] + k)} -
+               origin;
     };
-    const Vec r[4] = {from_x(quad[0]), from_x(quad[1]), from_x(quad[2]), from_x(quad[3])};
-    return form_factors(n, r, from_x(centre), Real{} + radius, out);
+    return {{at(0), at(3), at(6), at(9)}, at(12), load<Real>(column[15] + k)};
 }
 
-using Group = int(const Point&, const Normal&, const double* const (&)[16], double*);
-int group_of_any_processor(const Point& x, const Normal& n, const double* const (&column)[16], double* out) {
-    return group(x, n, column, out);
+/// A quad, and a ball that holds it.
+struct OneQuad {
+    std::array<Point, 4> corner;
+    Point middle;
+    double radius;
+};
+
+/// One quad as eight points see it, whose coordinates and then normals stand from k on.
+template <class Real>
+struct PointsView {
+    Quads<Real> quads;
+    VecOf<Real> n;
+};
+template <class Real>
+EXITANCE_INLINE PointsView<Real> load_points(const OneQuad& quad, const double* const (&column)[6], std::size_t k) {
+    const VecOf<Real> x = {load<Real>(column[0] + k), load<Real>(column[1] + k), load<Real>(column[2] + k)};
+    const auto from_x = [&](const Point& p) __attribute__((always_inline)) {
+        return VecOf<Real>{p.x - x.x, p.y - x.y, p.z - x.z};
+    };
+    return {{{from_x(quad.corner[0]), from_x(quad.corner[1]), from_x(quad.corner[2]), from_x(quad.corner[3])},
+             from_x(quad.middle),
+             Real{} + quad.radius},
+            {load<Real>(column[3] + k), load<Real>(column[4] + k), load<Real>(column[5] + k)}};
 }
-using PointsGroup = int(const std::array<Point, 4>&, const Point&, double, const double* const (&)[6], double*);
-int points_group_of_any_processor(const std::array<Point, 4>& quad, const Point& centre, double radius,
-                                  const double* const (&column)[6], double* out) {
-    return points_group(quad, centre, radius, column, out);
+
+/// Applies a rule to the group of quads at `first` and those after it, as long as it takes all of a group: where the
+/// first group stands that is otherwise, and a bit for each taken one of that.
+struct Reached {
+    std::size_t first;
+    int taken;
+};
+template <Rule rule, class Real>
+EXITANCE_INLINE Reached apply_to_quads(const Point& x, const Normal& n, const double* const (&column)[16],
+                                       std::size_t first, std::size_t last, double* out) {
+    int taken = 0;
+    for (; first + lanes<Real> <= last; first += lanes<Real>) {
+        Real F{};
+        taken = apply<rule>(n, load_quads<Real>(x, column, first), F);
+        store(F, out);
+        if (taken != all_lanes<Real>) break;
+        out += lanes<Real>;
+    }
+    return {first, taken};
 }
+template <Rule rule, class Real>
+EXITANCE_INLINE int apply_to_points(const OneQuad& quad, const double* const (&column)[6], std::size_t k, double* out) {
+    const PointsView<Real> view = load_points<Real>(quad, column, k);
+    Real F{};
+    const int taken = apply<rule>(view.n, view.quads, F);
+    store(F, out);
+    return taken;
+}
+
+/// These two, made for a processor, by rule. All have the same operations in the same order, hence the same bits.
+struct Kernels {
+    std::size_t lanes;
+    int all;  ///< A bit for each lane.
+    Reached (*quads[3])(const Point&, const Normal&, const double* const (&)[16], std::size_t, std::size_t, double*);
+    int (*points[3])(const OneQuad&, const double* const (&)[6], std::size_t, double*);
+};
+#define EXITANCE_KERNELS(NAME, REAL, TARGET)                                                                          \
+    template <Rule rule>                                                                                              \
+    TARGET Reached NAME##_quads(const Point& x, const Normal& n, const double* const(&column)[16], std::size_t first, \
+                                std::size_t last, double* out) {                                                      \
+        return apply_to_quads<rule, REAL>(x, n, column, first, last, out);                                            \
+    }                                                                                                                 \
+    template <Rule rule>                                                                                              \
+    TARGET int NAME##_points(const OneQuad& quad, const double* const(&column)[6], std::size_t k, double* out) {      \
+        return apply_to_points<rule, REAL>(quad, column, k, out);                                                     \
+    }                                                                                                                 \
+    const Kernels NAME = {                                                                                            \
+        lanes<REAL>,                                                                                                  \
+        all_lanes<REAL>,                                                                                              \
+        {NAME##_quads<Rule::narrow_edges>, NAME##_quads<Rule::points>, NAME##_quads<Rule::edges>},                    \
+        {NAME##_points<Rule::narrow_edges>, NAME##_points<Rule::points>, NAME##_points<Rule::edges>}};
+
+EXITANCE_KERNELS(plain, four::Real, )
 #ifdef __x86_64__
-/// The same operations in the same order, hence the same bits, in half as many instructions.
-[[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]] int group_of_avx512(
-    const Point& x, const Normal& n, const double* const (&column)[16], double* out) {
-    return group(x, n, column, out);
-}
-[[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]] int points_group_of_avx512(
-    const std::array<Point, 4>& quad, const Point& centre, double radius, const double* const (&column)[6],
-    double* out) {
-    return points_group(quad, centre, radius, column, out);
-}
+#define EXITANCE_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]]
+EXITANCE_KERNELS(wide, EightReals, EXITANCE_AVX512)
 bool has_avx512() {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
 }
-Group* const fastest = has_avx512() ? group_of_avx512 : group_of_any_processor;
-PointsGroup* const fastest_points = has_avx512() ? points_group_of_avx512 : points_group_of_any_processor;
+const Kernels& fastest = has_avx512() ? wide : plain;
 #else
-Group* const fastest = group_of_any_processor;
-PointsGroup* const fastest_points = points_group_of_any_processor;
+const Kernels& fastest = plain;
 #endif
+
+void copy_taken(int taken, const std::array<double, most_lanes>& F, double* out) {
+    for (std::size_t i = 0; i < F.size(); ++i)
+        if (taken >> i & 1) out[i] = F[i];
+}
 
 }  // namespace
 
@@ -246,39 +356,58 @@ std::array<const double*, 16> QuadBatch::columns() const {
 void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out,
                     Processor processor) {
     EXI_CHECK(out.size() == quads.size());
+    const Kernels& kernels = processor == Processor::any ? plain : fastest;
     const std::size_t count = quads.size();
-    if (count == 0) return;
-    if (count < lanes) {  // a copy that fills a group, by repeating the last one
-        std::array<double, 16 * lanes> copy;
-        const double* column[16];
-        const auto columns = quads.columns();
-        for (std::size_t i = 0; i < 16; ++i) {
-            for (std::size_t k = 0; k < lanes; ++k) copy[lanes * i + k] = columns[i][std::min(k, count - 1)];
-            column[i] = &copy[lanes * i];
+    const auto evaluate = [&](const double* const(&column)[16], std::size_t k, std::size_t last, double* F) {
+        while (k + kernels.lanes <= last) {
+            Reached run = kernels.quads[0](x, n, column, k, last, F + k);
+            int taken = run.taken;
+            k = run.first;
+            if (k + kernels.lanes > last) return;
+            if (taken == 0) {  // a run of small ones, perhaps
+                const Reached small = kernels.quads[1](x, n, column, k, last, F + k);
+                if (small.first > k) {
+                    k = small.first;
+                    continue;
+                }
+            }
+            std::array<double, most_lanes> by_rule;
+            for (int rule = 1; rule < 3 && taken != kernels.all; ++rule) {
+                const int more = kernels.quads[rule](x, n, column, k, k + kernels.lanes, by_rule.data()).taken & ~taken;
+                copy_taken(more, by_rule, F + k);
+                taken |= more;
+            }
+            for (std::size_t i = 0; i < kernels.lanes; ++i)
+                if (!(taken >> i & 1)) F[k + i] = point_to_polygon(x, n, quads.corners(std::min(k + i, count - 1)));
+            k += kernels.lanes;
         }
-        std::array<double, lanes> F;
-        const int cut = (processor == Processor::any ? group_of_any_processor : *fastest)(x, n, column, F.data());
-        for (std::size_t k = 0; k < count; ++k) out[k] = cut >> k & 1 ? point_to_polygon(x, n, quads.corners(k)) : F[k];
-        return;
-    }
-    Group& group_of = processor == Processor::any ? group_of_any_processor : *fastest;
+    };
     const auto columns = quads.columns();
-    for (std::size_t first = 0; first < count; first += lanes) {
-        const std::size_t k = std::min(first, count - lanes);  // the last group reaches back over quads already done
-        const double* column[16];
-        for (std::size_t i = 0; i < 16; ++i) column[i] = columns[i] + k;
-        const int cut = group_of(x, n, column, &out[k]);
-        if (cut == 0) continue;
-        for (std::size_t i = 0; i < lanes; ++i)
-            if (cut >> i & 1) out[k + i] = point_to_polygon(x, n, quads.corners(k + i));
+    const double* column[16];
+    std::copy(columns.begin(), columns.end(), column);
+    if (count >= kernels.lanes) {
+        evaluate(column, 0, count, out.data());
+        // The last group reaches back over quads already done.
+        if (count % kernels.lanes != 0) evaluate(column, count - kernels.lanes, count, out.data());
+    } else if (count > 0) {  // a copy that fills a group, by repeating the last one
+        std::array<double, 16 * most_lanes> copy;
+        for (std::size_t i = 0; i < 16; ++i) {
+            for (std::size_t k = 0; k < kernels.lanes; ++k)
+                copy[kernels.lanes * i + k] = columns[i][std::min(k, count - 1)];
+            column[i] = &copy[kernels.lanes * i];
+        }
+        std::array<double, most_lanes> F;
+        evaluate(column, 0, kernels.lanes, F.data());
+        std::copy_n(F.begin(), count, out.begin());
     }
 }
 
 void ReceiverBatch::add(const Point& x, const Normal& n) {
     const double value[6] = {x.x, x.y, x.z, n.x, n.y, n.z};
     for (std::size_t i = 0; i < 6; ++i) {
-        if (count_ % lanes == 0) column_[i].resize(count_ + lanes);
-        std::fill_n(column_[i].begin() + static_cast<std::ptrdiff_t>(count_), lanes - count_ % lanes, value[i]);
+        if (count_ % most_lanes == 0) column_[i].resize(count_ + most_lanes);
+        std::fill_n(column_[i].begin() + static_cast<std::ptrdiff_t>(count_), most_lanes - count_ % most_lanes,
+                    value[i]);
     }
     ++count_;
 }
@@ -289,16 +418,24 @@ void points_to_quad(const ReceiverBatch& receivers, const std::array<Point, 4>& 
     const Point middle = 0.25 * ((quad[0] + quad[1]) + (quad[2] + quad[3]));
     double squared_radius = 0;
     for (const Point& corner : quad) squared_radius = std::max(squared_radius, squared_norm(corner - middle));
-    PointsGroup& group_of = processor == Processor::any ? points_group_of_any_processor : *fastest_points;
-    for (std::size_t first = 0; first < out.size(); first += lanes) {
-        const double* column[6];
-        for (std::size_t i = 0; i < 6; ++i) column[i] = &receivers.column_[i][first];
-        std::array<double, lanes> F;
-        const int cut = group_of(quad, middle, std::sqrt(squared_radius), column, F.data());
-        for (std::size_t i = 0; i < lanes && first + i < out.size(); ++i)
-            out[first + i] = cut >> i & 1 ? point_to_polygon({column[0][i], column[1][i], column[2][i]},
-                                                             {column[3][i], column[4][i], column[5][i]}, quad)
-                                          : F[i];
+    const OneQuad one = {quad, middle, std::sqrt(squared_radius)};
+    const Kernels& kernels = processor == Processor::any ? plain : fastest;
+    const double* column[6];
+    for (std::size_t i = 0; i < 6; ++i) column[i] = receivers.column_[i].data();
+    for (std::size_t first = 0; first < out.size(); first += kernels.lanes) {
+        std::array<double, most_lanes> F, by_rule;
+        int taken = 0;
+        for (int rule = 0; rule < 3 && taken != kernels.all; ++rule) {
+            const int more = kernels.points[rule](one, column, first, by_rule.data()) & ~taken;
+            copy_taken(more, by_rule, F.data());
+            taken |= more;
+        }
+        for (std::size_t i = 0; i < std::min(kernels.lanes, out.size() - first); ++i) {
+            const std::size_t k = first + i;
+            out[k] = taken >> i & 1 ? F[i]
+                                    : point_to_polygon({column[0][k], column[1][k], column[2][k]},
+                                                       {column[3][k], column[4][k], column[5][k]}, quad);
+        }
     }
 }
 

@@ -38,11 +38,12 @@ class QuadBatch {
 
 /// Form factors from a point to each quad of a batch, nothing in between: out[k] as point_to_polygon gives it.
 ///
-/// Quads that look smaller than 0.006 take 7 points of the kernel (degree 5), below 0.07 it is 12 points (degree 7),
-/// nearer ones Lambert's contour sum with a polynomial arc tangent; quads cut by the horizon are left to
-/// point_to_polygon. Relative error 1e-12, on grazing views as many digits fewer as the height over the horizon has
-/// lost. About 10 ns a quad with AVX-512, 16 without. x  point, metres      n  its unit normal      out  size()
-/// entries, in [0, 1]
+/// Quads that look smaller than 0.006 take 7 points of the kernel (degree 5), others Lambert's contour sum with a
+/// polynomial arc tangent; quads cut by the horizon are left to point_to_polygon. What a quad is given depends on
+/// neither its place nor its neighbours. Relative error 1e-12, on grazing views as many digits fewer as the height over
+/// the horizon has lost. About 8 ns a quad with AVX-512, 10 a small one, 12 and 13 without; more where groups of quads
+/// are of several kinds, lie across the horizon, or have edges that look longer than 45 degrees.
+/// x  point, metres      n  its unit normal      out  size() entries, in [0, 1]
 void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out,
                     Processor processor = Processor::fastest);
 

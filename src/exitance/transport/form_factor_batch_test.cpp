@@ -51,6 +51,28 @@ TEST(PointToQuads, HaveTheSameBitsWhateverTheProcessorOffers) {
     }
 }
 
+TEST(PointToQuads, DependOnNeitherTheirPlaceNorTheirNeighbours) {
+    RandomStream random(4, Stream::mesh);
+    const Point x = {0.01, 0.02, 0.03};
+    const Normal n = normalized({0.2, -0.3, 0.9});
+    std::vector<std::array<Point, 4>> quads;  // small and large, cut by the horizon and behind it, side by side
+    for (int k = 0; k < 101; ++k) quads.push_back(random_quad(random, 0.3 * std::exp(8 * random.uniform())));
+    for (std::size_t first : {0, 1, 5, 50}) {
+        QuadBatch batch;
+        for (std::size_t k = first; k < quads.size(); ++k) batch.add(quads[k]);
+        std::vector<double> F(batch.size()), alone(1);
+        for (Processor processor : {Processor::fastest, Processor::any}) {
+            point_to_quads(x, n, batch, F, processor);
+            for (std::size_t k = first; k < quads.size(); ++k) {
+                QuadBatch one;
+                one.add(quads[k]);
+                point_to_quads(x, n, one, alone, processor);
+                EXPECT_EQ(F[k - first], alone[0]) << k << " of those from " << first;
+            }
+        }
+    }
+}
+
 TEST(PointsToQuad, GiveEachReceiverWhatItSeesAloneOnAnyProcessor) {
     RandomStream random(3, Stream::mesh);
     for (double distance : {0.7, 5.0, 30.0, 300.0})
@@ -68,6 +90,12 @@ TEST(PointsToQuad, GiveEachReceiverWhatItSeesAloneOnAnyProcessor) {
             points_to_quad(receivers, quad, F);
             points_to_quad(receivers, quad, plain, Processor::any);
             EXPECT_EQ(F, plain);
+            for (std::size_t k = 0; k < size; ++k) {  // neighbours make no difference
+                ReceiverBatch one;
+                one.add(x[k], n[k]);
+                points_to_quad(one, quad, std::span(plain).first(1));
+                EXPECT_EQ(F[k], plain[0]);
+            }
             const double solid = 1 / (distance * distance);  // as for one point and many quads
             for (std::size_t k = 0; k < size; ++k)
                 EXPECT_NEAR(F[k], point_to_polygon(x[k], n[k], quad), 2e-12 * std::min(1.0, solid)) << distance;
