@@ -45,4 +45,28 @@ std::uint32_t ScrambledSobol::sobol(std::uint32_t index, int dimension) {
     return t[0][index & 255u] ^ t[1][index >> 8 & 255u] ^ t[2][index >> 16 & 255u] ^ t[3][index >> 24];
 }
 
+/// Owen's scrambling takes reversed bits and leaves them reversed, and the first two dimensions are simple there: the
+/// first is the index itself; the second, whose direction numbers are the rows of Pascal's triangle modulo 2, has as
+/// its bit i the parity of the index bits j with i a subset of j, bit by bit. So there is no table to look into, and
+/// the compiler works on many points at once.
+void ScrambledSobol::fill(std::uint32_t first, int dimension, std::span<double> coordinates) const {
+    const auto count = static_cast<std::uint32_t>(coordinates.size());
+    const std::uint32_t scramble = scramble_[static_cast<std::size_t>(dimension)];
+    if (dimension > 1) {
+        for (std::uint32_t k = 0; k < count; ++k) coordinates[k] = (*this)(first + k, dimension);
+        return;
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+        std::uint32_t bits = owen(first + k, shuffle_);
+        if (dimension == 1) {
+            bits ^= bits >> 16 & 0x0000ffffu;
+            bits ^= bits >> 8 & 0x00ff00ffu;
+            bits ^= bits >> 4 & 0x0f0f0f0fu;
+            bits ^= bits >> 2 & 0x33333333u;
+            bits ^= bits >> 1 & 0x55555555u;
+        }
+        coordinates[k] = reverse(laine_karras(bits, scramble)) * 0x1p-32;
+    }
+}
+
 }  // namespace exitance

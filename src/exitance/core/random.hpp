@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 
 namespace exitance {
 
@@ -51,6 +52,8 @@ class ScrambledSobol {
         const std::uint32_t raw = sobol(owen(index, shuffle_), dimension);
         return owen_reversed(raw, scramble_[static_cast<std::size_t>(dimension)]) * 0x1p-32;
     }
+    /// That coordinate of the points from `first` on, many at once: a few times as fast.
+    void fill(std::uint32_t first, int dimension, std::span<double> coordinates) const;
 
   private:
     static constexpr std::uint32_t reverse(std::uint32_t v) {

@@ -23,14 +23,14 @@ struct ElementLocator::Nearest {
 
     void look_at(std::span<const Root> roots, const Point& p) {
         for (const Root& r : roots) {
-            const Vec3 w = p - r.origin;
-            const Vec2 at = {dot(r.du, w), dot(r.dv, w)}, held = into_shape(at, r.shape);
-            if (at == held) {
-                *this = {&r, held, 0};
+            const Vec2 at = r.coordinates(p);
+            if (r.holds(at)) {
+                root = &r, uv = at, distance = 0;
                 return;
             }
+            const Vec2 held = r.held(at);
             const double d = squared_length(r, at - held);
-            if (d < distance) *this = {&r, held, d};
+            if (d < distance) root = &r, uv = held, distance = d;
         }
     }
 
@@ -133,10 +133,15 @@ ElementLocator::Nearest ElementLocator::nearest_root(RegionId region, const Poin
     return nearest;
 }
 
-LeafFinder::Query ElementLocator::root_of(RegionId region, const Point& p) const {
+void ElementLocator::find_root(RegionId region, const Point& p, LeafFinder::Query& out) const {
+    const std::span<const Root> mine = roots(region);
+    if (mine.size() == 1) {
+        out.root = mine[0].number, out.uv = mine[0].held(mine[0].coordinates(p));
+        return;
+    }
     const Nearest nearest = nearest_root(region, p);
     EXI_ASSERT(nearest.root != nullptr);
-    return {nearest.root->number, nearest.uv, 0};
+    out.root = nearest.root->number, out.uv = nearest.uv;
 }
 
 LeafFinder::Found ElementLocator::find_leaf(RegionId region, const Point& p) const {

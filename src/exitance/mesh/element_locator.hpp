@@ -25,8 +25,8 @@ class ElementLocator {
     static constexpr std::uint32_t no_leaf = 0xffffffffu;
 
     /// The root of a region that holds a point, and the coordinates there, for LeafFinder::find; the region must have
-    /// roots. `leaf` is left open.
-    LeafFinder::Query root_of(RegionId region, const Point& p) const;
+    /// roots. `leaf` is left open. Written in place, since a copy at once would wait for what was just written.
+    void find_root(RegionId region, const Point& p, LeafFinder::Query& out) const;
     const LeafFinder& leaves() const { return leaves_; }
 
   private:
@@ -36,6 +36,16 @@ class ElementLocator {
         Vec3 du, dv;
         std::uint32_t number = 0;  ///< Among the tree's roots.
         Patch::Shape shape = Patch::Shape::parallelogram;
+
+        Vec2 coordinates(const Point& p) const {
+            const Vec3 w = p - origin;
+            return {dot(du, w), dot(dv, w)};
+        }
+        bool holds(Vec2 at) const {
+            const bool square = at.x >= 0 && at.y >= 0 && at.x <= 1 && at.y <= 1;
+            return square && (shape == Patch::Shape::parallelogram || at.x + at.y <= 1);
+        }
+        Vec2 held(Vec2 at) const { return holds(at) ? at : into_shape(at, shape); }
     };
     /// Roots by the cell of a grid over the two axes along which the region's plane can be told apart.
     struct Grid {

@@ -41,7 +41,7 @@ std::vector<Spectrum> looked_at(const Stage& stage, const ElementTree& tree, con
         stage.tracer.nearest(directions, at, RegionId(), hits);
         for (std::uint32_t k = 0; k < rays; ++k) {
             if (hits[k].surface.is_none() || !hits[k].front) continue;
-            const RegionId region = stage.scene.surfaces()[hits[k].surface].region;
+            const RegionId region = hits[k].region;
             look(region, at + hits[k].distance * directions[k],
                  (1.0 / rays) * stage.scene.material(region).reflectance);
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <utility>
@@ -41,8 +42,9 @@ class PointwiseLight final : public ReflectedLight {
 
 /// Room for the rays of one gather; one a thread.
 struct GatherWorkspace {
-    std::vector<Point> origins;  ///< One: where all rays begin.
-    std::vector<Vec2> square;    ///< Points of the unit square, and what directions they stand for.
+    std::vector<Point> origins;                      ///< One: where all rays begin.
+    std::array<std::vector<double>, 2> coordinates;  ///< Of points of the unit square in their own order;
+    std::vector<Vec2> square;                        ///< packet by packet, and what directions they stand for.
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
     std::vector<std::uint8_t> quarter;  ///< Of the points' order that a ray comes from.

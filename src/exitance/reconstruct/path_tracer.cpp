@@ -39,7 +39,7 @@ std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const V
     RayHit hit;
     stage_.tracer.nearest(std::span(&from.x, 1), std::span(&direction, 1), from.region, std::span(&hit, 1));
     if (hit.surface.is_none() || !hit.front) return std::nullopt;
-    const RegionId region = stage_.scene.surfaces()[hit.surface].region;
+    const RegionId region = hit.region;
     return Vertex{from.x + hit.distance * direction, stage_.scene.regions()[region].plane.n, region};
 }
 

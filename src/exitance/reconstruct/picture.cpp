@@ -91,7 +91,7 @@ class TilePainter {
         for (std::size_t i = first; i < last; ++i) {
             const RayHit& hit = hits_[i];
             const bool front = !hit.surface.is_none() && hit.front;
-            met_.push_back(front ? scene_.surfaces()[hit.surface].region : RegionId());
+            met_.push_back(front ? hit.region : RegionId());
             if (!hit.surface.is_none()) (hit.front ? out.front : out.back) += 1;
         }
         if (met_.size() == places_.size() && std::equal(met_.begin() + 1, met_.end(), met_.begin()))
@@ -178,7 +178,7 @@ std::vector<bool> element_edges(const Solution& solution, const RayTracer& trace
             if (!rays.ray(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, origin, direction)) continue;
             tracer.nearest(std::span(&direction, 1), origin, RegionId(), std::span(&hit, 1));
             if (hit.surface.is_none() || !hit.front) continue;
-            const RegionId region = solution.scene.surfaces()[hit.surface].region;
+            const RegionId region = hit.region;
             seen[y * width + x] = locator.find(region, origin + hit.distance * direction).element;
         }
     });

@@ -35,7 +35,7 @@ void QuickFunction::read(std::span<const HitPoint> hits, std::span<Spectrum> val
     for (std::size_t first = 0; first < hits.size(); first += together) {
         const std::size_t count = std::min(together, hits.size() - first);
         for (std::size_t i = 0; i < count; ++i)
-            queries[i] = locator_.root_of(hits[first + i].region, hits[first + i].y);
+            locator_.find_root(hits[first + i].region, hits[first + i].y, queries[i]);
         locator_.leaves().find(std::span(queries).first(count));
         for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(&leaves_[queries[i].leaf]);
         for (std::size_t i = 0; i < count; ++i) {

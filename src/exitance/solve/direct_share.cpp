@@ -45,7 +45,7 @@ Moments moments_at(const Stage& stage, const GlobalLight& light, const ElementLo
     Moments out;
     for (std::uint32_t k = 0; k < rays; ++k) {
         if (hits[k].surface.is_none() || !hits[k].front) continue;
-        const RegionId region = stage.scene.surfaces()[hits[k].surface].region;
+        const RegionId region = hits[k].region;
         const ElementId hit = locator.find(region, origin[0] + hits[k].distance * directions[k]).element;
         const Spectrum& b = light.reflected[light.numbering.number[hit]];
         const Spectrum& M = stage.scene.material(region).exitance;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "exitance/mesh/element_locator.hpp"
@@ -26,7 +27,9 @@ class ElementRays {
     const Stage& stage_;
     const ElementTree& tree_;
     const ElementLocator& locator_;
+    std::array<std::vector<double>, 4> coordinates_;  ///< Of the points that name the rays.
     std::vector<Point> origins_;
+    std::vector<Vec2> square_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> hits_;
     std::vector<LeafFinder::Query> queries_;

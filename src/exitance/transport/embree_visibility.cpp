@@ -40,6 +40,13 @@ Float3 to_float(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+/// What a ray needs to know of a surface that it hits, side by side in memory.
+struct Face {
+    Normal normal;
+    Point corner;
+    RegionId region;
+};
+
 RTCIntersectContext make_context() {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -64,7 +71,8 @@ struct RayTracer::Content {
     double lift_off;
     Owned<RTCDevice, rtcReleaseDevice> device;
     Owned<RTCScene, rtcReleaseScene> rtc;
-    std::vector<SurfaceId> surface_of;       ///< Of every triangle.
+    std::vector<SurfaceId> surface_of;  ///< Of every triangle.
+    Field<SurfaceId, Face> faces;
     Field<SurfaceId, SurfaceId> other_side;  ///< Of sheets; empty where there are none.
 
     explicit Content(const Scene& s)
@@ -74,11 +82,13 @@ struct RayTracer::Content {
           lift_off(lift * s.size()),
           device(rtcNewDevice(nullptr)),
           rtc(rtcNewScene(device)),
+          faces(s.surfaces().size()),
           other_side(other_sides_of_surfaces(s)) {
         std::vector<Float3> corners;
         std::vector<std::array<std::uint32_t, 3>> triangles;
         for (SurfaceId id : s.surfaces().ids()) {
             const std::span<const Point> outline = s.outline(id);
+            faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
             const auto first = static_cast<std::uint32_t>(corners.size());
             for (const Point& p : outline) corners.push_back(local(p));
             for (const auto& t : triangulate(outline, s.surfaces()[id].normal)) {
@@ -116,12 +126,13 @@ struct RayTracer::Content {
         hit.surface = surface_of[packet.hit.primID[lane]];
         // Of a sheet's two sides Embree finds either; a ray meets the one that faces it.
         if (other_side.size() > 0 && !other_side[hit.surface].is_none() &&
-            dot(scene->surfaces()[hit.surface].normal, direction) > 0)
+            dot(faces[hit.surface].normal, direction) > 0)
             hit.surface = other_side[hit.surface];
-        const Surface& surface = scene->surfaces()[hit.surface];
-        if (surface.region == own && !own.is_none()) return false;
-        const double slope = dot(surface.normal, direction);
-        const double distance = dot(surface.normal, scene->outline(hit.surface)[0] - origin) / slope;
+        const Face& face = faces[hit.surface];
+        if (face.region == own && !own.is_none()) return false;
+        hit.region = face.region;
+        const double slope = dot(face.normal, direction);
+        const double distance = dot(face.normal, face.corner - origin) / slope;
         const double found = packet.ray.tfar[lane];
         // In the surface's plane the quotient means nothing; there what Embree found is as good as it gets.
         hit.distance = std::abs(distance - found) <= 1e-3 * found ? distance : found;
@@ -168,15 +179,22 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
     RTCIntersectContext context = make_context();
     alignas(64) RTCRayHit16 packet;
     alignas(64) std::array<int, width> valid;
+    valid.fill(-1);
+    // What is alike for all packets is written once: Embree changes the far end and the hit only.
+    const Float3 start = shared ? content_->local(origins[0] + lifted) : Float3();
+    for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, start, {}, 0, HUGE_VALF);
     for (std::size_t first = 0; first < directions.size(); first += width) {
         const std::size_t count = std::min(width, directions.size() - first);
-        for (std::size_t i = 0; i < width; ++i) {
-            valid[i] = i < count ? -1 : 0;
-            if (i >= count) continue;
-            const Point& origin = origins[shared ? 0 : first + i];
-            set_ray(packet.ray, i, content_->local(origin + lifted), content_->local_direction(directions[first + i]),
-                    0, HUGE_VALF);
+        std::fill(valid.begin() + static_cast<std::ptrdiff_t>(count), valid.end(), 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Float3 direction = content_->local_direction(directions[first + i]);
+            packet.ray.dir_x[i] = direction.x, packet.ray.dir_y[i] = direction.y, packet.ray.dir_z[i] = direction.z;
+            packet.ray.tfar[i] = HUGE_VALF;
             packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        for (std::size_t i = 0; i < count && !shared; ++i) {
+            const Float3 origin = content_->local(origins[first + i] + lifted);
+            packet.ray.org_x[i] = origin.x, packet.ray.org_y[i] = origin.y, packet.ray.org_z[i] = origin.z;
         }
         rtcIntersect16(valid.data(), content_->rtc, &context, &packet);
         for (std::size_t i = 0; i < count; ++i) {

@@ -59,8 +59,8 @@ class RowMaker {
         queries_.clear(), cell_.clear(), seen_.clear();
         for (std::size_t k = 0; k < hits_.size(); ++k) {
             if (hits_[k].surface.is_none() || !hits_[k].front) continue;
-            const RegionId hit = stage_.scene.surfaces()[hits_[k].surface].region;
-            queries_.push_back(locator_.root_of(hit, x + hits_[k].distance * directions_[k]));
+            const RegionId hit = hits_[k].region;
+            locator_.find_root(hit, x + hits_[k].distance * directions_[k], queries_.emplace_back());
             cell_.push_back(k);
         }
         locator_.leaves().find(queries_);

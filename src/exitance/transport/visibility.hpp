@@ -12,6 +12,7 @@ namespace exitance {
 /// What a ray meets first.
 struct RayHit {
     SurfaceId surface;                                          ///< None when nothing is met.
+    RegionId region;                                            ///< That of the surface.
     double distance = std::numeric_limits<double>::infinity();  ///< In lengths of the ray's direction.
     bool front = false;                                         ///< Is it the surface's front that is met?
 };
