@@ -234,14 +234,7 @@ class Solver {
         progress_.phase("certify");
         CertificateOptions look{.error = options_.error_target()};
         if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
-        certify_solution(look);
-        // Few points tell an estimate to a tenth or so. One just too large is looked at again, which is cheaper than
-        // another attempt for nothing.
-        const double limit = margin(look.points) * options_.error_demand().value_or(HUGE_VAL);
-        if (certificate_.estimate > limit && certificate_.estimate < 1.25 * limit && !stop_.requested()) {
-            look.points *= 4;
-            certify_solution(look);
-        }
+        certify_solution(look, options_.error_demand());
         statistics().seconds["certify"] += watch.restart();
         reach(Step::decide);
     }
@@ -314,7 +307,7 @@ class Solver {
         return out;
     }
 
-    void certify_solution(CertificateOptions options) {
+    void certify_solution(CertificateOptions options, std::optional<double> demand = {}) {
         options.seed = options_.seed;
         options.direct_in_elements = light_->holds_direct;
         if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
@@ -323,7 +316,16 @@ class Solver {
         const Spectrum c = solution_.direct_share;
         const DeliveredLight delivered(stage_.scene, older ? constant_on_leaves(*light_) : solution_.indirect, direct_,
                                        light_->holds_direct ? Spectrum() : Spectrum(1.0) - c, c);
-        certificate_ = certify(stage_, *light_, solution_.indirect, delivered, options);
+        Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
+        certificate_ = certifier.look();
+        // Few points tell an estimate to a tenth or so. One just too large is looked at again, which is cheaper than
+        // another attempt for nothing.
+        constexpr std::size_t most_looks = 4;
+        for (std::size_t looks = 1; demand && looks < most_looks && !stop_.requested(); ++looks) {
+            const double limit = margin(certificate_.points) * *demand;
+            if (certificate_.estimate <= limit || certificate_.estimate >= 1.25 * limit) break;
+            certificate_ = certifier.look();
+        }
         record_certificate();
     }
 

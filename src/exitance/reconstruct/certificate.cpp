@@ -105,10 +105,44 @@ struct BatchMean {
     }
 };
 
+}  // namespace
+
+struct Certifier::Content {
+    const Stage& stage;
+    const GlobalLight& light;
+    const ElementFunction& indirect;
+    const ReflectedLight& b;
+    CertificateOptions options;
+    double mean_reflected, constant = 1;
+    ElementLocator coarse;
+    std::vector<Spectrum> rho;
+    std::vector<double> area;
+    RayRows H;  ///< Between the leaves of `light`.
+    std::size_t looks = 0;
+    std::vector<Sample> samples;  ///< Of all looks.
+
+    Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
+            const CertificateOptions& options_)
+        : stage(stage_),
+          light(light_),
+          indirect(indirect_),
+          b(b_),
+          options(options_),
+          mean_reflected(light.mean_reflected(stage.area)),
+          coarse(light.tree, stage.scene.regions().size()),
+          rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
+          area(leaf_areas(light.tree, light.numbering)),
+          H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1) {
+        if (mean_reflected > 0) constant = error_constant(H, rho, area);
+    }
+
+    void measure_residuals();
+    std::vector<Spectrum> late_response() const;
+    Certificate judge() const;
+};
+
 /// The residual at stratified points, twice each.
-std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& light, const ElementLocator& coarse,
-                                      const ElementFunction& indirect, const ReflectedLight& b, double constant,
-                                      const CertificateOptions& options) {
+void Certifier::Content::measure_residuals() {
     // Where light is reflected often, a small mean of the residual makes a large error, and has to be told from noise.
     const double often = std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, 8.0);
     const double wanted =
@@ -117,10 +151,12 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
         const double known = options.leaves ? 0.05 * (*options.leaves)[leaf].rays : wanted;
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
+    const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
     const std::vector<WeightedSample> places =
-        options.places.empty() ? stratified_places(stage, indirect.tree, options.leaves, options.points, options.seed)
+        options.places.empty() ? stratified_places(stage, indirect.tree, options.leaves, options.points, seed)
                                : in_turn(options.places, options.points);
-    std::vector<Sample> samples(places.size());
+    const std::size_t before = samples.size();
+    samples.resize(before + places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         GatherWorkspace workspace;
         DirectLight::Workspace exact;
@@ -129,16 +165,17 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
             const RegionId region = indirect.tree.region(place.element);
             const Point x = indirect.tree.patch(place.element).at(place.uv);
             const Normal& n = stage.scene.regions()[region].plane.n;
-            const Spectrum& rho = stage.scene.material(region).reflectance;
+            const Spectrum& reflectance = stage.scene.material(region).reflectance;
             Spectrum delivered = indirect.at(place);
             if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
             const unsigned rays = rays_at(place.element);
-            Sample& sample = samples[k];
+            Sample& sample = samples[before + k];
             const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
-                const std::uint64_t key = hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
+                const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
                 cast_gather(stage, x, n, region, rays, key, workspace);
-                r = rho * (read_gather(b, workspace).irradiance - delivered);
-                if (options.gathered) local = rho * (read_gather(*options.gathered, workspace).irradiance - delivered);
+                r = reflectance * (read_gather(b, workspace).irradiance - delivered);
+                if (options.gathered)
+                    local = reflectance * (read_gather(*options.gathered, workspace).irradiance - delivered);
             };
             measure(1, sample.r1, sample.local1);
             measure(2, sample.r2, sample.local2);
@@ -146,17 +183,16 @@ std::vector<Sample> measure_residuals(const Stage& stage, const GlobalLight& lig
             sample.leaf = light.numbering.number[coarse.find(region, x).element];
         }
     });
-    return samples;
+    ++looks;
 }
 
 /// The smooth part of the error: the coarse response to the mean residual of each region, less that residual itself. By
 /// leaf number of the coarse mesh.
-std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light, const std::vector<Sample>& samples,
-                                    const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
+std::vector<Spectrum> Certifier::Content::late_response() const {
     Field<RegionId, Spectrum> mean_residual(stage.scene.regions().size());
     Field<RegionId, double> count(stage.scene.regions().size());
     for (const Sample& s : samples) {
-        const double n = s.weight * static_cast<double>(samples.size());
+        const double n = s.weight * static_cast<double>(options.points);
         mean_residual[s.region] += 0.5 * n * (s.r1 + s.r2);
         count[s.region] += n;
     }
@@ -171,47 +207,48 @@ std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light
     return response;
 }
 
-}  // namespace
-
-Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
-                    const ReflectedLight& b, const CertificateOptions& options) {
-    Certificate out;
-    out.mean_reflected = light.mean_reflected(stage.area);
-    if (out.mean_reflected <= 0) return out;
-
-    const ElementLocator coarse(light.tree, stage.scene.regions().size());
-    const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, light.tree, light.numbering);
-    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
-    const RayRows H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64},
-                    options.seed + 1);
-    out.constant = error_constant(H, rho, area);
-    const std::vector<Sample> samples = measure_residuals(stage, light, coarse, indirect, b, out.constant, options);
-    const std::vector<Spectrum> response = late_response(stage, light, samples, H, rho, area);
-
+Certificate Certifier::Content::judge() const {
+    Certificate out{.constant = constant, .mean_reflected = mean_reflected, .points = samples.size(), .rays = H.rays()};
+    const std::vector<Spectrum> response = late_response();
     std::array<double, batches> residual_squared{}, error_squared{};
     double local_squared = 0, method_squared = 0;
-    out.points = samples.size();
-    out.rays = H.rays();
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
+        const double weight = s.weight / static_cast<double>(looks);
         const Spectrum& late = response[s.leaf];
-        residual_squared[k % batches] += s.weight * batches * mean(s.r1 * s.r2);
-        error_squared[k % batches] += s.weight * batches * mean((s.r1 + late) * (s.r2 + late));
-        local_squared += s.weight * mean(s.local1 * s.local2);
-        method_squared += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
+        residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
+        error_squared[k % batches] += weight * batches * mean((s.r1 + late) * (s.r2 + late));
+        local_squared += weight * mean(s.local1 * s.local2);
+        method_squared += weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
         out.rays += s.rays;
     }
     const BatchMean residual(residual_squared), error(error_squared);
     const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
-    out.residual = std::sqrt(std::max(0.0, residual.mean)) / out.mean_reflected;
+    out.residual = std::sqrt(std::max(0.0, residual.mean)) / mean_reflected;
     if (options.gathered) {
-        out.local = std::sqrt(std::max(0.0, local_squared)) / out.mean_reflected;
-        out.method = std::sqrt(std::max(0.0, method_squared)) / out.mean_reflected;
+        out.local = std::sqrt(std::max(0.0, local_squared)) / mean_reflected;
+        out.method = std::sqrt(std::max(0.0, method_squared)) / mean_reflected;
     }
     // Less than its own uncertainty cannot be claimed.
-    out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / out.mean_reflected;
-    out.bound = std::max(out.estimate, out.constant * std::sqrt(upper) / out.mean_reflected);
+    out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
+    out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
     return out;
+}
+
+Certifier::Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
+                     const ReflectedLight& b, const CertificateOptions& options)
+    : content_(std::make_unique<Content>(stage, light, indirect, b, options)) {}
+Certifier::~Certifier() = default;
+
+Certificate Certifier::look() {
+    if (content_->mean_reflected <= 0) return {};
+    content_->measure_residuals();
+    return content_->judge();
+}
+
+Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
+                    const ReflectedLight& b, const CertificateOptions& options) {
+    return Certifier(stage, light, indirect, b, options).look();
 }
 
 }  // namespace exitance

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/solve/global_light.hpp"
@@ -9,7 +11,7 @@ namespace exitance {
 struct CertificateOptions {
     double error = 0.02;  ///< The relative error that is to be resolved: it sets the number of points and rays.
     std::uint64_t seed = 1;
-    std::size_t points = 1280;        ///< How many the residual is measured at.
+    std::size_t points = 1280;        ///< How many the residual is measured at by one look.
     bool direct_in_elements = false;  ///< Does the delivered function hold the emitters' light too?
     /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
     /// rays in proportion to those that it took. Null when there was none.
@@ -43,8 +45,24 @@ struct Certificate {
 /// independent ray gathers over `b` give r1 and r2, so that E[r1 r2] = r^2 without the rays' noise. Error e = (I - rho
 /// H)^-1 r: its rough part is r itself, its smooth part is the response of a coarse solve to the regions' mean
 /// residuals. The bound takes the norm of (I - rho H)^-1, sqrt(C_1 C_inf) from two coarse solves with unit light, and
-/// Student's upper limit of ||r||. Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays). `light` gives
-/// mesh and direct light for the coarse solves; `b` must read the delivered function.
+/// Student's upper limit of ||r||. Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays).
+class Certifier {
+  public:
+    /// `light` gives mesh and direct light for the coarse solves; `b` must read the delivered function. All must
+    /// outlive it.
+    Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect, const ReflectedLight& b,
+              const CertificateOptions& options);
+    ~Certifier();
+
+    /// Measures at `options.points` more places, and tells what all of them so far say. `rays` counts all of them, too.
+    Certificate look();
+
+  private:
+    struct Content;
+    std::unique_ptr<Content> content_;
+};
+
+/// The same by one look.
 Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
                     const ReflectedLight& b, const CertificateOptions& options);
 
