@@ -28,15 +28,16 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
     knobs.residual = 0.02 * error;
     knobs.link_error = 0.45 * error;
-    // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each.
+    // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each. Elements take
+    // as many rays as they are, whatever their size: few to begin with, and where light turns sooner they are cut.
     knobs.gather_curved = error < 0.03;
-    knobs.gather_mesh = {edge_for_elements(pieces, count(knobs.gather_curved ? 4 : 5)), strips};
+    knobs.gather_mesh = {edge_for_elements(pieces, count(!knobs.gather_curved ? 5 : error < 0.015 ? 2 : 1)), strips};
     const double rays = (knobs.gather_curved ? 0.3 : 0.55) * std::pow(0.5 / error, 4.0 / 3);
     const double least = std::max(knobs.gather_curved ? 8.0 : 16.0, rays / 4);
     knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
     // What hides from all places of an element weighs more where there is less noise to hide in.
     knobs.gather_noise = 0.75 * error * std::pow(std::min(1.0, error / 0.02), 0.15);
-    knobs.gather_tolerance = 0.4 * error;
+    knobs.gather_tolerance = (knobs.gather_curved ? 0.5 : 0.4) * error;
     if (error < 0.01) knobs.gather_relative_tolerance = 0.6 * error;
     knobs.gather_element_share = 0.05 * error;
     apply_user_knobs(knobs, options);
@@ -45,9 +46,13 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
 
 Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
     Knobs out = knobs;
+    // Summed light costs by the element that is summed, not by the element that it is summed for.
+    const auto edge_for = [&](double e) { return edge_for_elements(pieces, static_cast<std::size_t>(4 / e)); };
     if (error < 0.01) {
+        out.gather_mesh.edge = edge_for(error), out.gather_tolerance = 0.4 * error;
         out.solve_mesh.longest_end = out.gather_mesh.longest_end = 4;
-        // Two strips more than the mean square needs: at an edge, too, light is to be right. Within, a coarser mesh does.
+        // Two strips more than the mean square needs: at an edge, too, light is to be right. Within, a coarser mesh
+        // does.
         out.gather_mesh.grading_levels += 2;
         constexpr double coarser = 1.5;
         out.solve_mesh.edge *= coarser, out.gather_mesh.edge *= coarser;
@@ -56,9 +61,10 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     }
     // Coarser than this, and the certificate, which reads the light that the method's elements hold, sees too little.
     constexpr double coarsest = 0.05;
-    const Knobs coarse = knobs_for_error(std::clamp(2.5 * error, error, std::max(error, coarsest)), pieces, options);
+    const double coarser = std::clamp(2.5 * error, error, std::max(error, coarsest));
+    const Knobs coarse = knobs_for_error(coarser, pieces, options);
     out.solve_mesh = coarse.solve_mesh, out.solve_rays = coarse.solve_rays;
-    out.gather_mesh = coarse.gather_mesh, out.gather_tolerance = coarse.gather_tolerance;
+    out.gather_mesh = {edge_for(coarser), coarse.gather_mesh.grading_levels}, out.gather_tolerance = 0.4 * coarser;
     out.gather_element_share = coarse.gather_element_share;
     out.gather_curved = false;
     return out;
