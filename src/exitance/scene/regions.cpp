@@ -1,6 +1,7 @@
 #include "exitance/scene/regions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -17,6 +18,23 @@ namespace exitance {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
+
+/// Cells that lines are told by: of the coordinates of their direction, and of their place in sizes of the scene.
+constexpr double direction_cell = 1e-3, place_cell = 1e-4;
+constexpr unsigned grades = 4;  ///< Of coarseness, see Joiner::grade.
+
+/// How far an edge reaches along a direction.
+struct Interval {
+    double lo, hi;
+    std::uint32_t edge;
+};
+
+/// How many of the others an interval meets, about, were they spread evenly.
+double crowding(const std::vector<Interval>& intervals) {
+    double lo = intervals[0].lo, hi = intervals[0].hi, sum = 0;
+    for (const Interval& i : intervals) lo = std::min(lo, i.lo), hi = std::max(hi, i.hi), sum += i.hi - i.lo;
+    return sum / (hi - lo);
+}
 
 /// The first unpaired edge between two points under one of the keys of its line.
 struct LineEntry {
@@ -63,8 +81,11 @@ class Joiner {
     std::uint32_t material(std::uint32_t f) const { return mesh_.material[faces_[f]]; }
     bool coplanar(std::uint32_t f, std::uint32_t g) const;
     std::vector<LineEntry> line_entries() const;
-    void add_line_keys(std::uint32_t edge, const Point& centre, double size, std::vector<LineEntry>& out) const;
+    unsigned grade(std::uint32_t edge) const;
+    void add_line_keys(std::uint32_t edge, unsigned grade, const Point& centre, double size,
+                       std::vector<LineEntry>& out) const;
     void add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t>& out) const;
+    std::vector<Interval> intervals_along(const Vec3& d, std::span<const std::uint32_t> group) const;
     void pair_on_line(std::span<const std::uint32_t> group);
     void pair_parts(std::uint32_t e, std::uint32_t f);
     void split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length);
@@ -127,20 +148,31 @@ void Joiner::pair_whole_edges() {
     }
 }
 
+/// How coarse the cells must be for the line through an edge to be told within an eighth of one: each grade is eight
+/// times as coarse as the one before it. Nearly all edges are of grade 0; those above are short beside the scene.
+unsigned Joiner::grade(std::uint32_t edge) const {
+    const double length = norm(point(edges_[edge].to) - point(edges_[edge].from));
+    const double error = 8 * 2 * tol_.place / length;  // of the direction; of the place, in sizes of the scene, as much
+    unsigned grade = 0;
+    for (double cell = place_cell; cell < error && grade + 1 < grades; cell *= 8) ++grade;
+    return grade;
+}
+
 /// Keys of the line through an edge: cells of its direction and of its point nearest to the scene's centre. Near a
 /// cell's wall the neighbour's key is given as well, so that edges of one line always have a key in common.
-void Joiner::add_line_keys(std::uint32_t edge, const Point& centre, double size, std::vector<LineEntry>& out) const {
+void Joiner::add_line_keys(std::uint32_t edge, unsigned grade, const Point& centre, double size,
+                           std::vector<LineEntry>& out) const {
     const Point& p = point(edges_[edge].from);
     Vec3 d = point(edges_[edge].to) - p;
-    const double length = norm(d);
+    const double length = norm(d), coarser = std::ldexp(1.0, 3 * static_cast<int>(grade));
     d = d / length;
     if (dot(d, Vec3{0.5377, 0.7323, 0.4181}) < 0) d = -d;  // no line of a practical scene is at a right angle to this
     const Vec3 foot = (p - centre) - dot(p - centre, d) * d;
-    const double direction_error = 2 * tol_.place / length, direction_cell = std::max(1e-3, 8 * direction_error);
-    const double foot_error = tol_.place + size * direction_error, foot_cell = std::max(1e-4 * size, 8 * foot_error);
-    const auto direction = [&](double x) { return CellCoordinate{x, direction_cell, direction_error}; };
-    const auto place = [&](double x) { return CellCoordinate{x, foot_cell, foot_error}; };
-    each_cell_key<6>(0, {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)},
+    const double direction_error = 2 * tol_.place / length, foot_error = tol_.place + size * direction_error;
+    const auto direction = [&](double x) { return CellCoordinate{x, coarser * direction_cell, direction_error}; };
+    const auto place = [&](double x) { return CellCoordinate{x, coarser * place_cell * size, foot_error}; };
+    each_cell_key<6>(grade,
+                     {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)},
                      [&](std::uint64_t key) {
                          out.push_back({key, edge});
                      });
@@ -171,7 +203,19 @@ void Joiner::pair_parts(std::uint32_t e, std::uint32_t f) {
     split_at_ends(f, e, normalized(b), norm(b));
 }
 
-/// Sweeps along a line over the edges on it (and a few that only share its cell).
+std::vector<Interval> Joiner::intervals_along(const Vec3& d, std::span<const std::uint32_t> group) const {
+    const Point origin = point(edges_[group[0]].from);
+    std::vector<Interval> out;
+    for (const std::uint32_t e : group) {
+        const double s = dot(point(edges_[e].from) - origin, d), t = dot(point(edges_[e].to) - origin, d);
+        out.push_back({std::min(s, t) - tol_.place, std::max(s, t) + tol_.place, e});
+    }
+    return out;
+}
+
+/// Sweeps along a line over the edges on it and those that only share its cell. Edges that are short for the size of
+/// the scene tell their lines so badly that a cell may hold whole rows of them: those are swept along an axis that
+/// tells them apart.
 void Joiner::pair_on_line(std::span<const std::uint32_t> group) {
     constexpr std::size_t few = 8;  // most lines carry the two edges of a box's corner: not worth sorting
     const auto pair = [&](std::uint32_t e, std::uint32_t f) {
@@ -182,17 +226,14 @@ void Joiner::pair_on_line(std::span<const std::uint32_t> group) {
             for (std::size_t j = 0; j < i; ++j) pair(group[j], group[i]);
         return;
     }
-    const Point origin = point(edges_[group[0]].from);
-    const Vec3 d = normalized(point(edges_[group[0]].to) - origin);
-    struct Interval {
-        double lo, hi;
-        std::uint32_t edge;
-    };
-    std::vector<Interval> intervals;
-    for (const std::uint32_t e : group) {
-        const double s = dot(point(edges_[e].from) - origin, d), t = dot(point(edges_[e].to) - origin, d);
-        intervals.push_back({std::min(s, t), std::max(s, t), e});
-    }
+    const Edge& first = edges_[group[0]];
+    std::vector<Interval> intervals = intervals_along(normalized(point(first.to) - point(first.from)), group);
+    constexpr double crowded = 32;
+    if (crowding(intervals) > crowded)
+        for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+            std::vector<Interval> other = intervals_along(axis, group);
+            if (crowding(other) < crowding(intervals)) intervals = std::move(other);
+        }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });
     std::vector<Interval> open;
@@ -221,11 +262,17 @@ std::vector<LineEntry> Joiner::line_entries() const {
     std::vector<LineEntry> entries;
     for (std::uint32_t e = 0; e < edges_.size(); ++e)
         if (edges_[e].twin != none) is_last[edges_[e].twin] = false;
+    const double size = box.diagonal();
+    std::array<bool, grades> is_there{};
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) is_there[grade(e)] = true;
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
         if (!is_last[e]) continue;
         twins.clear();
         add_unpaired_twins(e, twins);
-        if (!twins.empty()) add_line_keys(e, box.centre(), box.diagonal(), entries), ++count;
+        if (twins.empty()) continue;
+        // An edge meets the shorter ones among their cells.
+        for (unsigned g = grade(e); g < grades; ++g)
+            if (is_there[g]) add_line_keys(e, g, box.centre(), size, entries), ++count;
     }
     std::vector<std::uint8_t> held(std::bit_ceil(4 * count + 1));
     const auto slot = [&](const LineEntry& entry) -> std::uint8_t& { return held[entry.key & (held.size() - 1)]; };

@@ -61,6 +61,24 @@ TEST(Regions, FloorsCutWithTVerticesAreOnePolygon) {
     EXPECT_EQ(region(s, 0).loops, (std::vector<std::vector<Point>>{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}}));
 }
 
+TEST(Regions, FloorsCutWithTVerticesAreOnePolygonEachInALongRow) {
+    // Short edges of a long scene hardly tell one line from the next: rows of them are compared by place.
+    constexpr int floors = 2000;
+    for (const bool along_x : {false, true}) {
+        Sketch sketch;
+        for (int i = 0; i < floors; ++i) {
+            const double x = along_x ? 10 * i : 0, y = along_x ? 0 : 10 * i;
+            sketch.rectangle(x, y, x + 1, y + 2)
+                .rectangle(x + 1, y, x + 2, y + 1)
+                .rectangle(x + 1, y + 1, x + 2, y + 2);
+        }
+        const auto s = sketch.light().make();
+        ASSERT_TRUE(s.scene);
+        ASSERT_EQ(s.scene->regions().size(), floors + 1u);
+        for (std::size_t i = 0; i < floors; ++i) ASSERT_NEAR(region(s, i).area, 4, 1e-6);
+    }
+}
+
 TEST(Regions, AWallThatStandsOnTheJointDoesNotKeepFloorsApart) {
     // The wall's lower edge runs between the same points as the first floor's, either way round: one line, three edges.
     for (const bool turned : {false, true}) {
