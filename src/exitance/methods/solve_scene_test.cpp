@@ -139,23 +139,37 @@ TEST(SolveScene, AnUnevenFurnaceGlowsEverywhereAlike) {
     EXPECT_LT(solution.statistics.energy.defect, 1e-3);
 }
 
-TEST(SolveScene, ErrorFallsWithTheErrorAskedFor) {
-    const Scene scene = box_scene(4, 3, 2.5, 0.6, 1);
-    std::vector<ProbePoint> points;
-    for (int i = 0; i < 40; ++i) points.push_back({{0.1 * (i + 0.5), 0.07 * (i + 0.5), 0}, {0, 0, 1}});
+/// E at points, by paths: known to about half a per cent.
+std::vector<double> paths_at(const Scene& scene, const std::vector<ProbePoint>& points) {
     Progress progress;
     const StopRequest stop;
     std::vector<double> E;
     for (const ReferenceLight& r : reference_light(scene, points, 16384, 5, progress, stop))
         E.push_back(r.irradiance[0]);
-    double last = 1;
+    return E;
+}
+
+TEST(SolveScene, ErrorIsAtMostWhatWasAskedFor) {
+    const Scene scene = box_scene(4, 3, 2.5, 0.6, 1);
+    std::vector<ProbePoint> points;
+    for (int i = 0; i < 40; ++i) points.push_back({{0.1 * (i + 0.5), 0.07 * (i + 0.5), 0}, {0, 0, 1}});
+    const std::vector<double> E = paths_at(scene, points);
     for (const double asked : {0.08, 0.01}) {
         const Solution solution = solved(scene, {.error = asked});
-        const double error = error_at(RadiosityFunction(solution), points, E);
-        EXPECT_LT(error, asked + 0.004);  // the reference's own noise
-        EXPECT_LT(error, last);
-        last = error;
+        EXPECT_LT(error_at(RadiosityFunction(solution), points, E), asked + 0.004);  // the reference's own noise
     }
+}
+
+TEST(SolveScene, ErrorFallsWithTheErrorAskedFor) {
+    // Under a chair and beside it, where errors are several times what they are on average.
+    const Scene scene = built_scene("complex", {{"m", "1"}});
+    std::vector<ProbePoint> points;
+    for (int i = -20; i < 20; ++i) points.push_back({{0.02 * i, 0.05 * i, 0}, {0, 0, 1}});
+    const std::vector<double> E = paths_at(scene, points);
+    const auto error = [&](double asked) {
+        return error_at(RadiosityFunction(solved(scene, {.error = asked})), points, E);
+    };
+    EXPECT_LT(error(0.01), 0.5 * error(0.08));
 }
 
 TEST(SolveScene, ZeroBouncesIsDirectLightAlone) {
