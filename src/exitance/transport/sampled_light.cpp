@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <utility>
 
 #include "exitance/core/random.hpp"
 #include "exitance/transport/form_factor.hpp"
@@ -28,18 +30,35 @@ Point uniform_on(std::span<const Point> corners, double s, double t) {
     }
 }
 
+constexpr std::size_t quad = 4;  ///< Corners; a triangle repeats its last one.
+
 }  // namespace
+
+SampledLight::SampledLight(const DirectLight& direct, const RayTracer& tracer, std::uint64_t seed)
+    : direct_(direct), tracer_(tracer), seed_(seed) {
+    for (const DirectLight::Emitter& emitter : direct_.emitters())
+        for (PieceId piece : emitter.pieces) {
+            const std::span<const Point> corners = direct_.occluders().corners(piece);
+            quads_.add({corners[0], corners[1], corners[2], corners[std::min(corners.size(), quad) - 1]});
+        }
+    F_.resize(quads_.size());
+}
 
 void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, double radius) {
     sources_.clear();
+    point_to_quads(x, n, quads_, F_);
     double all = 0;
+    std::size_t next = 0;
     for (std::uint32_t i = 0; i < direct_.emitters().size(); ++i) {
         const DirectLight::Emitter& emitter = direct_.emitters()[i];
+        const std::size_t first = std::exchange(next, next + emitter.pieces.size());
         if (emitter.region == own || emitter.plane.signed_distance(x) <= 0 ||
             dot(n, emitter.centre - x) <= -emitter.radius)
             continue;
-        for (PieceId piece : emitter.pieces) {
-            const double F = point_to_polygon(x, n, direct_.occluders().corners(piece));
+        for (std::size_t k = 0; k < emitter.pieces.size(); ++k) {
+            const PieceId piece = emitter.pieces[k];
+            const std::span<const Point> corners = direct_.occluders().corners(piece);
+            const double F = corners.size() <= quad ? F_[first + k] : point_to_polygon(x, n, corners);
             if (F <= 0) continue;
             const double both = radius + emitter.radius;
             const double near = std::min(1.0, both * both / squared_norm(emitter.centre - x));
@@ -85,10 +104,10 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     for (std::size_t s = 0; s < sources_.size(); ++s)
         if (visible_part(tree, e, s, sight) > 0)
             sources_[s].in_sight = (1 / std::min(1.0, sources_[s].expected)) * sources_[s].light;
-    std::stable_sort(sources_.begin(), sources_.end(), [](const Source& a, const Source& b) {
-        return std::pair(mean(a.in_sight), a.near * mean(a.light)) <
-               std::pair(mean(b.in_sight), b.near * mean(b.light));
-    });
+    ranks_.clear();
+    for (std::uint32_t s = 0; s < sources_.size(); ++s)
+        ranks_.push_back({mean(sources_[s].in_sight), sources_[s].near * mean(sources_[s].light), s});
+    std::sort(ranks_.begin(), ranks_.end());
     // Light that comes and goes between nothing and U misses in the mean square U^2 / 4 at most; as a rule half of
     // that. Sources that no ray has found may still send theirs: then chance has it that rays of the second kind find
     // it.
@@ -98,10 +117,11 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     estimate_.misfit_squared = 0;
     estimate_.strong.clear();
     // The middle stands for the element, and all of a source for the part that is in sight, which errs by (radii /
-    // distance)^2 at most and always to the same side: by half of what is allowed at most, whether a ray was drawn or not.
+    // distance)^2 at most and always to the same side: by half of what is allowed at most, whether a ray was drawn or
+    // not.
     constexpr double askew = 4;
     Spectrum in_sight, astray;
-    for (std::size_t s = 0; s < sources_.size(); ++s) {
+    for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {
         const Spectrum in_sight_with = in_sight + sources_[s].in_sight;
         const Spectrum astray_with = astray + sources_[s].near * sources_[s].light;
         const double misfit = std::max(misses * power(in_sight_with), askew * power(astray_with));
