@@ -13,6 +13,7 @@
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/smoothing.hpp"
 #include "exitance/methods/solve_archive.hpp"
+#include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/certificate.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/interpolant.hpp"
@@ -27,17 +28,6 @@ namespace {
 const MethodEntry& entry_of(Method id) {
     const auto table = method_table();
     return *std::find_if(table.begin(), table.end(), [&](const MethodEntry& m) { return m.id == id; });
-}
-
-std::vector<std::size_t> count_by_level(const ElementTree& tree) {
-    std::vector<std::size_t> count;
-    Field<ElementId, std::uint32_t> level(tree.size(), 0);
-    for (ElementId e : tree.ids()) {
-        if (!tree.parent(e).is_none()) level[e] = level[tree.parent(e)] + 1;
-        if (level[e] >= count.size()) count.push_back(0);
-        ++count[level[e]];
-    }
-    return count;
 }
 
 class Solver {
@@ -244,7 +234,7 @@ class Solver {
         if (fresh_) {
             light_ =
                 entry_of(options_.method).solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points()});
-            record_method();
+            record_method(stage_, *light_, has_links_, statistics());
             share_ = direct_share();
         }
         statistics().seconds["solve"] += watch.seconds();
@@ -326,7 +316,8 @@ class Solver {
             if (certificate_.estimate <= limit || certificate_.estimate >= 1.25 * limit) break;
             certificate_ = certifier.look();
         }
-        record_certificate();
+        record_certificate(certificate_, *light_, solution_.indirect, statistics());
+        progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
     }
 
     /// What the estimate is made of, relative to the mean reflected light.
@@ -337,40 +328,6 @@ class Solver {
         return {.method = certificate_.method,
                 .noise = noise,
                 .interpolation = std::max(misfit, gathered_.interpolation / certificate_.mean_reflected)};
-    }
-
-    void record_method() {
-        SolveStatistics& s = statistics();
-        s.iterations += light_->report.iterations;
-        s.residual = light_->report.residual;
-        s.rays += light_->rays;
-        s.form_factors += light_->form_factors;
-        s.links = light_->links;
-        s.link_memory_bytes = light_->link_memory_bytes;
-        s.element_memory_bytes = light_->element_memory_bytes;
-        if (has_links_) s.elements_by_level = count_by_level(light_->tree);
-        // Links that rays have found lead between constants, whatever basis the method has else.
-        if (has_links_ && light_->indirect_corners.empty()) s.basis = name_in(basis_names, BasisKind::haar);
-        const double scale = light_->mean_reflected(stage_.area);
-        s.standard_error = scale > 0 ? rms_standard_error(stage_, *light_) / scale : 0;
-    }
-
-    void record_certificate() {
-        SolveStatistics& s = statistics();
-        s.rays += certificate_.rays;
-        s.elements = light_->tree.size() + solution_.indirect.tree.size();
-        s.leaf_elements = light_->numbering.leaves.size() + solution_.indirect.tree.leaves().size();
-        s.relative_error_estimate = certificate_.estimate;
-        s.relative_error_bound = certificate_.bound;
-        const double scale = certificate_.mean_reflected > 0 ? 100 / certificate_.mean_reflected : 0;
-        progress_.note(fmt::format(
-            "{} elements solved on, {} gathered on; mean reflected radiosity {:.4g} W/m^2; error estimate {:.3f}%, "
-            "bound {:.3f}%, residual {:.3f}%, error constant {:.2f}; method {:.3f}%, rays' noise {:.3f}%, "
-            "interpolation {:.3f}%, both as measured {:.3f}%; rays {} + {} + {}",
-            light_->numbering.leaves.size(), solution_.indirect.tree.leaves().size(), certificate_.mean_reflected,
-            100 * certificate_.estimate, 100 * certificate_.bound, 100 * certificate_.residual, certificate_.constant,
-            100 * certificate_.method, scale * gathered_.noise, scale * gathered_.interpolation,
-            100 * certificate_.local, light_->rays, gathered_.rays, certificate_.rays));
     }
 
     void make_output_mesh() {

@@ -1,0 +1,61 @@
+#include "exitance/methods/solve_report.hpp"
+
+#include <fmt/format.h>
+
+#include "exitance/methods/light_functions.hpp"
+#include "exitance/methods/methods.hpp"
+
+namespace exitance {
+namespace {
+
+std::vector<std::size_t> count_by_level(const ElementTree& tree) {
+    std::vector<std::size_t> count;
+    Field<ElementId, std::uint32_t> level(tree.size(), 0);
+    for (ElementId e : tree.ids()) {
+        if (!tree.parent(e).is_none()) level[e] = level[tree.parent(e)] + 1;
+        if (level[e] >= count.size()) count.push_back(0);
+        ++count[level[e]];
+    }
+    return count;
+}
+
+}  // namespace
+
+void record_method(const Stage& stage, const GlobalLight& light, bool has_links, SolveStatistics& statistics) {
+    statistics.iterations += light.report.iterations;
+    statistics.residual = light.report.residual;
+    statistics.rays += light.rays;
+    statistics.form_factors += light.form_factors;
+    statistics.links = light.links;
+    statistics.link_memory_bytes = light.link_memory_bytes;
+    statistics.element_memory_bytes = light.element_memory_bytes;
+    if (has_links) statistics.elements_by_level = count_by_level(light.tree);
+    // Links that rays have found lead between constants, whatever basis the method has else.
+    if (has_links && light.indirect_corners.empty()) statistics.basis = name_in(basis_names, BasisKind::haar);
+    const double scale = light.mean_reflected(stage.area);
+    statistics.standard_error = scale > 0 ? rms_standard_error(stage, light) / scale : 0;
+}
+
+void record_certificate(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
+                        SolveStatistics& statistics) {
+    statistics.rays += certificate.rays;
+    statistics.elements = light.tree.size() + delivered.tree.size();
+    statistics.leaf_elements = light.numbering.leaves.size() + delivered.tree.leaves().size();
+    statistics.relative_error_estimate = certificate.estimate;
+    statistics.relative_error_bound = certificate.bound;
+}
+
+std::string describe(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
+                     const LocalPassReport& gathered) {
+    const double scale = certificate.mean_reflected > 0 ? 100 / certificate.mean_reflected : 0;
+    return fmt::format(
+        "{} elements solved on, {} gathered on; mean reflected radiosity {:.4g} W/m^2; error estimate {:.3f}%, "
+        "bound {:.3f}%, residual {:.3f}%, error constant {:.2f}; method {:.3f}%, rays' noise {:.3f}%, "
+        "interpolation {:.3f}%, both as measured {:.3f}%; rays {} + {} + {}",
+        light.numbering.leaves.size(), delivered.tree.leaves().size(), certificate.mean_reflected,
+        100 * certificate.estimate, 100 * certificate.bound, 100 * certificate.residual, certificate.constant,
+        100 * certificate.method, scale * gathered.noise, scale * gathered.interpolation, 100 * certificate.local,
+        light.rays, gathered.rays, certificate.rays);
+}
+
+}  // namespace exitance
