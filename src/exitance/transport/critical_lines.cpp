@@ -131,48 +131,63 @@ void CriticalLineFinder::keep(CriticalLine line, std::vector<CriticalLine>& line
     lines.push_back(line);
 }
 
+/// Corners of the source over edges of a blocker, and the blocker's corners over the source's edges.
+void CriticalLineFinder::add_sights(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& seen,
+                                    std::vector<CriticalLine>& lines) {
+    const ConvexBlocker& body = *seen.body;
+    const std::size_t faces = body.faces.size();
+    std::uint32_t any_corner = 0, any_edge = 0;
+    const auto over_corners = [&](std::size_t k) {
+        return seen.edges_over_corners.empty() ? ~0u : seen.edges_over_corners[k];
+    };
+    const auto over_edges = [&](std::uint32_t c) {
+        return seen.corners_over_edges.empty() ? ~0u : seen.corners_over_edges[c];
+    };
+    for (std::size_t k = 0; k < seen.edges.size(); ++k) any_corner |= over_corners(k);
+    for (std::uint32_t c : corners_) any_edge |= over_edges(c);
+    if ((any_corner | any_edge) == 0) return;
+    in_front_.resize(source.size() * faces);
+    for (std::size_t s = 0; s < source.size(); ++s)
+        for (std::size_t k = 0; k < faces; ++k) in_front_[s * faces + k] = body.faces[k].signed_distance(source[s]) > 0;
+    const auto is_outline = [&](std::size_t s, const ConvexBlocker::Edge& e) {
+        return e.right == ConvexBlocker::no_face || in_front_[s * faces + static_cast<std::size_t>(e.left)] !=
+                                                        in_front_[s * faces + static_cast<std::size_t>(e.right)];
+    };
+    const auto shadow = [&](std::size_t s, std::uint32_t c) {
+        const Vec2 from = frame.flat(source[s]), p = frame.flat(body.points[c]);
+        const double high = frame.height(source[s]), low = std::max(0.0, frame.height(body.points[c]));
+        return Shadow{p.x * high - from.x * low, p.y * high - from.y * low, high - low};
+    };
+    for (std::size_t s = 0; s < source.size(); ++s)
+        for (std::size_t k = 0; k < seen.edges.size(); ++k) {
+            const ConvexBlocker::Edge& e = body.edges[seen.edges[k]];
+            if ((over_corners(k) & SeenEdges::bit(s)) && is_outline(s, e)) add(shadow(s, e.a), shadow(s, e.b), lines);
+        }
+    for (std::size_t s = 0; s < source.size(); ++s) {
+        const std::size_t next = s + 1 == source.size() ? 0 : s + 1;
+        if (!(any_edge & SeenEdges::bit(s))) continue;
+        // Faces seen alike from both ends of an edge are seen alike from all of it.
+        const bool alike = std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
+        const auto ends_outline = [&](std::uint32_t c) {
+            return std::any_of(seen.edges.begin(), seen.edges.end(), [&](std::uint32_t k) {
+                const ConvexBlocker::Edge& e = body.edges[k];
+                return (e.a == c || e.b == c) && is_outline(s, e);
+            });
+        };
+        for (std::uint32_t c : corners_)
+            if ((over_edges(c) & SeenEdges::bit(s)) && (!alike || ends_outline(c)))
+                add(shadow(s, c), shadow(next, c), lines);
+    }
+}
+
 void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> receiver, std::span<const Point> source,
                               std::span<const SeenEdges> blockers, double nearness, std::size_t most,
                               std::vector<CriticalLine>& lines) {
     receiver_ = receiver, nearness_ = nearness, most_ = most;
     lines.clear();
     for (const SeenEdges& seen : blockers) {
-        const ConvexBlocker* const blocker = seen.body;
         find_corners(seen);
-        const std::size_t corners = blocker->points.size(), faces = blocker->faces.size();
-        shadows_.resize(source.size() * corners);
-        in_front_.resize(source.size() * faces);
-        for (std::size_t s = 0; s < source.size(); ++s) {
-            const Vec2 from = frame.flat(source[s]);
-            const double high = frame.height(source[s]);
-            for (std::size_t k = 0; k < faces; ++k)
-                in_front_[s * faces + k] = blocker->faces[k].signed_distance(source[s]) > 0;
-            for (std::uint32_t c : corners_) {
-                const Vec2 p = frame.flat(blocker->points[c]);
-                const double low = std::max(0.0, frame.height(blocker->points[c]));
-                shadows_[s * corners + c] = {p.x * high - from.x * low, p.y * high - from.y * low, high - low};
-            }
-        }
-        outlines_.assign(source.size() * corners, 0);
-        for (std::size_t s = 0; s < source.size(); ++s)
-            for (std::uint32_t k : seen.edges) {
-                const ConvexBlocker::Edge& e = blocker->edges[k];
-                const bool silhouette =
-                    e.right == ConvexBlocker::no_face || in_front_[s * faces + static_cast<std::size_t>(e.left)] !=
-                                                             in_front_[s * faces + static_cast<std::size_t>(e.right)];
-                if (!silhouette) continue;
-                outlines_[s * corners + e.a] = outlines_[s * corners + e.b] = 1;
-                add(shadows_[s * corners + e.a], shadows_[s * corners + e.b], lines);
-            }
-        for (std::size_t s = 0; s < source.size(); ++s) {
-            const std::size_t next = s + 1 == source.size() ? 0 : s + 1;
-            // Faces seen alike from both ends of an edge are seen alike from all of it.
-            const bool alike =
-                std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
-            for (std::uint32_t c : corners_)
-                if (!alike || outlines_[s * corners + c])
-                    add(shadows_[s * corners + c], shadows_[next * corners + c], lines);
-        }
+        add_sights(frame, source, seen, lines);
         add_faces(frame, source, seen, lines);
     }
     for (const SeenEdges& far : blockers)

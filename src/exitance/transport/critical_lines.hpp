@@ -38,6 +38,11 @@ struct PlaneFrame {
 struct SeenEdges {
     const ConvexBlocker* body;
     std::span<const std::uint32_t> edges;  ///< In the blocker's.
+    /// Which corners of the source are seen over an edge from somewhere on the receiver, and not from elsewhere; and
+    /// over which of the source's edges a corner of the blocker is. A bit each, those past the 31st share the last.
+    std::span<const std::uint32_t> edges_over_corners, corners_over_edges;
+
+    static constexpr std::uint32_t bit(std::size_t s) { return 1u << (s < 31 ? s : 31); }
 };
 
 /// The lines that cross a convex receiver on which a corner of the source is seen over an edge of a blocker's
@@ -57,6 +62,8 @@ class CriticalLineFinder {
     struct Shadow {
         double x, y, weight;
     };
+    void add_sights(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& seen,
+                    std::vector<CriticalLine>& lines);
     void add_gaps(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& far, const SeenEdges& near,
                   std::vector<CriticalLine>& lines);
     void add_faces(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& blocker,
@@ -69,8 +76,7 @@ class CriticalLineFinder {
     std::span<const Vec2> receiver_;
     double nearness_ = 0;
     std::size_t most_ = 0;
-    std::vector<Shadow> shadows_;
-    std::vector<std::uint8_t> in_front_, outlines_, is_seen_;
+    std::vector<std::uint8_t> in_front_, is_seen_;
     std::vector<std::uint32_t> corners_;  ///< Ends of the edges at hand.
 };
 

@@ -22,7 +22,7 @@ std::vector<CriticalLine> lines_of(const Outline& receiver, const Outline& sourc
         all.emplace_back(blocker->edges.size());
         std::iota(all.back().begin(), all.back().end(), 0u);
     }
-    for (std::size_t k = 0; k < blockers.size(); ++k) seen.push_back({blockers[k], all[k]});
+    for (std::size_t k = 0; k < blockers.size(); ++k) seen.push_back({blockers[k], all[k], {}, {}});
     std::vector<CriticalLine> lines;
     CriticalLineFinder().find(frame, flat, source, seen, 1e-6, 64, lines);
     return lines;

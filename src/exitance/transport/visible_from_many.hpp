@@ -44,22 +44,38 @@ class VisibleFromMany {
     enum class Kept : std::uint8_t { nothing, hides_all, some };
     Kept add_blocker(const ConvexBlocker& shape);
     bool add_faces(const ConvexBlocker& shape, SightTables::Blocker& blocker);
-    bool add_line(Line line, const Vec3& a, const Vec3& b, std::uint32_t edge);
+    bool add_line(Line line, const ConvexBlocker::Edge& e, bool turned, std::uint32_t edge);
     bool find_outline(const ConvexBlocker::Edge& e, bool is_sheet, Line& line, bool& turned) const;
-    Affine determinant(const Vec3& a, const Vec3& b, const Vec3& p) const;
-    bool any_below(const Affine& f, double value) const;
-    bool any_above(const Affine& f, double value) const;
+    /// A directed line, by which heights over it are told.
+    struct Axis {
+        Vec3 along, moment;
+        Axis(const Vec3& a, const Vec3& d) : along(d), moment(cross(d, a)) {}
+        Affine height(const Vec3& p) const;
+    };
+    /// What values of functions are found on the receiver, a bit a function; its corners decide.
+    struct Signs {
+        std::uint32_t above = 0, below = 0;  ///< More than `none`, less than -none.
+        std::uint32_t away = 0;              ///< Farther from 0 than `nil`.
+    };
+    Signs signs(const Affine& f, double none, double nil) const;
+    template <class Heights>
+    Signs add_heights(std::size_t stride, std::size_t place, double none, double nil, const Heights& heights);
+    void set_source(std::span<const Point> source);
     void join(std::size_t k, std::size_t j);
     Vec3 place(const Point& p) const;
     void look_otherwise(std::span<const Vec2> points, std::span<double> F, std::span<Seen> seen);
 
     PlaneFrame frame_{{}, {0, 0, 1}};
-    std::vector<double> receiver_u_, receiver_v_;  ///< Its corners, the last one again to fill groups of four.
+    std::vector<double> receiver_u_, receiver_v_;  ///< Its corners.
     std::span<const Point> source_;
     std::span<const ConvexBlocker* const> blockers_;
     double reach_ = 0;  ///< Metres between any two of the places at hand, at most.
     SightTables tables_;
-    std::vector<std::uint32_t> edges_;  ///< Of each line, in its blocker's.
+    std::vector<std::uint32_t> edges_;    ///< Of each line, in its blocker's.
+    std::vector<std::uint32_t> crossed_;  ///< By each line, as SeenEdges wants it.
+    std::vector<std::uint32_t> corners_crossed_;
+    /// x, y, z of the source's corners, of its edges, and of these edges' moments, filled up to groups of four.
+    std::array<std::vector<double>, 9> source_columns_;
     std::vector<SeenEdges> seen_edges_;
     std::vector<Vec3> points_;  ///< Of the blocker at hand, in the receiver's frame.
     enum class Facing : std::uint8_t { back, front, turning };
