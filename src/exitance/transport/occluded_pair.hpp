@@ -77,6 +77,7 @@ class OccludedExchange {
     void look_at_cells(std::span<Cell* const> cells);
     void look_from_middles();
     bool is_settled_by_two_points(const Task& task) const;
+    double share_left(const Task& task) const;
     void apply(int points);
     void halve(const Task& task);
     double integrate_tasks();
