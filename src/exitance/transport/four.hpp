@@ -57,6 +57,15 @@ EXITANCE_INLINE Real sqrt(const Real& v) {
     for (std::size_t i = 0; i < sizeof v / sizeof(double); ++i) out[i] = std::sqrt(v[i]);
     return out;
 }
+/// a b + c, rounded once, for kernels whose bits do not depend on the width of registers: what the compiler contracts
+/// of its own is another thing each time.
+template <class Real>
+EXITANCE_INLINE Real fused(const Real& a, const Real& b, const Real& c) {
+    Real out;
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < sizeof out / sizeof(double); ++i) out[i] = __builtin_fma(a[i], b[i], c[i]);
+    return out;
+}
 template <class Real>
 EXITANCE_INLINE Real max(const Real& a, const Real& b) {
     return a > b ? a : b;
@@ -81,9 +90,13 @@ EXITANCE_INLINE Real angle_over_tangent(const Real& z) {
                               -0.04348052215716462,
                               0.021135373157693246};
     const Real w = z * z, v = w * w;
+    const auto pair = [&](int k) __attribute__((always_inline)) {
+        return fused(Real{} + c[k + 1], z, Real{} + c[k]);
+    };
     // Estrin's scheme: short chains, so that edges overlap in the pipeline.
-    return (c[0] + c[1] * z) + w * (c[2] + c[3] * z) + v * ((c[4] + c[5] * z) + w * (c[6] + c[7] * z)) +
-           v * v * ((c[8] + c[9] * z) + w * c[10]);
+    const Real low = fused(w, pair(2), pair(0)), middle = fused(w, pair(6), pair(4)),
+               high = fused(w, Real{} + c[10], pair(8));
+    return fused(v, fused(v, high, middle), low);
 }
 
 /// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
@@ -127,13 +140,14 @@ EXITANCE_INLINE int bits(const Mask& m) {
 inline bool any(const Mask& m) {
     return bits(m) != 0;
 }
-/// atan2(y, x) / y from y^2: small angles need no root.
-EXITANCE_INLINE Real angle_over_root(const Real& squared_y, const Real& x) {
-    if (!any((x <= 0) | (squared_y > 0.17157287525380988 * x * x))) {
-        const Real inverse = 1 / x;
-        return angle_over_tangent(squared_y * inverse * inverse) * inverse;
-    }
-    return angle_over_sine(max(sqrt(squared_y), Real{} + 1e-200), x);
+EXITANCE_INLINE Mask less(const Real& a, const Real& b) {
+    return a < b;
+}
+EXITANCE_INLINE Mask differ(const Real& a, const Real& b) {
+    return a != b;
+}
+EXITANCE_INLINE Real pick(const Mask& m, const Real& a, const Real& b) {
+    return m ? a : b;
 }
 
 }  // namespace exitance::four

@@ -289,16 +289,16 @@ void VisibleFromMany::look_otherwise(std::span<const Vec2> points, std::span<dou
 
 void VisibleFromMany::operator()(std::span<const Vec2> points, std::span<const std::size_t> ends, std::span<double> F,
                                  std::span<Seen> seen) {
-    constexpr std::size_t lanes = SightTables::lanes;
     if (is_crowded_) {
         std::size_t first = 0;
         for (std::size_t end : ends)
-            for (; first < end; first = std::min(first + lanes, end)) {
-                const std::size_t used = std::min(lanes, end - first);
+            for (; first < end; first = std::min(first + four::lanes, end)) {
+                const std::size_t used = std::min(four::lanes, end - first);
                 look_otherwise(points.subspan(first, used), F.subspan(first, used), seen.subspan(first, used));
             }
         return;
     }
+    constexpr std::size_t lanes = SightTables::lanes;
     for (std::size_t first = 0; first < points.size(); first += lanes) {
         const std::size_t last = std::min(first + lanes, points.size());
         std::array<double, lanes> u, v;
@@ -306,8 +306,7 @@ void VisibleFromMany::operator()(std::span<const Vec2> points, std::span<const s
             const Vec2 p = points[std::min(first + i, last - 1)];
             u[i] = p.x, v[i] = p.y;
         }
-        FourViews views;
-        look_from_four(tables_, u.data(), v.data(), views);
+        const Views views = look_from_points(tables_, u.data(), v.data(), last - first);
         for (std::size_t i = first; i < last; ++i) {
             const int bit = 1 << (i - first);
             F[i] = views.F[i - first];
