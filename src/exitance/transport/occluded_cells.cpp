@@ -12,26 +12,26 @@ constexpr int most_searches = 6;  ///< Halvings of a receiver with more lines.
 
 }  // namespace
 
-/// Parts of a cell on both sides of a line; false when the line misses it, or its events lie beside the cell.
-bool OccludedExchange::cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const {
+/// Parts of a part on both sides of a line; false when the line misses it, or its events lie beside it.
+bool OccludedExchange::cut(const Part& part, const CriticalLine& line, Part& front, Part& back) const {
     const double near = nearest_line * size_;
-    std::array<double, Cell::most> d;
+    std::array<double, Part::most> d;
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
-    for (std::size_t i = 0; i < cell.count; ++i) {
-        d[i] = line.signed_distance(cell.corner[i]);
+    for (std::size_t i = 0; i < part.count; ++i) {
+        d[i] = line.signed_distance(part.corner[i]);
         if (std::abs(d[i]) <= near) d[i] = 0;
         lowest = std::min(lowest, d[i]), highest = std::max(highest, d[i]);
     }
     if (lowest >= 0 || highest <= 0) return false;
     double enters = HUGE_VAL, leaves = -HUGE_VAL;
     front.count = back.count = 0;
-    for (std::size_t i = 0; i < cell.count; ++i) {
-        const std::size_t j = i + 1 == cell.count ? 0 : i + 1;
-        if (d[i] >= 0) front.add(cell.corner[i]);
-        if (d[i] <= 0) back.add(cell.corner[i]);
-        Vec2 at = cell.corner[i];
+    for (std::size_t i = 0; i < part.count; ++i) {
+        const std::size_t j = i + 1 == part.count ? 0 : i + 1;
+        if (d[i] >= 0) front.add(part.corner[i]);
+        if (d[i] <= 0) back.add(part.corner[i]);
+        Vec2 at = part.corner[i];
         if (d[i] * d[j] < 0) {
-            at = at + (d[i] / (d[i] - d[j])) * (cell.corner[j] - at);
+            at = at + (d[i] / (d[i] - d[j])) * (part.corner[j] - at);
             front.add(at), back.add(at);
         } else if (d[i] != 0) {
             continue;
@@ -43,9 +43,9 @@ bool OccludedExchange::cut(const Cell& cell, const CriticalLine& line, Cell& fro
 
 /// Cuts a part of the receiver along the critical lines where their events lie, and adds triangles and quadrilaterals
 /// to cells_. A part with too many lines is halved first, as each half has fewer.
-void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
+void OccludedExchange::cut_into_cells(const Part& part, int depth) {
     finder_.find(frame_, part.corners(), pair_.source, visible_.seen_edges(), nearest_line * size_, most_lines, lines_);
-    Cell front, back;
+    Part front, back;
     if (lines_.size() >= most_lines && depth < most_searches) {
         std::size_t longest = 0;
         Vec2 along{};
@@ -56,7 +56,7 @@ void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
         const Vec2 n = (1 / std::sqrt(dot(along, along))) * along;
         const double offset = dot(n, 0.5 * (part.corner[longest] + part.corner[(longest + 1) % part.count]));
         if (cut(part, {n, offset, -HUGE_VAL, HUGE_VAL}, front, back)) {
-            const Cell other = back;
+            const Part other = back;
             cut_into_cells(front, depth + 1);
             cut_into_cells(other, depth + 1);
             return;
@@ -73,13 +73,13 @@ void OccludedExchange::cut_into_cells(const Cell& part, int depth) {
                 parts_.push_back(back);
             }
     }
-    for (const Cell& cell : parts_) {
+    for (const Part& convex : parts_) {
         std::size_t first = 1;
-        while (cell.count - first >= 2) {  // a fan of quadrilaterals, at last perhaps a triangle
+        while (convex.count - first >= 2) {  // a fan of quadrilaterals, at last perhaps a triangle
             Cell piece;
-            const std::size_t take = std::min<std::size_t>(3, cell.count - first);
-            piece.add(cell.corner[0]);
-            for (std::size_t i = 0; i < take; ++i) piece.add(cell.corner[first + i]);
+            const std::size_t take = std::min<std::size_t>(3, convex.count - first);
+            piece.add(convex.corner[0]);
+            for (std::size_t i = 0; i < take; ++i) piece.add(convex.corner[first + i]);
             first += take - 1;
             piece.complete = complete;
             cells_.push_back(piece);

@@ -284,7 +284,7 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     pair_ = pair;
     relative_ = demand.relative;
     frame_ = PlaneFrame(pair.receiver[0], pair.receiver_plane.n);
-    Cell whole;
+    Part whole;
     for (const Point& p : pair.receiver) whole.add(frame_.flat(p));
     const auto outlook = visible_.set(frame_, whole.corners(), pair.source, pair.blockers);
     if (outlook == VisibleFromMany::Outlook::hidden) return 0;

@@ -42,18 +42,34 @@ class OccludedExchange {
         void take(double F, Seen seen);
     };
 
-    struct Cell {
+    /// A convex part of the receiver. Copies take along the corners that there are.
+    struct Part {
         static constexpr std::size_t most = 16;
         std::size_t count = 0;
         std::array<Vec2, most> corner;
+
+        Part() = default;
+        Part(const Part& other) { *this = other; }
+        Part& operator=(const Part& other) {
+            count = other.count;
+            for (std::size_t i = 0; i < count; ++i) corner[i] = other.corner[i];
+            return *this;
+        }
+        void add(Vec2 p) {
+            if (count < most) corner[count++] = p;
+        }
+        std::span<const Vec2> corners() const { return std::span(corner).first(count); }
+    };
+    /// A triangle or quadrilateral of it.
+    struct Cell {
+        std::size_t count = 0;
+        std::array<Vec2, 4> corner;
         double area = 0, two_points = 0;  ///< m^2; the second is the integral by two Gauss points a side.
         double middle = 0;                ///< Form factor to what is seen from the middle.
         Glance glance;
         bool complete = false;  ///< No critical line that crosses it was left out.
 
-        void add(Vec2 p) {
-            if (count < most) corner[count++] = p;
-        }
+        void add(Vec2 p) { corner[count++] = p; }
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
     };
     /// A cell that is not done.
@@ -65,8 +81,8 @@ class OccludedExchange {
         int depth;
     };
 
-    void cut_into_cells(const Cell& part, int depth);
-    bool cut(const Cell& cell, const CriticalLine& line, Cell& front, Cell& back) const;
+    void cut_into_cells(const Part& part, int depth);
+    bool cut(const Part& part, const CriticalLine& line, Part& front, Part& back) const;
     double distance_to_source(const Cell& cell) const;
     double brightest(double d) const;
     bool is_under_an_edge(const Cell& cell) const;
@@ -95,7 +111,8 @@ class OccludedExchange {
     std::vector<Cell*> looking_;
     CriticalLineFinder finder_;
     std::vector<CriticalLine> lines_;
-    std::vector<Cell> cells_, parts_;
+    std::vector<Part> parts_;
+    std::vector<Cell> cells_;
     double size_ = 0, source_area_ = 0;
     double relative_ = 0;
     bool matters_ = false, dominates_ = false;
