@@ -64,8 +64,8 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     const double coarser = std::clamp(2.5 * error, error, std::max(error, coarsest));
     const Knobs coarse = knobs_for_error(coarser, pieces, options);
     out.solve_mesh = coarse.solve_mesh, out.solve_rays = coarse.solve_rays;
-    // Few elements leave few rays, whose noise would deal light out among them otherwise, and never average out.
-    out.solve_rays.average = 128;
+    // Few elements cast few rays, whose noise would deal light out among them otherwise, and never average out.
+    if (coarser == coarsest) out.solve_rays.average *= 4;
     out.gather_mesh = {edge_for(coarser), coarse.gather_mesh.grading_levels}, out.gather_tolerance = 0.4 * coarser;
     out.gather_element_share = coarse.gather_element_share;
     out.gather_curved = false;
