@@ -100,20 +100,47 @@ void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> va
     }
 }
 
-void keep_flux(ElementFunction& gathered, const ElementFunction& from, std::span<const double> kept) {
-    const auto flux = [](const ElementFunction& f, std::span<const double> share) {
-        const std::vector<ElementId> leaves = f.tree.leaves();
-        EXI_ASSERT(share.empty() || share.size() == leaves.size());
-        // A linear or bilinear function has its mean at the centre of its element.
-        return parallel_sum<Spectrum>(leaves.size(), [&](std::size_t i) {
-            return (share.empty() ? 1 : share[i]) * f.tree.area(leaves[i]) *
-                   f.at({leaves[i], f.tree.centre(leaves[i])});
-        });
+namespace {
+
+/// k of every region: the mean over the method's leaves, by what they reflect.
+Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& light) {
+    Field<RegionId, double> sent(scene.regions().size(), 0.0), kept(scene.regions().size(), 0.0);
+    for (std::size_t i = 0; i < light.kept.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const double power = light.tree.area(e) * mean(light.reflected[i]);
+        sent[light.tree.region(e)] += power;
+        kept[light.tree.region(e)] += light.kept[i] * power;
+    }
+    for (RegionId r : kept.ids()) kept[r] = sent[r] > 0 ? kept[r] / sent[r] : 1;
+    return kept;
+}
+
+}  // namespace
+
+void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+               const Spectrum& c) {
+    const Field<RegionId, double> kept = kept_by_region(scene, light);
+    Spectrum sent, first, gathered, again;  // W: in all; what arrives of direct light, and of E; E itself
+    const auto send = [&](RegionId region, const Spectrum& power, Spectrum& arriving) {
+        sent += power;
+        arriving += kept[region] * power;
     };
-    const Spectrum arriving = flux(from, kept);
-    if (!is_kept(arriving, flux(from, {}))) return;
-    const Spectrum scale = conserving_scale(arriving, flux(gathered, {}));
-    for (std::array<float, bands>& value : gathered.values)
+    for (RegionId r : scene.regions().ids()) send(r, scene.regions()[r].area * (c * scene.material(r).exitance), first);
+    for (ElementId e : direct.tree.leaves()) {
+        const RegionId r = direct.tree.region(e);
+        const Spectrum lit = (Spectrum(1.0) - c) * direct.fit[e].mean;
+        send(r, direct.tree.area(e) * (scene.material(r).reflectance * lit), first);
+    }
+    for (ElementId e : E.tree.leaves()) {
+        const RegionId r = E.tree.region(e);
+        // A linear or bilinear function has its mean at the centre of its element.
+        const Spectrum power = E.tree.area(e) * E.at({e, E.tree.centre(e)});
+        gathered += power;
+        send(r, scene.material(r).reflectance * power, again);
+    }
+    if (!is_kept(first + again, sent)) return;
+    const Spectrum scale = conserving_scale(first, gathered - again);
+    for (std::array<float, bands>& value : E.values)
         for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(scale[b] * value[b]);
 }
 

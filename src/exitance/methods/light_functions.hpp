@@ -23,10 +23,15 @@ ElementFunction polynomials_on_leaves(const GlobalLight& light);
 ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                                const Spectrum& c);
 
-/// Scales what was gathered from a function on the leaves of `kept`, by leaf number, to the flux that of it arrives,
-/// band by band: what rays and places of a local pass miss in the mean, a share of about 1e-3, would come back from
-/// every reflection and show in the energy balance. Nothing happens where much escapes (`is_kept`).
-void keep_flux(ElementFunction& gathered, const ElementFunction& from, std::span<const double> kept);
+/// Scales indirect light E, as gathered, to be what of it and of direct light arrives, band by band:
+///
+///     int E dA = int k (rho ((1 - c) E_dir + E) + c M) dA,
+///
+/// k from the leaves that the method solved on. In a closed scene this is the balance of what is emitted and absorbed.
+/// What rays and places of a local pass miss in the mean, a share of about 1e-3, is light dealt out otherwise than the
+/// method had it, among surfaces that reflect more and less of it. Nothing happens where much escapes (`is_kept`).
+void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+               const Spectrum& c);
 
 /// Reflected light of what a solution delivers, plus the share c of what is emitted: rho (E_ind + (1 - c) E_dir) + c M,
 /// where `indirect` holds E_ind + c E_dir and direct light is read as projected.

@@ -246,7 +246,7 @@ class Solver {
         if (gathers() && ElementGather::suits(stage_)) elements.emplace(stage_, light);
         gathered_ = {};
         ElementFunction indirect = gathers() ? gather(b, elements ? &*elements : nullptr, fresh_) : on_leaves();
-        if (gathers() && !light_->kept.empty()) keep_flux(indirect, light, light_->kept);
+        if (gathers() && !light_->kept.empty()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
             if (certificate_.points > 0) return false;

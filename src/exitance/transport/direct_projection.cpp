@@ -55,12 +55,14 @@ Spectrum light_weight(const Material& material) {
 
 namespace {
 
+constexpr unsigned rays_an_element = 16;  ///< For weak sources; more on elements larger than the first ones on average.
+
 /// The same where there are many elements: sources that do not count on this one are left to rays.
-DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double share,
+DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double share, unsigned rays,
                            SampledLight& sampled, ReceiverLight& light, DirectLight::Workspace& workspace) {
     const RegionId region = tree.region(e);
     const double allowed = share / tree.area(e);
-    const SampledLight::Estimate& of = sampled(tree, e, light_weight(stage.scene.material(region)), allowed);
+    const SampledLight::Estimate& of = sampled(tree, e, light_weight(stage.scene.material(region)), allowed, rays);
     stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, of.strong, light, workspace);
     DirectFit out = fit_values(stage, tree, e, light, workspace);
     for (Spectrum& corner : out.corners) corner += of.weak;
@@ -91,7 +93,7 @@ double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<con
         const double steps = std::ceil((area - next) * samples / stage.area);
         next += steps * stage.area / samples;
         const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-        flux += steps / samples * mean(w * sampled(tree, e, w, HUGE_VAL).weak);
+        flux += steps / samples * mean(w * sampled(tree, e, w, HUGE_VAL, rays_an_element).weak);
     }
     return flux * stage.area;
 }
@@ -107,8 +109,8 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         const double allowed = options.tolerance * flux / stage.area;
         return allowed * allowed * mean_area;
     };
-    // Where elements or emitters are few, or emitters large, all of them are looked at well. Then the elements tell what
-    // share of the squared error one may have.
+    // Where elements or emitters are few, or emitters large, all of them are looked at well. Then the elements tell
+    // what share of the squared error one may have.
     constexpr std::size_t few = 2000, few_emitters = 8;
     constexpr double small = 0.25;  // of all area
     double emitting = 0;
@@ -116,6 +118,12 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         emitting += stage.scene.regions()[emitter.region].area;
     const bool many = active.size() > few && stage.direct.emitters().size() > few_emitters &&
                       emitting < small * stage.area && stage.direct.beams().empty();
+    // The flux of weak sources is known best where rays lie evenly over the surfaces.
+    const auto rays_of = [&](ElementId e) {
+        const double rays = rays_an_element * out.tree.area(e) / mean_area;
+        return static_cast<unsigned>(
+            std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
+    };
     double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed)) : 0;
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
@@ -127,9 +135,9 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
                             SampledLight sampled(stage.direct, stage.tracer, options.seed);
                             for (std::size_t i = begin; i < end; ++i)
                                 out.fit[active[i]] =
-                                    many
-                                        ? fit_strong_light(stage, out.tree, active[i], share, sampled, light, workspace)
-                                        : fit_direct_light(stage, out.tree, active[i], light, workspace);
+                                    many ? fit_strong_light(stage, out.tree, active[i], share, rays_of(active[i]),
+                                                            sampled, light, workspace)
+                                         : fit_direct_light(stage, out.tree, active[i], light, workspace);
                         },
                         {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
         if (options.may_give_up && stop.requested()) return {};

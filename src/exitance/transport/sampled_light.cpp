@@ -11,14 +11,18 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned rays_an_element = 16;
+constexpr unsigned rays_for_sight = 16;  // an element
+
+double area_of(std::span<const Point> corners) {
+    double twice = 0;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        twice += norm(cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
+    return 0.5 * twice;
+}
 
 /// A place of a convex polygon with uniform density, from two numbers in [0, 1).
 Point uniform_on(std::span<const Point> corners, double s, double t) {
-    double whole = 0;
-    for (std::size_t i = 2; i < corners.size(); ++i)
-        whole += norm(cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
-    double rest = s * whole;
+    double rest = s * 2 * area_of(corners);
     for (std::size_t i = 2;; ++i) {
         const Vec3 a = corners[i - 1] - corners[0], b = corners[i] - corners[0];
         const double area = norm(cross(a, b));
@@ -29,6 +33,22 @@ Point uniform_on(std::span<const Point> corners, double s, double t) {
         rest -= area;
     }
 }
+
+/// Deals a whole number of rays out to one source after the other, to each within one of what it should have, and as
+/// many in all as chance leaves open: where rays of like worth are counted, hardly any chance is left.
+class Dealer {
+  public:
+    /// `begin`: uniform in [0, 1).
+    explicit Dealer(double begin) : sum_(begin) {}
+    unsigned deal(double expected) {
+        const double before = std::floor(sum_);
+        sum_ += expected;
+        return static_cast<unsigned>(std::floor(sum_) - before);
+    }
+
+  private:
+    double sum_;
+};
 
 constexpr std::size_t quad = 4;  ///< Corners; a triangle repeats its last one.
 
@@ -62,48 +82,53 @@ void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, d
             if (F <= 0) continue;
             const double both = radius + emitter.radius;
             const double near = std::min(1.0, both * both / squared_norm(emitter.centre - x));
-            sources_.push_back({{i, piece}, emitter.region, F * emitter.exitance, 0, near, {}});
+            sources_.push_back({{i, piece}, emitter.region, F, area_of(corners), F * emitter.exitance, 0, near, {}});
             all += mean(sources_.back().light);
         }
     }
-    for (Source& source : sources_) source.expected = rays_an_element * mean(source.light) / all;
+    for (Source& source : sources_) source.share = mean(source.light) / all;
 }
 
-double SampledLight::visible_part(const ElementTree& tree, ElementId e, std::size_t s, std::uint64_t purpose) {
-    const Source& source = sources_[s];
-    const std::uint64_t name = hash(e.value, source.name.piece.value, purpose);
-    RandomStream random(seed_, Stream::direct, name);
-    const unsigned rays = static_cast<unsigned>(source.expected + random.uniform());
+double SampledLight::visible_part(const ElementTree& tree, ElementId e, std::size_t s, unsigned of_all, unsigned rays,
+                                  Purpose purpose) {
     if (rays == 0) return 0;
-    const ScrambledSobol points(random.bits());
+    const Source& source = sources_[s];
+    const ScrambledSobol points(hash(seed_, static_cast<std::uint64_t>(Stream::direct), e.value,
+                                     source.name.piece.value, static_cast<std::uint64_t>(purpose)));
     const Normal& n = direct_.occluders().scene().regions()[tree.region(e)].plane.n;
     const Plane& plane = direct_.emitters()[source.name.emitter].plane;
-    from_.clear(), to_.clear();
+    from_.clear(), to_.clear(), kernel_.clear();
     for (std::uint32_t i = 0; i < rays; ++i) {
         const Point x = tree.patch(e).at(tree.uniform(e, points(i, 0), points(i, 1)));
         const Point y = uniform_on(direct_.occluders().corners(source.name.piece), points(i, 2), points(i, 3));
-        if (dot(n, y - x) <= 0 || plane.signed_distance(x) <= 0) continue;
-        from_.push_back(x), to_.push_back(y);
+        const Vec3 d = y - x;
+        const double above = dot(n, d), below = -dot(plane.n, d), squared = squared_norm(d);
+        if (above <= 0 || below <= 0) continue;
+        from_.push_back(x), to_.push_back(y), kernel_.push_back(above * below / (pi * squared * squared));
     }
     if (from_.empty()) return 0;
-    std::array<bool, rays_an_element + 1> blocked;
+    std::array<bool, most_rays + 1> blocked;
     tracer_.occluded(from_, to_, tree.region(e), source.region, std::span(blocked).first(from_.size()));
-    const auto open = std::count(blocked.begin(), blocked.begin() + static_cast<long>(from_.size()), false);
-    return static_cast<double>(open) / (static_cast<double>(from_.size()) * std::min(1.0, source.expected));
+    double sum = 0;
+    for (std::size_t i = 0; i < from_.size(); ++i) sum += blocked[i] ? 0 : kernel_[i];
+    return source.area * sum / (source.F * rays * std::min(1.0, of_all * source.share));
 }
 
 const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, ElementId e, const Spectrum& weight,
-                                                       double allowed) {
+                                                       double allowed, unsigned value_rays) {
+    EXI_CHECK(value_rays <= most_rays && rays_for_sight <= most_rays);
     const RegionId own = tree.region(e);
     const Point x = tree.patch(e).at(tree.centre(e));
     double radius = 0;
     for (const Point& corner : tree.outline(e)) radius = std::max(radius, norm(corner - x));
     find_sources(x, direct_.occluders().scene().regions()[own].plane.n, own, radius);
     // What is in sight is found by rays of its own: a source must not be thought weak because its light was missed.
-    enum : std::uint64_t { sight, value };
+    RandomStream random(seed_, Stream::direct, e.value);
+    Dealer for_sight(random.uniform()), for_value(random.uniform());
     for (std::size_t s = 0; s < sources_.size(); ++s)
-        if (visible_part(tree, e, s, sight) > 0)
-            sources_[s].in_sight = (1 / std::min(1.0, sources_[s].expected)) * sources_[s].light;
+        if (visible_part(tree, e, s, rays_for_sight, for_sight.deal(rays_for_sight * sources_[s].share),
+                         Purpose::sight) > 0)
+            sources_[s].in_sight = (1 / std::min(1.0, rays_for_sight * sources_[s].share)) * sources_[s].light;
     ranks_.clear();
     for (std::uint32_t s = 0; s < sources_.size(); ++s)
         ranks_.push_back({mean(sources_[s].in_sight), sources_[s].near * mean(sources_[s].light), s});
@@ -131,7 +156,8 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
         }
         in_sight = in_sight_with, astray = astray_with;
         estimate_.misfit_squared = misfit;
-        estimate_.weak += visible_part(tree, e, s, value) * sources_[s].light;
+        const unsigned rays = for_value.deal(value_rays * sources_[s].share);
+        estimate_.weak += visible_part(tree, e, s, value_rays, rays, Purpose::value) * sources_[s].light;
     }
     return estimate_;
 }

@@ -16,11 +16,11 @@ namespace exitance {
 /// hundreds of emitters shine through doors on thousands of small things, exact answers about most of them would cost
 /// more than they are worth.
 ///
-///     E of weak sources ~ sum of  M_s F(x, s) V_s,      V_s the share of n_s rays, E[n_s] = 16 w_s,
+///     E of weak sources ~ sum of  M_s A_s / n_s sum over n_s rays of  K(x_i, y_i) V(x_i, y_i),    E[n_s] = n w_s,
 ///
-/// x being the element's middle and w_s the part of s in the light as if nothing stood in it. Where 16 w_s < 1, chance
-/// decides on a ray, which then counts 1 / (16 w_s) times: the mean over many elements is right. One object serves one
-/// thread.
+/// between places x_i of the element and y_i of the source, K = cos cos / (pi r^2), and w_s the part of s in the light
+/// of the element's middle as if nothing stood in it. Where n w_s < 1, chance decides on a ray, which then counts 1 /
+/// (n w_s) times: the mean is right. One object serves one thread.
 class SampledLight {
   public:
     /// Both must outlive it.
@@ -31,16 +31,20 @@ class SampledLight {
         double misfit_squared = 0;                    ///< Mean of (w (E - weak))^2 that these may leave.
         std::vector<DirectLight::SourceName> strong;  ///< To be looked at well.
     };
-    /// As many sources are weak as together leave no more than `allowed` for the misfit, by weight w. About 30 ns a
-    /// source, and 32 rays.
-    const Estimate& operator()(const ElementTree& tree, ElementId e, const Spectrum& weight, double allowed);
+    /// As many sources are weak as together leave no more than `allowed` for the misfit, by weight w; they share n =
+    /// `rays` rays, at most `most_rays`. About 30 ns a source, and the rays.
+    const Estimate& operator()(const ElementTree& tree, ElementId e, const Spectrum& weight, double allowed,
+                               unsigned rays);
+    static constexpr unsigned most_rays = 1024;
 
   private:
     struct Source {
         DirectLight::SourceName name;
         RegionId region;
-        Spectrum light;     ///< As if nothing stood in between.
-        double expected;    ///< Rays.
+        double F;           ///< From the element's middle, as if nothing stood in between.
+        double area;        ///< m^2
+        Spectrum light;     ///< At the middle.
+        double share;       ///< In the light of all sources, as if nothing stood in between.
         double near;        ///< (radii / distance)^2: how much its light varies over the two, as part of it.
         Spectrum in_sight;  ///< All of it where some ray of its own got through, in the mean over elements.
     };
@@ -52,8 +56,12 @@ class SampledLight {
         auto operator<=>(const Rank&) const = default;
     };
     void find_sources(const Point& x, const Normal& n, RegionId own, double radius);
-    /// The part of its light that a source sends, by an own set of rays for each purpose; 0 if no ray was drawn.
-    double visible_part(const ElementTree& tree, ElementId e, std::size_t source, std::uint64_t purpose);
+    /// What rays are for: each has a set of its own.
+    enum class Purpose : std::uint64_t { sight, value };
+    /// The part of its light that a source sends, by `rays` rays, dealt to it as its share of `of_all`; 0 if it got
+    /// none.
+    double visible_part(const ElementTree& tree, ElementId e, std::size_t source, unsigned of_all, unsigned rays,
+                        Purpose purpose);
 
     const DirectLight& direct_;
     const RayTracer& tracer_;
@@ -64,6 +72,7 @@ class SampledLight {
     std::vector<Rank> ranks_;
     Estimate estimate_;
     std::vector<Point> from_, to_;
+    std::vector<double> kernel_;  ///< cos cos / (pi r^2) of each ray, 1/m^2.
 };
 
 }  // namespace exitance
