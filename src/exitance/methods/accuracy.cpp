@@ -28,8 +28,9 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     knobs.direct_tolerance = (options.visibility == VisibilityKind::fractional ? 2.5 : 4) * error;
     knobs.residual = 0.02 * error;
     knobs.link_error = 0.45 * error;
-    // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each. Elements take
-    // as many rays as they are, whatever their size: few to begin with, and where light turns sooner they are cut.
+    // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each. An element
+    // takes about as many rays whatever its size: few elements to begin with, and where light turns sooner they are
+    // cut.
     knobs.gather_curved = error < 0.03;
     knobs.gather_mesh = {edge_for_elements(pieces, count(!knobs.gather_curved ? 5 : error < 0.015 ? 2 : 1)), strips};
     const double rays = (knobs.gather_curved ? 0.3 : 0.55) * std::pow(0.5 / error, 4.0 / 3);

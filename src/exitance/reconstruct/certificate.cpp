@@ -246,9 +246,4 @@ Certificate Certifier::look() {
     return content_->judge();
 }
 
-Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
-                    const ReflectedLight& b, const CertificateOptions& options) {
-    return Certifier(stage, light, indirect, b, options).look();
-}
-
 }  // namespace exitance

@@ -62,8 +62,4 @@ class Certifier {
     std::unique_ptr<Content> content_;
 };
 
-/// The same by one look.
-Certificate certify(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
-                    const ReflectedLight& b, const CertificateOptions& options);
-
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exitance/core/random.hpp"
+#include "exitance/geometry/polygon.hpp"
 #include "exitance/transport/form_factor.hpp"
 
 namespace exitance {
@@ -13,16 +14,9 @@ namespace {
 
 constexpr unsigned rays_for_sight = 16;  // an element
 
-double area_of(std::span<const Point> corners) {
-    double twice = 0;
-    for (std::size_t i = 2; i < corners.size(); ++i)
-        twice += norm(cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
-    return 0.5 * twice;
-}
-
-/// A place of a convex polygon with uniform density, from two numbers in [0, 1).
-Point uniform_on(std::span<const Point> corners, double s, double t) {
-    double rest = s * 2 * area_of(corners);
+/// A place of a convex polygon of that area (m^2) with uniform density, from two numbers in [0, 1).
+Point uniform_on(std::span<const Point> corners, double area_of_all, double s, double t) {
+    double rest = s * 2 * area_of_all;
     for (std::size_t i = 2;; ++i) {
         const Vec3 a = corners[i - 1] - corners[0], b = corners[i] - corners[0];
         const double area = norm(cross(a, b));
@@ -60,6 +54,7 @@ SampledLight::SampledLight(const DirectLight& direct, const RayTracer& tracer, s
         for (PieceId piece : emitter.pieces) {
             const std::span<const Point> corners = direct_.occluders().corners(piece);
             quads_.add({corners[0], corners[1], corners[2], corners[std::min(corners.size(), quad) - 1]});
+            area_.push_back(0.5 * norm(area_vector(corners)));
         }
     F_.resize(quads_.size());
 }
@@ -82,7 +77,7 @@ void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, d
             if (F <= 0) continue;
             const double both = radius + emitter.radius;
             const double near = std::min(1.0, both * both / squared_norm(emitter.centre - x));
-            sources_.push_back({{i, piece}, emitter.region, F, area_of(corners), F * emitter.exitance, 0, near, {}});
+            sources_.push_back({{i, piece}, emitter.region, F, area_[first + k], F * emitter.exitance, 0, near, {}});
             all += mean(sources_.back().light);
         }
     }
@@ -97,10 +92,11 @@ double SampledLight::visible_part(const ElementTree& tree, ElementId e, std::siz
                                      source.name.piece.value, static_cast<std::uint64_t>(purpose)));
     const Normal& n = direct_.occluders().scene().regions()[tree.region(e)].plane.n;
     const Plane& plane = direct_.emitters()[source.name.emitter].plane;
+    const std::span<const Point> corners = direct_.occluders().corners(source.name.piece);
     from_.clear(), to_.clear(), kernel_.clear();
     for (std::uint32_t i = 0; i < rays; ++i) {
         const Point x = tree.patch(e).at(tree.uniform(e, points(i, 0), points(i, 1)));
-        const Point y = uniform_on(direct_.occluders().corners(source.name.piece), points(i, 2), points(i, 3));
+        const Point y = uniform_on(corners, source.area, points(i, 2), points(i, 3));
         const Vec3 d = y - x;
         const double above = dot(n, d), below = -dot(plane.n, d), squared = squared_norm(d);
         if (above <= 0 || below <= 0) continue;
@@ -141,9 +137,8 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     estimate_.weak = Spectrum();
     estimate_.misfit_squared = 0;
     estimate_.strong.clear();
-    // The middle stands for the element, and all of a source for the part that is in sight, which errs by (radii /
-    // distance)^2 at most and always to the same side: by half of what is allowed at most, whether a ray was drawn or
-    // not.
+    // Weak light counts as even over the element, and all of a source as in sight or not, where either may vary by
+    // (radii / distance)^2 of it: by half of what is allowed at most, whether a ray was drawn or not.
     constexpr double askew = 4;
     Spectrum in_sight, astray;
     for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {

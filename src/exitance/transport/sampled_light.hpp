@@ -2,7 +2,6 @@
 
 #include <compare>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "exitance/mesh/element_tree.hpp"
@@ -66,8 +65,9 @@ class SampledLight {
     const DirectLight& direct_;
     const RayTracer& tracer_;
     std::uint64_t seed_;
-    QuadBatch quads_;        ///< All pieces of all emitters, one after the other,
-    std::vector<double> F_;  ///< and what a place gets of each, could it see it.
+    QuadBatch quads_;           ///< All pieces of all emitters, one after the other,
+    std::vector<double> area_;  ///< their areas, m^2,
+    std::vector<double> F_;     ///< and what a place gets of each, could it see it.
     std::vector<Source> sources_;
     std::vector<Rank> ranks_;
     Estimate estimate_;
