@@ -54,7 +54,7 @@ SampledLight::SampledLight(const DirectLight& direct, const RayTracer& tracer, s
         for (PieceId piece : emitter.pieces) {
             const std::span<const Point> corners = direct_.occluders().corners(piece);
             quads_.add({corners[0], corners[1], corners[2], corners[std::min(corners.size(), quad) - 1]});
-            area_.push_back(0.5 * norm(area_vector(corners)));
+            area_.push_back(norm(area_vector(corners)));
         }
     F_.resize(quads_.size());
 }
