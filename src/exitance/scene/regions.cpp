@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "exitance/core/groups.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/scene/border.hpp"
 #include "exitance/scene/common_area.hpp"
@@ -136,26 +137,21 @@ Joiner::Union Joiner::unite(std::span<const std::uint32_t> set) const {
 void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& covering,
                      std::vector<std::uint32_t>& failed) {
     const auto n = static_cast<std::uint32_t>(faces_.size());
-    std::vector<std::uint32_t> members(n), first(n + 1, 0), roots;  // sets by their roots, their faces ascending
-    for (std::uint32_t f = 0; f < n; ++f) ++first[pairs_.root(f) + 1];
+    std::vector<std::uint32_t> root_of(n), roots;
     for (std::uint32_t f = 0; f < n; ++f) {
-        if (first[f + 1] > 0) roots.push_back(f);
-        first[f + 1] += first[f];
+        root_of[f] = pairs_.root(f);
+        if (root_of[f] == f) roots.push_back(f);
     }
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (std::uint32_t f = 0; f < n; ++f) members[next[pairs_.root(f)]++] = f;
-    const auto set_of = [&](std::size_t i) {
-        return std::span(members).subspan(first[roots[i]], first[roots[i] + 1] - first[roots[i]]);
-    };
+    const Groups sets(root_of, n);  // known by their roots
     std::vector<Union> unions(roots.size());
-    parallel_for(roots.size(), 256, [&](std::size_t i) { unions[i] = unite(set_of(i)); });
+    parallel_for(roots.size(), 256, [&](std::size_t i) { unions[i] = unite(sets[roots[i]]); });
     for (std::size_t i = 0; i < roots.size(); ++i) {
         Union& u = unions[i];
         if (!u.joined.loops.empty()) {
             out.push_back(std::move(u.joined));
             continue;
         }
-        for (std::uint32_t f : set_of(i)) {
+        for (std::uint32_t f : sets[roots[i]]) {
             const bool covers = std::binary_search(u.covering.begin(), u.covering.end(), f);
             (covers ? covering : failed).push_back(faces_[f]);
         }

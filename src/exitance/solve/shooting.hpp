@@ -28,9 +28,11 @@ struct ShootingOptions {
 };
 
 /// Progressive refinement [Cohen88], which is Southwell's relaxation [Gortler94]: again and again the patch with the
-/// most unshot power sends it to every element that sees it,
+/// most power to send sends it to every element that sees it,
 ///
 ///     dE_i = F_ij u_j,   E_i += dE_i,   u_p(i) += rho_i dE_i A_i / A_p(i),   u_j = 0.
+///
+/// If overshooting, it sends u_j and what it expects to be left with later, which then is missing: u_j = - expected.
 ///
 /// `unshot`: by patch, W/m^2, the light that the patches have yet to send; what is left in the end stays in it.
 /// `irradiance`: by receiver, W/m^2; what arrives is added to it. O(receivers) and one column a shot.

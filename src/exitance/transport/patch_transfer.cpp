@@ -155,7 +155,7 @@ void PatchTransfer::column(std::span<const ElementId> receivers, ElementId sourc
 
 DenseTransport::DenseTransport(const PatchTransfer& transfer, const LeafNumbering& numbering, const PatchLevel& level,
                                Progress& progress, const StopRequest& stop)
-    : level_(level), first_leaf_(level.patches.size() + 1, 0), leaves_(numbering.leaves.size()) {
+    : level_(level), leaves_of_(level.patch_of, level.patches.size()) {
     const std::size_t columns = level.patches.size(), rows = numbering.leaves.size();
     F_.assign(rows * columns, 0.0f);
     std::vector<float> column(rows);
@@ -164,10 +164,6 @@ DenseTransport::DenseTransport(const PatchTransfer& transfer, const LeafNumberin
         for (std::size_t i = 0; i < rows; ++i) F_[i * columns + j] = column[i];
         progress.advance(static_cast<double>(j + 1) / static_cast<double>(columns));
     }
-    for (std::uint32_t p : level.patch_of) ++first_leaf_[p + 1];
-    for (std::size_t p = 0; p < columns; ++p) first_leaf_[p + 1] += first_leaf_[p];
-    std::vector<std::uint32_t> next(first_leaf_.begin(), first_leaf_.end() - 1);
-    for (std::size_t i = 0; i < rows; ++i) leaves_[next[level.patch_of[i]]++] = static_cast<std::uint32_t>(i);
 }
 
 Spectrum DenseTransport::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {
@@ -176,8 +172,7 @@ Spectrum DenseTransport::gather_at(std::size_t receiver, std::span<const Spectru
     for (std::size_t p = 0; p < columns; ++p) {
         const double F = F_[receiver * columns + p];
         if (F == 0) continue;
-        for (std::uint32_t k = first_leaf_[p]; k < first_leaf_[p + 1]; ++k)
-            sum += (F * level_.share[leaves_[k]]) * radiosity[leaves_[k]];
+        for (std::uint32_t leaf : leaves_of_[p]) sum += (F * level_.share[leaf]) * radiosity[leaf];
     }
     return sum;
 }

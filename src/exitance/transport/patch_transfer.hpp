@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "exitance/core/groups.hpp"
 #include "exitance/core/progress.hpp"
 #include "exitance/transport/form_factor_batch.hpp"
 #include "exitance/transport/stage.hpp"
@@ -103,8 +104,8 @@ class DenseTransport final : public TransportOperator {
 
   private:
     const PatchLevel& level_;
-    std::vector<std::uint32_t> first_leaf_, leaves_;  ///< Leaves of each patch.
-    std::vector<float> F_;                            ///< Row of leaf i: F_[i * patches, (i + 1) * patches).
+    Groups leaves_of_;      ///< By patch.
+    std::vector<float> F_;  ///< Row of leaf i: F_[i * patches, (i + 1) * patches).
 };
 
 }  // namespace exitance
