@@ -118,8 +118,9 @@ std::uint32_t LeafFinder::deepest_around(std::uint32_t part, Vec2 lo, Vec2 hi) c
         const Node& node = nodes_[part];
         const double height = dot(node.normal, middle) - node.offset;
         const double reach = std::abs(node.normal.x) * half.x + std::abs(node.normal.y) * half.y;
-        const double margin = 1e-12 * (std::abs(node.normal.x) + std::abs(node.normal.y));  // rounding
-        if (std::abs(height) <= reach + margin) break;
+        // A cut along the side of the box, where most are, leaves it whole; the box's further sides belong to others.
+        const double rounding = 1e-12 * (std::abs(node.normal.x) + std::abs(node.normal.y));
+        if (std::abs(height) < reach - rounding) break;
         part = node.part[height > 0 ? 1 : 0];
     }
     return part;

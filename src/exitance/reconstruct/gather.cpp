@@ -32,25 +32,27 @@ void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId o
                  GatherWorkspace& w, unsigned first) {
     const Frame frame(n);
     const ScrambledSobol points(key);
-    w.origins.resize(1), w.square.resize(rays), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
-    for (std::vector<double>& coordinate : w.coordinates) coordinate.resize(rays);
+    w.origins.resize(1), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
+    for (std::size_t d = 0; d < 2; ++d) {
+        w.coordinates[d].resize(rays), w.sorted[d].resize(rays);
+        points.fill(first, static_cast<int>(d), w.coordinates[d]);
+    }
     w.origins[0] = x;
     // The tracer is fastest with packets of like directions. A power of two of these points fills every cell of a
     // grid over the unit square alike, sixteen points a cell: so a packet is a cell.
     const unsigned bits = rays > 16 ? static_cast<unsigned>(std::bit_width(rays)) - 5 : 0;
     const std::uint32_t columns = 1u << (bits - bits / 2), rows = 1u << (bits / 2), per_cell = rays / (columns * rows);
     w.filled.assign(columns * rows, 0);
-    for (int d = 0; d < 2; ++d) points.fill(first, d, w.coordinates[static_cast<std::size_t>(d)]);
     for (std::uint32_t k = 0; k < rays; ++k) {
         const double a = w.coordinates[0][k], b = w.coordinates[1][k];
         const std::uint32_t cell =
             static_cast<std::uint32_t>(a * columns) * rows + static_cast<std::uint32_t>(b * rows);
         const std::uint32_t place = cell * per_cell + w.filled[cell]++;
         EXI_ASSERT(w.filled[cell] <= per_cell);
-        w.square[place] = {a, b};
+        w.sorted[0][place] = a, w.sorted[1][place] = b;
         w.quarter[place] = static_cast<std::uint8_t>(4 * k / rays);
     }
-    cosine_directions(frame, w.square, w.directions);
+    cosine_directions(frame, w.sorted[0], w.sorted[1], w.directions);
     stage.tracer.nearest(w.origins, w.directions, own, w.hits);
     w.fronts.clear(), w.share.clear();
     for (std::uint32_t k = 0; k < rays; ++k) {

@@ -44,7 +44,7 @@ class PointwiseLight final : public ReflectedLight {
 struct GatherWorkspace {
     std::vector<Point> origins;                      ///< One: where all rays begin.
     std::array<std::vector<double>, 2> coordinates;  ///< Of points of the unit square in their own order;
-    std::vector<Vec2> square;                        ///< packet by packet, and what directions they stand for.
+    std::array<std::vector<double>, 2> sorted;       ///< packet by packet, and what directions they stand for.
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
     std::vector<std::uint8_t> quarter;  ///< Of the points' order that a ray comes from.

@@ -11,16 +11,14 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
     const Patch& patch = tree_.patch(e);
     const Frame frame(stage_.scene.regions()[tree_.region(e)].plane.n);
     const ScrambledSobol points(key);
-    origins_.resize(count), square_.resize(count), directions_.resize(count), hits_.resize(count);
+    origins_.resize(count), directions_.resize(count), hits_.resize(count);
     for (int d = 0; d < 4; ++d) {
         coordinates_[static_cast<std::size_t>(d)].resize(count);
         points.fill(first, d, coordinates_[static_cast<std::size_t>(d)]);
     }
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < count; ++k)
         origins_[k] = patch.at(tree_.uniform(e, coordinates_[2][k], coordinates_[3][k]));
-        square_[k] = {coordinates_[0][k], coordinates_[1][k]};
-    }
-    cosine_directions(frame, square_, directions_);
+    cosine_directions(frame, coordinates_[0], coordinates_[1], directions_);
     stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_);
     queries_.clear(), of_ray_.clear();
     std::fill(leaves.begin(), leaves.end(), missed);

@@ -29,7 +29,6 @@ class ElementRays {
     const ElementLocator& locator_;
     std::array<std::vector<double>, 4> coordinates_;  ///< Of the points that name the rays.
     std::vector<Point> origins_;
-    std::vector<Vec2> square_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> hits_;
     std::vector<LeafFinder::Query> queries_;

@@ -13,9 +13,6 @@ namespace {
 // As many quads at a time as one register holds: eight with AVX-512, else four. No lane looks at another, so that
 // nothing depends on which it is.
 using namespace lanes_of;
-using EightReals = double __attribute__((vector_size(64)));
-template <class Real>
-constexpr std::size_t lanes = sizeof(Real) / sizeof(double);
 template <class Real>
 constexpr int all_lanes = (1 << lanes<Real>)-1;
 constexpr std::size_t most_lanes = lanes<EightReals>;
@@ -275,12 +272,7 @@ struct Kernels {
 
 EXITANCE_KERNELS(plain, four::Real, )
 #ifdef __x86_64__
-#define EXITANCE_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]]
 EXITANCE_KERNELS(wide, EightReals, EXITANCE_AVX512)
-bool has_avx512() {
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-}
 const Kernels& fastest = has_avx512() ? wide : plain;
 #else
 const Kernels& fastest = plain;

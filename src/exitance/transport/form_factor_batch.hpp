@@ -7,12 +7,9 @@
 #include <vector>
 
 #include "exitance/geometry/vec.hpp"
+#include "exitance/transport/processor.hpp"
 
 namespace exitance {
-
-/// What a batch is evaluated with: the widest registers there are, or those that every processor has. The bits are the
-/// same; the second is there for tests.
-enum class Processor : std::uint8_t { fastest, any };
 
 /// Convex quads stored one array a coordinate, for evaluation several at a time. A triangle repeats its last corner.
 class QuadBatch {

@@ -11,6 +11,10 @@
 
 namespace exitance::lanes_of {
 
+using EightReals = double __attribute__((vector_size(64)));
+template <class Real>
+constexpr std::size_t lanes = sizeof(Real) / sizeof(double);
+
 template <class Real>
 struct VecOf {
     Real x, y, z;
@@ -54,7 +58,7 @@ template <class Real>
 EXITANCE_INLINE Real sqrt(const Real& v) {
     Real out;
 #pragma GCC unroll 8
-    for (std::size_t i = 0; i < sizeof v / sizeof(double); ++i) out[i] = std::sqrt(v[i]);
+    for (std::size_t i = 0; i < lanes<Real>; ++i) out[i] = std::sqrt(v[i]);
     return out;
 }
 /// a b + c, rounded once, for kernels whose bits do not depend on the width of registers: what the compiler contracts
@@ -63,7 +67,7 @@ template <class Real>
 EXITANCE_INLINE Real fused(const Real& a, const Real& b, const Real& c) {
     Real out;
 #pragma GCC unroll 8
-    for (std::size_t i = 0; i < sizeof out / sizeof(double); ++i) out[i] = __builtin_fma(a[i], b[i], c[i]);
+    for (std::size_t i = 0; i < lanes<Real>; ++i) out[i] = __builtin_fma(a[i], b[i], c[i]);
     return out;
 }
 template <class Real>

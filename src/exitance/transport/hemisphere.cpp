@@ -1,25 +1,24 @@
 #include "exitance/transport/hemisphere.hpp"
 
+#include <algorithm>
+
 #include "exitance/core/check.hpp"
 #include "exitance/transport/four.hpp"
 
 namespace exitance {
 namespace {
 
-using lanes_of::max;
-using lanes_of::sqrt;
-using lanes_of::VecOf;
+using namespace lanes_of;
 
-constexpr std::size_t lanes = 4;
-using Real = four::Real;
-
+template <class Real>
 struct SineAndCosine {
     Real sine, cosine;
 };
 
 /// Of an angle in [-pi/4, pi/4], by their series; exact but for rounding (terms left out are below 1e-17), alike on
 /// every machine, and several times as fast as the library's.
-EXITANCE_INLINE SineAndCosine sine_and_cosine(const Real& angle) {
+template <class Real>
+EXITANCE_INLINE SineAndCosine<Real> sine_and_cosine(const Real& angle) {
     const Real q = angle * angle;
     constexpr auto term = [](int n) { return 1.0 / (n * (n - 1.0)); };  // each from the one before it
     Real sine = q * 0 + 1, cosine = sine;
@@ -31,6 +30,7 @@ EXITANCE_INLINE SineAndCosine sine_and_cosine(const Real& angle) {
     return {angle * sine, cosine};
 }
 
+template <class Real>
 EXITANCE_INLINE VecOf<Real> around(const Frame& frame, const Real& a, const Real& b) {
     const Real s = 2 * a - 1, t = 2 * b - 1;
     const auto wide = max(s, -s) > max(t, -t);
@@ -44,22 +44,41 @@ EXITANCE_INLINE VecOf<Real> around(const Frame& frame, const Real& a, const Real
             to_world(frame.u.z, frame.v.z, frame.n.z)};
 }
 
+/// As many as there are lanes, from place k on; lanes without a pair repeat the last one.
+template <class Real>
+EXITANCE_INLINE void add_directions(const Frame& frame, std::span<const double> a, std::span<const double> b,
+                                    std::size_t k, std::span<Vec3> directions) {
+    const std::size_t count = std::min(lanes<Real>, a.size() - k);
+    Real s, t;
+    if (count == lanes<Real>) {
+        s = load<Real>(&a[k]), t = load<Real>(&b[k]);
+    } else {
+        for (std::size_t i = 0; i < lanes<Real>; ++i)
+            s[i] = a[std::min(k + i, a.size() - 1)], t[i] = b[std::min(k + i, a.size() - 1)];
+    }
+    const VecOf<Real> d = around(frame, s, t);
+    for (std::size_t i = 0; i < count; ++i) directions[k + i] = {d.x[i], d.y[i], d.z[i]};
+}
+
+EXITANCE_AVX512 void cosine_directions_by_eight(const Frame& frame, std::span<const double> a,
+                                                std::span<const double> b, std::span<Vec3> directions) {
+    for (std::size_t k = 0; k < a.size(); k += 8) add_directions<EightReals>(frame, a, b, k, directions);
+}
+
 }  // namespace
 
 Vec3 cosine_direction(const Frame& frame, double a, double b) {
-    const VecOf<Real> d = around(frame, Real{a, a, a, a}, Real{b, b, b, b});
-    return {d.x[0], d.y[0], d.z[0]};
+    Vec3 out;
+    cosine_directions(frame, {&a, 1}, {&b, 1}, {&out, 1}, Processor::any);
+    return out;
 }
 
-void cosine_directions(const Frame& frame, std::span<const Vec2> pairs, std::span<Vec3> directions) {
-    EXI_CHECK(pairs.size() == directions.size());
-    for (std::size_t first = 0; first < pairs.size(); first += lanes) {
-        const std::size_t count = std::min(lanes, pairs.size() - first);
-        Real a{}, b{};
-        for (std::size_t i = 0; i < count; ++i) a[i] = pairs[first + i].x, b[i] = pairs[first + i].y;
-        const VecOf<Real> d = around(frame, a, b);
-        for (std::size_t i = 0; i < count; ++i) directions[first + i] = {d.x[i], d.y[i], d.z[i]};
-    }
+void cosine_directions(const Frame& frame, std::span<const double> a, std::span<const double> b,
+                       std::span<Vec3> directions, Processor processor) {
+    EXI_CHECK(a.size() == directions.size() && b.size() == directions.size());
+    static const bool has_eight = has_avx512();
+    if (has_eight && processor == Processor::fastest) return cosine_directions_by_eight(frame, a, b, directions);
+    for (std::size_t k = 0; k < a.size(); k += four::lanes) add_directions<four::Real>(frame, a, b, k, directions);
 }
 
 }  // namespace exitance

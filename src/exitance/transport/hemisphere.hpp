@@ -4,6 +4,7 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/geometry/vec.hpp"
+#include "exitance/transport/processor.hpp"
 
 namespace exitance {
 
@@ -12,7 +13,9 @@ namespace exitance {
 /// Source: [Shirley97], [Malley88].
 Vec3 cosine_direction(const Frame& frame, double a, double b);
 
-/// The same for many, with the same bits: about 6 ns each. As many directions as pairs.
-void cosine_directions(const Frame& frame, std::span<const Vec2> pairs, std::span<Vec3> directions);
+/// The same for many, from as many of the first and of the second numbers, with the same bits: about 3 ns each with
+/// AVX-512, 6 without.
+void cosine_directions(const Frame& frame, std::span<const double> a, std::span<const double> b,
+                       std::span<Vec3> directions, Processor processor = Processor::fastest);
 
 }  // namespace exitance

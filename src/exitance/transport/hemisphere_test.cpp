@@ -7,17 +7,19 @@
 namespace exitance {
 namespace {
 
-TEST(CosineDirections, AreThoseOfOneByOneAndHaveUnitLength) {
+TEST(CosineDirections, AreThoseOfOneByOneOnAnyProcessorAndHaveUnitLength) {
     const Frame frame(normalized(Vec3{1, 2, -0.5}));
-    std::vector<Vec2> pairs = {{0.5, 0.5}, {0, 0}, {0.5, 0.2}, {1 - 0x1p-32, 0.3}};  // middle, corner, diagonal, edge
+    std::vector<double> a = {0.5, 0, 0.5, 1 - 0x1p-32}, b = {0.5, 0, 0.2, 0.3};  // middle, corner, diagonal, edge
     const ScrambledSobol points(1);
-    for (std::uint32_t k = 0; k < 31; ++k) pairs.push_back({points(k, 0), points(k, 1)});
-    std::vector<Vec3> many(pairs.size());
-    cosine_directions(frame, pairs, many);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        EXPECT_EQ(many[i], cosine_direction(frame, pairs[i].x, pairs[i].y));
-        EXPECT_NEAR(norm(many[i]), 1, 1e-12);
-        EXPECT_GT(dot(many[i], frame.n), 0);
+    for (std::uint32_t k = 0; k < 31; ++k) a.push_back(points(k, 0)), b.push_back(points(k, 1));
+    for (const Processor processor : {Processor::fastest, Processor::any}) {
+        std::vector<Vec3> many(a.size());
+        cosine_directions(frame, a, b, many, processor);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            EXPECT_EQ(many[i], cosine_direction(frame, a[i], b[i]));
+            EXPECT_NEAR(norm(many[i]), 1, 1e-12);
+            EXPECT_GT(dot(many[i], frame.n), 0);
+        }
     }
 }
 

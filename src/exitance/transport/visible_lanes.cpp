@@ -90,8 +90,7 @@ void look(const SightTables& tables, const double* u, const double* v, Views& vi
 }  // namespace of_eight
 #pragma GCC pop_options
 
-const bool has_eight = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+const bool has_eight = has_avx512();
 #endif
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "exitance/geometry/vec.hpp"
-#include "exitance/transport/form_factor_batch.hpp"
+#include "exitance/transport/processor.hpp"
 
 namespace exitance {
 
