@@ -1,5 +1,7 @@
 #include "exitance/core/random.hpp"
 
+#include "exitance/core/processor.hpp"
+
 namespace exitance {
 namespace {
 
@@ -49,15 +51,13 @@ std::uint32_t ScrambledSobol::sobol(std::uint32_t index, int dimension) {
 /// first is the index itself; the second, whose direction numbers are the rows of Pascal's triangle modulo 2, has as
 /// its bit i the parity of the index bits j with i a subset of j, bit by bit. So there is no table to look into, and
 /// the compiler works on many points at once.
-void ScrambledSobol::fill(std::uint32_t first, int dimension, std::span<double> coordinates) const {
+template <int dimension>
+EXITANCE_INLINE void ScrambledSobol::fill_reversed(std::uint32_t first, std::span<double> coordinates) const {
     const auto count = static_cast<std::uint32_t>(coordinates.size());
-    const std::uint32_t scramble = scramble_[static_cast<std::size_t>(dimension)];
-    if (dimension > 1) {
-        for (std::uint32_t k = 0; k < count; ++k) coordinates[k] = (*this)(first + k, dimension);
-        return;
-    }
+    const std::uint32_t shuffle = shuffle_, scramble = scramble_[dimension];
+    double* const out = coordinates.data();
     for (std::uint32_t k = 0; k < count; ++k) {
-        std::uint32_t bits = owen(first + k, shuffle_);
+        std::uint32_t bits = owen(first + k, shuffle);
         if (dimension == 1) {
             bits ^= bits >> 16 & 0x0000ffffu;
             bits ^= bits >> 8 & 0x00ff00ffu;
@@ -65,8 +65,23 @@ void ScrambledSobol::fill(std::uint32_t first, int dimension, std::span<double> 
             bits ^= bits >> 2 & 0x33333333u;
             bits ^= bits >> 1 & 0x55555555u;
         }
-        coordinates[k] = reverse(laine_karras(bits, scramble)) * 0x1p-32;
+        out[k] = reverse(laine_karras(bits, scramble)) * 0x1p-32;
     }
+}
+
+EXITANCE_AVX512 void ScrambledSobol::fill_wide(std::uint32_t first, int dimension,
+                                               std::span<double> coordinates) const {
+    dimension == 0 ? fill_reversed<0>(first, coordinates) : fill_reversed<1>(first, coordinates);
+}
+
+void ScrambledSobol::fill(std::uint32_t first, int dimension, std::span<double> coordinates) const {
+    static const bool wide = has_avx512();
+    if (dimension > 1)
+        for (std::uint32_t k = 0; k < coordinates.size(); ++k) coordinates[k] = (*this)(first + k, dimension);
+    else if (wide)
+        fill_wide(first, dimension, coordinates);
+    else
+        dimension == 0 ? fill_reversed<0>(first, coordinates) : fill_reversed<1>(first, coordinates);
 }
 
 }  // namespace exitance

@@ -79,6 +79,9 @@ class ScrambledSobol {
         return reverse(laine_karras(reverse(index), seed));
     }
     static std::uint32_t sobol(std::uint32_t index, int dimension);
+    template <int dimension>
+    void fill_reversed(std::uint32_t first, std::span<double> coordinates) const;
+    void fill_wide(std::uint32_t first, int dimension, std::span<double> coordinates) const;
 
     std::uint32_t shuffle_;
     std::array<std::uint32_t, 4> scramble_;

@@ -24,11 +24,12 @@ struct ElementLocator::Nearest {
     void look_at(std::span<const Root> roots, const Point& p) {
         for (const Root& r : roots) {
             const Vec2 at = r.coordinates(p);
-            if (r.holds(at)) {
-                root = &r, uv = at, distance = 0;
-                return;
-            }
-            const Vec2 held = r.held(at);
+            if (!r.holds(at)) continue;
+            root = &r, uv = at, distance = 0;
+            return;
+        }
+        for (const Root& r : roots) {  // only rounding leads here
+            const Vec2 at = r.coordinates(p), held = into_shape(at, r.shape);
             const double d = squared_length(r, at - held);
             if (d < distance) root = &r, uv = held, distance = d;
         }

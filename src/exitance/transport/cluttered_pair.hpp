@@ -52,7 +52,7 @@ class ClutteredExchange {
     std::vector<Part> parts_, next_;
     std::vector<Cell> heap_;  ///< The largest error first.
     struct Edge {
-        Point a, b;  ///< In the receiver's frame: two coordinates and the height.
+        Point a, b;   ///< In the receiver's frame: two coordinates and the height.
         bool is_cut;  ///< Has the receiver been cut along it?
     };
     std::vector<Edge> edges_;  ///< Of the blockers, off the receiver.

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "exitance/core/processor.hpp"
 #include "exitance/geometry/vec.hpp"
-#include "exitance/transport/processor.hpp"
 
 namespace exitance {
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "exitance/core/processor.hpp"
 #include "exitance/geometry/vec.hpp"
 
 // Several numbers at a time, for the kernels of this folder, in the compiler's own vector types, which become whatever
-// the processor has. Inlined always: a kernel that is made for several processors takes these along.
-#define EXITANCE_INLINE [[gnu::always_inline]] inline
+// the processor has.
 
 namespace exitance::lanes_of {
 

@@ -2,9 +2,9 @@
 
 #include <span>
 
+#include "exitance/core/processor.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/geometry/vec.hpp"
-#include "exitance/transport/processor.hpp"
 
 namespace exitance {
 

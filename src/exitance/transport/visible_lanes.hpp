@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "exitance/core/processor.hpp"
 #include "exitance/geometry/vec.hpp"
-#include "exitance/transport/processor.hpp"
 
 namespace exitance {
 

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-// For functions that are made twice: for every processor, and with this for those that have 512-bit registers.
+// Kernels are made twice: for every processor, and with EXITANCE_AVX512 for those that have 512-bit registers. They
+// take along what is EXITANCE_INLINE.
+#define EXITANCE_INLINE [[gnu::always_inline]] inline
 #ifdef __x86_64__
 #define EXITANCE_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]]
 #else
