@@ -9,6 +9,7 @@
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/linked_by_rays.hpp"
+#include "exitance/methods/linked_system.hpp"
 #include "exitance/methods/nodal_light.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/transport/cluster_refiner.hpp"
@@ -41,7 +42,8 @@ class Hierarchy {
           direct_(sites_),
           first_(sites_),
           b_(sites_),
-          refiner_(light_.tree, sites_) {}
+          refiner_(light_.tree, sites_),
+          system_(input, sites_) {}
 
     GlobalLight solve() {
         if (wants_clusters()) make_clusters();
@@ -110,11 +112,11 @@ class Hierarchy {
         const double demand = input_.knobs.link_error * light_norm();
         LinkTolerance tolerance = tolerance_of(demand / static_cast<double>(light_.numbering.leaves.size()));
         LeafLinks found = link_leaves(sites_, b_, tolerance, input_.stop);
-        links_.emplace(std::move(found.links));
+        system_.set_links(std::move(found.links));
         input_.progress.note(
             fmt::format("{} links between {} leaves ({:.0f}% of their light in the open), {} rays; error of rules and "
                         "visibility {:.3f}%",
-                        links_->size(), light_.numbering.leaves.size(), 100 * found.open_share, found.rays,
+                        system_.size(), light_.numbering.leaves.size(), 100 * found.open_share, found.rays,
                         100 * found.error / light_norm()));
         light_.rays += found.rays;
         light_.form_factors += found.form_factors;
@@ -240,8 +242,7 @@ class Hierarchy {
     void relax() {
         input_.progress.phase("solve");
         light_.numbering = LeafNumbering(light_.tree);
-        links_.emplace(refiner_.make_links());
-        if (far_) far_links_.emplace(far_->make_links());
+        system_.set_links(refiner_.make_links(), far_ ? std::optional(far_->make_links()) : std::nullopt);
         solve_on_links(first_, b_);
         if (!input_.options.importance.empty()) find_importance();
     }
@@ -258,10 +259,8 @@ class Hierarchy {
                 source.set_node(leaves[i], k, material(leaves[i]).reflectance * points[i]);
         source.pull();
         NodalField v = source;
-        const SolveReport of_light = light_.report;
-        solve_on_links(source, v);
-        light_.report = of_light;
-        gather_by_links(v, w);
+        system_.solve(source, v);
+        system_.gather(v, w);
         Field<ElementId, double> importance(light_.tree.size(), 0.0);
         double total = 0;
         for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -277,51 +276,11 @@ class Hierarchy {
         refiner_.set_importance(std::move(importance));
     }
 
-    /// x = rhs + rho F x for what leaves the elements, from the x that there is; both as pulled.
-    ///
-    /// Solved on the part of the hierarchy that links touch. Below its ends, where the mesh follows direct light, all
-    /// elements receive what the ends do, and the ends send what rhs and that come to: the answer is the same.
-    ///
-    /// `closed`: with all light that leaves made to arrive; then `scale_` says by how much more than links bring.
+    /// x = rhs + rho F x.
     void solve_on_links(const NodalField& rhs, NodalField& x, bool closed = false) {
-        const ClusterLinks* const far = far_links_ ? &*far_links_ : nullptr;
-        const ElementPart part = linked_part(sites_, *links_, far);
-        const LinkOperator F(sites_, *links_, far, part);
-        const std::size_t n = sites_.nodes();
-        std::vector<Spectrum> rho(F.size()), first(F.size()), value(F.size());
-        std::vector<double> area(F.size());
-        parallel_for(part.ends.size(), 256, [&](std::size_t i) {
-            const ElementId e = part.ends[i];
-            for (std::size_t k = 0; k < n; ++k) {
-                rho[i * n + k] = material(e).reflectance;
-                first[i * n + k] = rhs.node(e, k);
-                value[i * n + k] = x.node(e, k);
-                area[i * n + k] = light_.tree.area(e) * sites_.weight(e, k);
-            }
-        });
-        const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
-        // Links are gathered all at once, and higher orders are not symmetric.
-        const bool all_at_once = asked == Relaxation::jacobi || asked == Relaxation::chebyshev;
-        const Relaxation method = all_at_once ? asked : Relaxation::gmres;
         const std::size_t before = light_.report.iterations;
-        ConservingTransport conserving(F, area);
-        light_.report = solve_conserving({conserving, rho, first, area}, conserving, closed, method, value,
-                                         {.residual = 0.1 * input_.knobs.residual,
-                                          .max_iterations = input_.knobs.max_iterations,
-                                          .request = &input_.stop});
-        scale_ = conserving.scale();
+        light_.report = system_.solve(rhs, x, closed);
         light_.report.iterations += before;
-        x.clear();
-        parallel_for(part.ends.size(), 256, [&](std::size_t i) {
-            for (std::size_t k = 0; k < n; ++k)
-                x.set_node(part.ends[i], k, value[i * n + k] - first[i * n + k]);  // rho F x
-        });
-        x.push();
-        const std::vector<ElementId>& leaves = light_.numbering.leaves;
-        parallel_for(leaves.size(), 256, [&](std::size_t i) {
-            for (std::size_t k = 0; k < n; ++k) x.set_node(leaves[i], k, rhs.node(leaves[i], k) + x.node(leaves[i], k));
-        });
-        x.pull();
     }
 
     /// In a closed scene nothing of what is reflected may be lost.
@@ -330,7 +289,7 @@ class Hierarchy {
         if (!is_closed(input_.stage, light_.tree, light_.numbering, locator, input_.options.seed)) return;
         input_.progress.phase("solve");
         solve_on_links(first_, b_, true);
-        input_.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(scale_) - 1)));
+        input_.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(system_.scale()) - 1)));
     }
 
     /// Defect correction: rays, which know no links, find what these miss of F b in the mean of every leaf, and b = rho
@@ -367,19 +326,13 @@ class Hierarchy {
         light_.rays += rows.rays();
     }
 
-    void gather_by_links(const NodalField& b, NodalField& E) const {
-        links_->gather(b, E);
-        if (far_links_) far_links_->add_to(E, b);
-        E.push();
-    }
-
     /// E_ind of leaves, by the links, and by what rays found them to miss.
     NodalField gather() const {
         NodalField E(sites_);
-        gather_by_links(b_, E);
+        system_.gather(b_, E);
         parallel_for(light_.numbering.leaves.size(), 256, [&](std::size_t i) {
             const ElementId e = light_.numbering.leaves[i];
-            for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, scale_ * E.node(e, k));
+            for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, system_.scale() * E.node(e, k));
         });
         for (std::size_t i = 0; i < missed_.size(); ++i) {
             const ElementId e = light_.numbering.leaves[i];
@@ -408,9 +361,9 @@ class Hierarchy {
         NodalField E = gather();
         if (basis_.order() > 2) cut_for_delivery(E);
         write_nodal_light(sites_, direct_, E, input_.direct, light_);
-        light_.links = links_->size() + (far_links_ ? far_links_->size() : 0);
-        if (input_.options.keep_links) light_.kept_links = links_->list();
-        light_.link_memory_bytes = links_->memory_bytes() + (far_links_ ? far_links_->memory_bytes() : 0);
+        light_.links = system_.size();
+        if (input_.options.keep_links) light_.kept_links = system_.links().list();
+        light_.link_memory_bytes = system_.memory_bytes();
         light_.element_memory_bytes = light_.tree.memory_bytes() + sites_.memory_bytes() + 3 * b_.memory_bytes();
         light_.rays += rays();
         light_.form_factors = refiner_.form_factors();
@@ -423,11 +376,9 @@ class Hierarchy {
     LinkSites sites_;
     NodalField direct_, first_, b_;  ///< E_dir, rho E_dir, and all reflected light.
     LinkRefiner refiner_;
+    LinkedSystem system_;
     std::optional<ClusterTree> clusters_;  ///< None where every piece is linked to every other to begin with.
     std::optional<ClusterRefiner> far_;
-    std::optional<Links> links_;
-    std::optional<ClusterLinks> far_links_;
-    Spectrum scale_{1.0};           ///< Of what links bring, see ConservingTransport.
     std::vector<Spectrum> missed_;  ///< By the links, of E_ind; of every leaf, or empty.
 };
 

@@ -1,0 +1,60 @@
+#include "exitance/methods/linked_system.hpp"
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/solve/conserving_transport.hpp"
+
+namespace exitance {
+
+void LinkedSystem::set_links(Links near, std::optional<ClusterLinks> far) {
+    near_.emplace(std::move(near));
+    far_ = std::move(far);
+}
+
+SolveReport LinkedSystem::solve(const NodalField& rhs, NodalField& x, bool closed) {
+    const ElementTree& tree = sites_.tree();
+    const ClusterLinks* const far = far_ ? &*far_ : nullptr;
+    const ElementPart part = linked_part(sites_, *near_, far);
+    const LinkOperator F(sites_, *near_, far, part);
+    const std::size_t n = sites_.nodes();
+    std::vector<Spectrum> rho(F.size()), first(F.size()), value(F.size());
+    std::vector<double> area(F.size());
+    parallel_for(part.ends.size(), 256, [&](std::size_t i) {
+        const ElementId e = part.ends[i];
+        for (std::size_t k = 0; k < n; ++k) {
+            rho[i * n + k] = input_.stage.scene.material(tree.region(e)).reflectance;
+            first[i * n + k] = rhs.node(e, k);
+            value[i * n + k] = x.node(e, k);
+            area[i * n + k] = tree.area(e) * sites_.weight(e, k);
+        }
+    });
+    const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
+    // Links are gathered all at once, and higher orders are not symmetric.
+    const bool all_at_once = asked == Relaxation::jacobi || asked == Relaxation::chebyshev;
+    const Relaxation method = all_at_once ? asked : Relaxation::gmres;
+    ConservingTransport conserving(F, area);
+    const SolveReport report = solve_conserving({conserving, rho, first, area}, conserving, closed, method, value,
+                                                {.residual = 0.1 * input_.knobs.residual,
+                                                 .max_iterations = input_.knobs.max_iterations,
+                                                 .request = &input_.stop});
+    scale_ = conserving.scale();
+    x.clear();
+    parallel_for(part.ends.size(), 256, [&](std::size_t i) {
+        for (std::size_t k = 0; k < n; ++k)
+            x.set_node(part.ends[i], k, value[i * n + k] - first[i * n + k]);  // rho F x
+    });
+    x.push();
+    const std::vector<ElementId> leaves = tree.leaves();
+    parallel_for(leaves.size(), 256, [&](std::size_t i) {
+        for (std::size_t k = 0; k < n; ++k) x.set_node(leaves[i], k, rhs.node(leaves[i], k) + x.node(leaves[i], k));
+    });
+    x.pull();
+    return report;
+}
+
+void LinkedSystem::gather(const NodalField& b, NodalField& E) const {
+    near_->gather(b, E);
+    if (far_) far_->add_to(E, b);
+    E.push();
+}
+
+}  // namespace exitance
