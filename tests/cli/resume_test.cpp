@@ -62,6 +62,14 @@ TEST(ProgramResume, AnotherSolvesCheckpointIsRefusedWithStatusThree) {
     EXPECT_EQ(other.status, 3);
     EXPECT_NE(other.err.find("--seed was 1 and is 7"), std::string::npos) << other.err;
     EXPECT_NE(other.err.find("room.h5.checkpoint"), std::string::npos) << other.err;
+    // Another build may lay its state out otherwise; bytes after a program's end make it another one.
+    const std::string build = folder / "exitance";
+    std::filesystem::copy_file(EXITANCE_PROGRAM, build);
+    std::ofstream(build, std::ios::binary | std::ios::app) << "another";
+    RunningProgram rebuilt(solve(scene, folder, "room", {"--resume"}), {}, build);
+    const Finished refused = rebuilt.finish();
+    EXPECT_EQ(refused.status, 3);
+    EXPECT_NE(refused.err.find("the build was"), std::string::npos) << refused.err;
     EXPECT_EQ(run_program(solve(scene, folder, "room", {"--resume"})).status, 0);
 }
 

@@ -1,5 +1,7 @@
 #include "exitance/io/checkpoint_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <filesystem>
@@ -52,6 +54,15 @@ std::string difference(const CheckpointFacts& kept, const CheckpointFacts& own) 
     return kept.size() == own.size() ? "" : "it was made by another version";
 }
 
+/// States are laid out as the program that runs has them; its file tells it from any other.
+const std::string& program_fingerprint() {
+    static const std::string text = [] {
+        const Result<std::string> program = read_whole_file("/proc/self/exe");
+        return program ? fmt::format("{:016x}", checksum(*program)) : "unknown";
+    }();
+    return text;
+}
+
 }  // namespace
 
 std::string scene_fingerprint(const Scene& scene) {
@@ -67,15 +78,13 @@ std::string scene_fingerprint(const Scene& scene) {
         all.add(light.position), all.add(light.direction), all.add(light.intensity);
         all.add(light.inner_cone), all.add(light.outer_cone);
     }
-    constexpr char digits[] = "0123456789abcdef";
-    std::string text;
-    for (int shift = 60; shift >= 0; shift -= 4) text += digits[all.value() >> shift & 15];
-    return text;
+    return fmt::format("{:016x}", all.value());
 }
 
 CheckpointFile::CheckpointFile(std::string path, CheckpointFacts facts, double every)
     : path_(std::move(path)), facts_(std::move(facts)), every_(every) {
-    facts_.emplace_back("version", EXITANCE_VERSION);
+    facts_.emplace_back("the version", EXITANCE_VERSION);
+    facts_.emplace_back("the build", program_fingerprint());
 }
 
 Result<bool> CheckpointFile::load() {

@@ -20,7 +20,7 @@ std::string scene_fingerprint(const Scene& scene);
 /// that wrote it and on the same kind of machine only.
 class CheckpointFile final : public CheckpointStore {
   public:
-    /// The program's version is added to the facts. `every`: seconds from one checkpoint to the next; infinite: write
+    /// The program's version and build are added to the facts. `every`: seconds from one checkpoint to the next; infinite: write
     /// none.
     CheckpointFile(std::string path, CheckpointFacts facts, double every);
 
