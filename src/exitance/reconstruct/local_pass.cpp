@@ -14,9 +14,13 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
 }
 
 /// How much noisier than allowed. All elements of the first mesh may be alike if the error falls with the root of the
-/// rays; small ones count less.
+/// rays; small ones count less. Where many rays are needed, the next one takes away less: there more noise may stay,
+/// and less where few do. (The least rays for an error in the mean square leave noise in proportion to the root of the
+/// rays; half of that exponent, since both are estimates.)
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
-    const double allowed = demand.noise * std::pow(mean_area_ / tree_.area(e), 0.25);
+    const double usual = 4 * demand.rays.average;
+    const double dear = std::clamp(std::pow(sampled.place_rays / usual, 0.25), 0.5, 2.0);
+    const double allowed = demand.noise * dear * std::pow(mean_area_ / tree_.area(e), 0.25);
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
 
