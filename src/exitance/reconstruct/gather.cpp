@@ -6,15 +6,16 @@ namespace exitance {
 
 namespace {
 
-std::array<Spectrum, 4> quarter_sums(const ReflectedLight& b, GatherWorkspace& w) {
+/// What the rays cast last read, for each of their `places`.
+std::span<const QuarterSums> quarter_sums(const ReflectedLight& b, std::size_t places, GatherWorkspace& w) {
     w.values.resize(w.fronts.size());
     b.read(w.fronts, w.values);
-    std::array<Spectrum, 4> quarter{};
-    for (std::size_t k = 0; k < w.fronts.size(); ++k) quarter[w.share[k]] += w.values[k];
-    return quarter;
+    w.sums.assign(places, {});
+    for (std::size_t k = 0; k < w.fronts.size(); ++k) w.sums[w.share[k] / 4][w.share[k] % 4] += w.values[k];
+    return w.sums;
 }
 
-Gathered estimate(std::array<Spectrum, 4> quarter, unsigned rays) {
+Gathered estimate(QuarterSums quarter, unsigned rays) {
     Gathered out;
     for (Spectrum& q : quarter) {
         q *= 4.0 / rays;
@@ -26,59 +27,75 @@ Gathered estimate(std::array<Spectrum, 4> quarter, unsigned rays) {
     return out;
 }
 
-}  // namespace
-
-void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                 GatherWorkspace& w, unsigned first) {
-    const Frame frame(n);
-    const ScrambledSobol points(key);
-    w.origins.resize(1), w.directions.resize(rays), w.hits.resize(rays), w.quarter.resize(rays);
-    for (std::size_t d = 0; d < 2; ++d) {
-        w.coordinates[d].resize(rays), w.sorted[d].resize(rays);
-        points.fill(first, static_cast<int>(d), w.coordinates[d]);
-    }
-    w.origins[0] = x;
+/// `rays` rays from each of the places of a plane, those of their points from `first` on, and the fronts that they hit.
+void cast_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
+                   unsigned rays, unsigned first, GatherWorkspace& w) {
+    const std::size_t all = places.size() * rays;
+    w.origins.resize(all), w.directions.resize(all), w.hits.resize(all), w.quarter.resize(all);
+    for (std::size_t d = 0; d < 2; ++d) w.coordinates[d].resize(rays), w.sorted[d].resize(all);
     // The tracer is fastest with packets of like directions. A power of two of these points fills every cell of a
-    // grid over the unit square alike, sixteen points a cell: so a packet is a cell.
-    const unsigned bits = rays > 16 ? static_cast<unsigned>(std::bit_width(rays)) - 5 : 0;
-    const std::uint32_t columns = 1u << (bits - bits / 2), rows = 1u << (bits / 2), per_cell = rays / (columns * rows);
-    w.filled.assign(columns * rows, 0);
-    for (std::uint32_t k = 0; k < rays; ++k) {
-        const double a = w.coordinates[0][k], b = w.coordinates[1][k];
-        const std::uint32_t cell =
-            static_cast<std::uint32_t>(a * columns) * rows + static_cast<std::uint32_t>(b * rows);
-        const std::uint32_t place = cell * per_cell + w.filled[cell]++;
-        EXI_ASSERT(w.filled[cell] <= per_cell);
-        w.sorted[0][place] = a, w.sorted[1][place] = b;
-        w.quarter[place] = static_cast<std::uint8_t>(4 * k / rays);
+    // grid over the unit square alike: so a packet is a cell, with sixteen points of one place or with some of each.
+    constexpr std::size_t packet = 16;
+    const auto wanted = static_cast<unsigned>(packet / std::bit_floor(std::min(places.size(), packet)));
+    const unsigned per_cell = std::min(rays, wanted);
+    const int bits = std::bit_width(rays) - std::bit_width(per_cell);
+    const std::uint32_t columns = 1u << (bits - bits / 2), rows = 1u << (bits / 2);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const ScrambledSobol points(places[i].key);
+        for (int d = 0; d < 2; ++d) points.fill(first, d, w.coordinates[static_cast<std::size_t>(d)]);
+        w.filled.assign(columns * rows, 0);
+        for (std::uint32_t k = 0; k < rays; ++k) {
+            const double a = w.coordinates[0][k], b = w.coordinates[1][k];
+            const std::uint32_t cell =
+                static_cast<std::uint32_t>(a * columns) * rows + static_cast<std::uint32_t>(b * rows);
+            const std::size_t slot = (cell * places.size() + i) * per_cell + w.filled[cell]++;
+            EXI_ASSERT(w.filled[cell] <= per_cell);
+            w.sorted[0][slot] = a, w.sorted[1][slot] = b;
+            w.origins[slot] = places[i].x;
+            w.quarter[slot] = static_cast<std::uint32_t>(4 * i + 4 * k / rays);
+        }
     }
-    cosine_directions(frame, w.sorted[0], w.sorted[1], w.directions);
+    cosine_directions(Frame(n), w.sorted[0], w.sorted[1], w.directions);
     stage.tracer.nearest(w.origins, w.directions, own, w.hits);
     w.fronts.clear(), w.share.clear();
-    for (std::uint32_t k = 0; k < rays; ++k) {
+    for (std::size_t k = 0; k < all; ++k) {
         const RayHit& hit = w.hits[k];
         if (hit.surface.is_none() || !hit.front) continue;
-        w.fronts.push_back({hit.region, x + hit.distance * w.directions[k]});
+        w.fronts.push_back({hit.region, w.origins[k] + hit.distance * w.directions[k]});
         w.share.push_back(w.quarter[k]);
     }
 }
 
-Gathered read_gather(const ReflectedLight& b, GatherWorkspace& w) {
-    return estimate(quarter_sums(b, w), static_cast<unsigned>(w.hits.size()));
+}  // namespace
+
+void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
+                 GatherWorkspace& workspace) {
+    const GatherPlace place{x, key};
+    cast_together(stage, std::span(&place, 1), n, own, rays, 0, workspace);
 }
 
-void GrowingGather::grow(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
-                         std::uint64_t key, const ReflectedLight& b, GatherWorkspace& w) {
-    while (rays_ < rays) {
-        const unsigned more = rays_ == 0 ? rays : rays_;
-        cast_gather(stage, x, n, own, more, key, w, rays_);
-        const std::array<Spectrum, 4> fresh = quarter_sums(b, w);
-        // What there was becomes the first two quarters, what is new the others.
-        if (rays_ == 0)
-            quarter_ = fresh;
-        else
-            quarter_ = {quarter_[0] + quarter_[1], quarter_[2] + quarter_[3], fresh[0] + fresh[1], fresh[2] + fresh[3]};
-        rays_ += more;
+Gathered read_gather(const ReflectedLight& b, GatherWorkspace& w) {
+    return estimate(quarter_sums(b, 1, w)[0], static_cast<unsigned>(w.hits.size()));
+}
+
+void GrowingGather::add(const QuarterSums& fresh, unsigned more) {
+    // What there was becomes the first two quarters, what is new the others.
+    if (rays_ == 0)
+        quarter_ = fresh;
+    else
+        quarter_ = {quarter_[0] + quarter_[1], quarter_[2] + quarter_[3], fresh[0] + fresh[1], fresh[2] + fresh[3]};
+    rays_ += more;
+}
+
+void grow_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
+                   unsigned rays, const ReflectedLight& b, std::span<GrowingGather* const> growing,
+                   GatherWorkspace& w) {
+    if (places.empty()) return;
+    for (unsigned before = growing[0]->rays(); before < rays; before = growing[0]->rays()) {
+        const unsigned more = before == 0 ? rays : before;
+        cast_together(stage, places, n, own, more, before, w);
+        const std::span<const QuarterSums> fresh = quarter_sums(b, places.size(), w);
+        for (std::size_t i = 0; i < places.size(); ++i) growing[i]->add(fresh[i], more);
     }
 }
 

@@ -40,18 +40,28 @@ class PointwiseLight final : public ReflectedLight {
     RadiosityAt b_;
 };
 
-/// Room for the rays of one gather; one a thread.
+/// A place of a region to gather at, and the name of its directions.
+struct GatherPlace {
+    Point x;
+    std::uint64_t key;
+};
+
+/// Sums of b over the four quarters of a place's rays.
+using QuarterSums = std::array<Spectrum, 4>;
+
+/// Room for the rays of places that are gathered at together; one a thread.
 struct GatherWorkspace {
-    std::vector<Point> origins;                      ///< One: where all rays begin.
-    std::array<std::vector<double>, 2> coordinates;  ///< Of points of the unit square in their own order;
-    std::array<std::vector<double>, 2> sorted;       ///< packet by packet, and what directions they stand for.
+    std::array<std::vector<double>, 2> coordinates;  ///< Of one place's points of the unit square in their own order;
+    std::array<std::vector<double>, 2> sorted;       ///< of all, packet by packet, and what rays they stand for.
+    std::vector<Point> origins;
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
-    std::vector<std::uint8_t> quarter;  ///< Of the points' order that a ray comes from.
-    std::vector<HitPoint> fronts;       ///< What there is to read,
-    std::vector<std::uint8_t> share;    ///< the quarter that it counts in,
-    std::vector<Spectrum> values;       ///< and what was read.
-    std::vector<std::uint32_t> filled;  ///< Rays in each cell so far.
+    std::vector<std::uint32_t> quarter;  ///< 4 times the place that a ray comes from, and the quarter of its points.
+    std::vector<HitPoint> fronts;        ///< What there is to read,
+    std::vector<std::uint32_t> share;    ///< the quarter that it counts in,
+    std::vector<Spectrum> values;        ///< what was read,
+    std::vector<QuarterSums> sums;       ///< and what it makes for each place.
+    std::vector<std::uint32_t> filled;   ///< Rays in each cell so far.
 };
 
 /// An estimate and how far it may be off.
@@ -71,25 +81,30 @@ Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, R
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
                           std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace);
 
-/// Its two steps, for those who read several functions with the same rays: cast them, then read b where they hit. The
-/// rays are those of the points from `first` on, a multiple of their number.
+/// Its two steps, for those who read several functions with the same rays: cast them, then read b where they hit.
 void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                 GatherWorkspace& workspace, unsigned first = 0);
+                 GatherWorkspace& workspace);
 Gathered read_gather(const ReflectedLight& b, GatherWorkspace& workspace);
 
 /// A gather that can go on where its variance turns out too large: n rays, then the next n, then the next 2 n, are the
 /// same gather as 4 n at once.
 class GrowingGather {
   public:
-    /// Casts the rays that are missing to `rays` in all: a power of two, at least 4.
-    void grow(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-              const ReflectedLight& b, GatherWorkspace& workspace);
+    /// Adds the next `more` rays: as many as there are, or the first.
+    void add(const QuarterSums& fresh, unsigned more);
     unsigned rays() const { return rays_; }
     Gathered gathered() const;
 
   private:
     unsigned rays_ = 0;
-    std::array<Spectrum, 4> quarter_{};  ///< Sums of b.
+    QuarterSums quarter_{};
 };
+
+/// Casts the rays that each place of a plane is missing to `rays` in all: a power of two, at least 4. `growing[i]`
+/// belongs to places[i]; all of them have as many rays so far. Rays of like directions are traced together, whichever
+/// place they come from.
+void grow_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
+                   unsigned rays, const ReflectedLight& b, std::span<GrowingGather* const> growing,
+                   GatherWorkspace& workspace);
 
 }  // namespace exitance

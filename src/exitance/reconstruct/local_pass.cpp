@@ -45,15 +45,21 @@ unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& pla
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
     w.gathered.assign(places.size(), {});
+    w.short_places.clear(), w.short_of.clear();
+    const unsigned most = more ? 2 * rays : rays;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Point x = tree_.patch(e).at(places[i].uv);
-        if (demand.elements == nullptr) {
-            const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, i);
-            w.growing[i].grow(stage_, x, n, region, more && i % 2 == 1 ? 2 * rays : rays, key, b, w.rays);
-            w.gathered[i] = w.growing[i].gathered();
-        } else if (!stage_.occluders.is_covered(x, n, region)) {
-            w.gathered[i].irradiance = (*demand.elements)(x, n, region, demand.element_share, w.elements);
+        if (demand.elements != nullptr) {
+            if (!stage_.occluders.is_covered(x, n, region))
+                w.gathered[i].irradiance = (*demand.elements)(x, n, region, demand.element_share, w.elements);
+        } else if (w.growing[i].rays() < most && !(more && i % 2 == 0)) {
+            w.short_places.push_back({x, hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, i)});
+            w.short_of.push_back(&w.growing[i]);
         }
+    }
+    if (demand.elements == nullptr) {
+        grow_together(stage_, w.short_places, n, region, most, b, w.short_of, w.rays);
+        for (std::size_t i = 0; i < places.size(); ++i) w.gathered[i] = w.growing[i].gathered();
     }
     const auto count = static_cast<unsigned>(places.size());
     return rays * (count + (more ? count / 2 : 0));

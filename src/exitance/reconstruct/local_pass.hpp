@@ -71,6 +71,8 @@ class LocalPass {
         ElementGather::Workspace elements;
         std::vector<GrowingGather> growing;  ///< One a place.
         std::vector<Gathered> gathered;
+        std::vector<GatherPlace> short_places;  ///< Those that want more rays,
+        std::vector<GrowingGather*> short_of;   ///< and what they have.
     };
 
     /// Sums over all elements sampled so far of their area times what quarters and halves of their rays tell of the
