@@ -222,7 +222,8 @@ class Solver {
             reach(Step::certify);
         }
         progress_.phase("certify");
-        CertificateOptions look{.error = options_.error_target()};
+        CertificateOptions look{.error = options_.error_target(),
+                                .points = CertificateOptions::points_for(solution_.indirect.tree.leaves().size())};
         if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
         certify_solution(look, options_.error_demand());
         statistics().seconds["certify"] += watch.restart();

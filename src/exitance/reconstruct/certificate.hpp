@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "exitance/reconstruct/local_pass.hpp"
@@ -11,8 +12,10 @@ namespace exitance {
 struct CertificateOptions {
     double error = 0.02;  ///< The relative error that is to be resolved: it sets the number of points and rays.
     std::uint64_t seed = 1;
-    std::size_t points = 1280;        ///< How many the residual is measured at by one look.
-    bool direct_in_elements = false;  ///< Does the delivered function hold the emitters' light too?
+    std::size_t points = points_for(0);  ///< How many the residual is measured at by one look.
+    bool direct_in_elements = false;     ///< Does the delivered function hold the emitters' light too?
+    /// Enough for a delivered function of so many leaves: where they are many, few of them may hold most of the error.
+    static std::size_t points_for(std::size_t leaves) { return std::max<std::size_t>(1280, leaves / 16); }
     /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
     /// rays in proportion to those that it took. Null when there was none.
     const Field<ElementId, LocalPassReport::Leaf>* leaves = nullptr;
