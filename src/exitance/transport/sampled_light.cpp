@@ -77,37 +77,42 @@ void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, d
             if (F <= 0) continue;
             const double both = radius + emitter.radius;
             const double near = std::min(1.0, both * both / squared_norm(emitter.centre - x));
-            sources_.push_back({{i, piece}, emitter.region, F, area_[first + k], F * emitter.exitance, 0, near, {}});
+            sources_.push_back(
+                {{i, piece}, emitter.region, F, area_[first + k], F * emitter.exitance, 0, near, {}, 0, 0});
             all += mean(sources_.back().light);
         }
     }
     for (Source& source : sources_) source.share = mean(source.light) / all;
 }
 
-double SampledLight::visible_part(const ElementTree& tree, ElementId e, std::size_t s, unsigned of_all, unsigned rays,
-                                  Purpose purpose) {
-    if (rays == 0) return 0;
-    const Source& source = sources_[s];
+void SampledLight::add_rays(const ElementTree& tree, ElementId e, std::uint32_t s, unsigned rays, Purpose purpose) {
+    Source& source = sources_[s];
+    source.rays = rays, source.arrived = 0;
+    if (rays == 0) return;
     const ScrambledSobol points(hash(seed_, static_cast<std::uint64_t>(Stream::direct), e.value,
                                      source.name.piece.value, static_cast<std::uint64_t>(purpose)));
-    const Normal& n = direct_.occluders().scene().regions()[tree.region(e)].plane.n;
+    const RegionId own = tree.region(e);
+    const Normal& n = direct_.occluders().scene().regions()[own].plane.n;
     const Plane& plane = direct_.emitters()[source.name.emitter].plane;
     const std::span<const Point> corners = direct_.occluders().corners(source.name.piece);
-    from_.clear(), to_.clear(), kernel_.clear();
     for (std::uint32_t i = 0; i < rays; ++i) {
         const Point x = tree.patch(e).at(tree.uniform(e, points(i, 0), points(i, 1)));
         const Point y = uniform_on(corners, source.area, points(i, 2), points(i, 3));
         const Vec3 d = y - x;
         const double above = dot(n, d), below = -dot(plane.n, d), squared = squared_norm(d);
         if (above <= 0 || below <= 0) continue;
-        from_.push_back(x), to_.push_back(y), kernel_.push_back(above * below / (pi * squared * squared));
+        from_.push_back({x, own}), to_.push_back({y, source.region});
+        rays_.push_back({above * below / (pi * squared * squared), s});
     }
-    if (from_.empty()) return 0;
+}
+
+void SampledLight::trace_rays() {
     std::array<bool, most_rays + 1> blocked;
-    tracer_.occluded(from_, to_, tree.region(e), source.region, std::span(blocked).first(from_.size()));
-    double sum = 0;
-    for (std::size_t i = 0; i < from_.size(); ++i) sum += blocked[i] ? 0 : kernel_[i];
-    return source.area * sum / (source.F * rays * std::min(1.0, of_all * source.share));
+    EXI_CHECK(rays_.size() <= blocked.size());
+    tracer_.occluded(from_, to_, std::span(blocked).first(rays_.size()));
+    for (std::size_t i = 0; i < rays_.size(); ++i)
+        if (!blocked[i]) sources_[rays_[i].source].arrived += rays_[i].kernel;
+    from_.clear(), to_.clear(), rays_.clear();
 }
 
 const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, ElementId e, const Spectrum& weight,
@@ -121,10 +126,11 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     // What is in sight is found by rays of its own: a source must not be thought weak because its light was missed.
     RandomStream random(seed_, Stream::direct, e.value);
     Dealer for_sight(random.uniform()), for_value(random.uniform());
-    for (std::size_t s = 0; s < sources_.size(); ++s)
-        if (visible_part(tree, e, s, rays_for_sight, for_sight.deal(rays_for_sight * sources_[s].share),
-                         Purpose::sight) > 0)
-            sources_[s].in_sight = (1 / std::min(1.0, rays_for_sight * sources_[s].share)) * sources_[s].light;
+    for (std::uint32_t s = 0; s < sources_.size(); ++s)
+        add_rays(tree, e, s, for_sight.deal(rays_for_sight * sources_[s].share), Purpose::sight);
+    trace_rays();
+    for (Source& source : sources_)
+        if (source.arrived > 0) source.in_sight = (1 / std::min(1.0, rays_for_sight * source.share)) * source.light;
     ranks_.clear();
     for (std::uint32_t s = 0; s < sources_.size(); ++s)
         ranks_.push_back({mean(sources_[s].in_sight), sources_[s].near * mean(sources_[s].light), s});
@@ -141,6 +147,7 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     // (radii / distance)^2 of it: by half of what is allowed at most, whether a ray was drawn or not.
     constexpr double askew = 4;
     Spectrum in_sight, astray;
+    for (Source& source : sources_) source.arrived = 0;
     for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {
         const Spectrum in_sight_with = in_sight + sources_[s].in_sight;
         const Spectrum astray_with = astray + sources_[s].near * sources_[s].light;
@@ -151,8 +158,14 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
         }
         in_sight = in_sight_with, astray = astray_with;
         estimate_.misfit_squared = misfit;
-        const unsigned rays = for_value.deal(value_rays * sources_[s].share);
-        estimate_.weak += visible_part(tree, e, s, value_rays, rays, Purpose::value) * sources_[s].light;
+        add_rays(tree, e, s, for_value.deal(value_rays * sources_[s].share), Purpose::value);
+    }
+    trace_rays();
+    for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {
+        const Source& source = sources_[s];
+        if (source.arrived == 0) continue;
+        const double expected = source.F * source.rays * std::min(1.0, value_rays * source.share);
+        estimate_.weak += source.area * source.arrived / expected * source.light;
     }
     return estimate_;
 }

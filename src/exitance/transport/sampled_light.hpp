@@ -46,6 +46,12 @@ class SampledLight {
         double share;       ///< In the light of all sources, as if nothing stood in between.
         double near;        ///< (radii / distance)^2: how much its light varies over the two, as part of it.
         Spectrum in_sight;  ///< All of it where some ray of its own got through, in the mean over elements.
+        unsigned rays;      ///< Of the purpose at hand, 0 or more,
+        double arrived;     ///< and the sum of K V over them, 1/m^2.
+    };
+    struct Ray {
+        double kernel;  ///< cos cos / (pi r^2), 1/m^2
+        std::uint32_t source;
     };
     /// What sources are ordered by, the weakest first: what is in sight of them, then how far they may be astray.
     struct Rank {
@@ -57,10 +63,9 @@ class SampledLight {
     void find_sources(const Point& x, const Normal& n, RegionId own, double radius);
     /// What rays are for: each has a set of its own.
     enum class Purpose : std::uint64_t { sight, value };
-    /// The part of its light that a source sends, by `rays` rays, dealt to it as its share of `of_all`; 0 if it got
-    /// none.
-    double visible_part(const ElementTree& tree, ElementId e, std::size_t source, unsigned of_all, unsigned rays,
-                        Purpose purpose);
+    /// So many rays from the element to a source, to be traced with those of the others: packets of rays are filled.
+    void add_rays(const ElementTree& tree, ElementId e, std::uint32_t source, unsigned rays, Purpose purpose);
+    void trace_rays();
 
     const DirectLight& direct_;
     const RayTracer& tracer_;
@@ -71,8 +76,8 @@ class SampledLight {
     std::vector<Source> sources_;
     std::vector<Rank> ranks_;
     Estimate estimate_;
-    std::vector<Point> from_, to_;
-    std::vector<double> kernel_;  ///< cos cos / (pi r^2) of each ray, 1/m^2.
+    std::vector<SurfacePoint> from_, to_;
+    std::vector<Ray> rays_;
 };
 
 }  // namespace exitance
