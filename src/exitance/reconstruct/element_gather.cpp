@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "exitance/transport/form_factor.hpp"
+#include "exitance/transport/quad_lanes.hpp"
+
 namespace exitance {
 namespace {
 
-bool is_triangle(const std::array<Vec2, 4>& uv) {
-    return uv[2] == uv[3];
-}
+using namespace lanes_of;
+using four::Real;
 
 Spectrum larger(const Spectrum& a, const Spectrum& b) {
     Spectrum out;
@@ -34,214 +36,414 @@ bool ElementGather::suits(const Stage& stage) {
     return stage.occluders.has_nothing_inside() && stage.pieces.size() <= most;
 }
 
-/// From the leaves up.
-ElementGather::ElementGather(const Stage& stage, const ElementFunction& b) : b_(b) {
-    const ElementTree& tree = b_.tree;
-    nodes_.resize(tree.size()), moments_.resize(tree.size());
-    is_quad_.resize(tree.size()), is_dark_.resize(tree.size());
-    for (std::size_t i = tree.size(); i-- > 0;) {
-        const ElementId e(i);
-        is_quad_[e] = tree.domain(e).size() <= 4;
-        if (tree.is_leaf(e)) {
-            const Normal& n = stage.scene.regions()[tree.region(e)].plane.n;
-            is_dark_[e] = stage.occluders.is_covered(tree.patch(e).at(tree.centre(e)), n, tree.region(e));
-            nodes_[e] = is_dark_[e] ? Node() : leaf_node(e);
-            nodes_[e].centre = tree.patch(e).at(tree.centre(e));
-            for (std::size_t k = 0; k < bands; ++k)
-                for (std::size_t c = 0; c < (nodes_[e].triangle ? 3 : 4); ++c)
-                    moments_[e][k] =
-                        moments_[e][k] + nodes_[e].lean[c][k] / 12 * (nodes_[e].corners[c] - nodes_[e].centre);
-            continue;
+// ------------------------------------------------------------------------------------------------------ the hierarchy
+
+/// Light of an element, or of a part of a leaf.
+struct ElementGather::Node {
+    std::array<Point, 4> corners;
+    bool triangle = false;
+    Point centre;
+    double radius = 0;
+    Spectrum mean;
+    std::array<Spectrum, 4> lean{};
+    Spectrum rest;
+
+    Node() = default;
+    /// Of a parallelogram or a triangle, by b at its corners.
+    Node(const std::array<Point, 4>& at, const std::array<Spectrum, 4>& b, bool is_triangle)
+        : corners(at), triangle(is_triangle) {
+        const std::size_t count = triangle ? 3 : 4;
+        for (std::size_t i = 0; i < count; ++i) {
+            centre = centre + 1.0 / static_cast<double>(count) * corners[i];
+            mean += 1.0 / static_cast<double>(count) * b[i];
         }
-        is_dark_[e] = true;
-        for (ElementId child : tree.children(e)) is_dark_[e] &= is_dark_[child];
-        nodes_[e] = inner_node(e);
+        for (std::size_t i = 0; i < 4; ++i) lean[i] = b[i] - mean;
+        find_radius();
+    }
+
+    void find_radius() {
+        for (const Point& corner : corners) radius = std::max(radius, norm(corner - centre));
+    }
+    Spectrum slope() const {
+        Spectrum out;
+        for (const Spectrum& l : lean) out = larger(out, magnitude(l));
+        return out;
+    }
+};
+
+void ElementGather::Group::set(std::size_t lane, const Node& node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t c = 0; c < 4; ++c) corners[c][axis][lane] = node.corners[c][axis];
+        centre[axis][lane] = node.centre[axis];
+    }
+    radius[lane] = node.radius;
+    inward[lane] = node.triangle ? 0.5 : 0.5773502691896257;  // halfway, or 1 / sqrt(3)
+    last[lane] = node.triangle ? 0.5 : 1;
+    const Spectrum node_slope = node.slope();
+    for (std::size_t k = 0; k < bands; ++k) {
+        mean[k][lane] = node.mean[k], slope[k][lane] = node_slope[k], rest[k][lane] = node.rest[k];
+        for (std::size_t c = 0; c < 4; ++c) lean[c][k][lane] = node.lean[c][k];
     }
 }
 
-ElementGather::Part ElementGather::part_of(ElementId leaf, const std::array<Vec2, 4>& uv) const {
-    const Patch& patch = b_.tree.patch(leaf);
-    Part out{{}, leaf, uv};
-    Node& node = out.node;
-    node.triangle = is_triangle(uv);
-    const std::size_t count = node.triangle ? 3 : 4;
-    Vec2 middle;
-    for (std::size_t i = 0; i < count; ++i) middle = middle + (1.0 / static_cast<double>(count)) * uv[i];
-    node.mean = b_.at({leaf, middle});
-    node.centre = patch.at(middle);
-    for (std::size_t i = 0; i < 4; ++i) {
-        node.corners[i] = patch.at(uv[i]);
-        node.lean[i] = b_.at({leaf, uv[i]}) - node.mean;
-        node.slope = larger(node.slope, magnitude(node.lean[i]));
-        node.radius = std::max(node.radius, norm(node.corners[i] - node.centre));
+/// Quarters of a parallelogram or a triangle, on which b is bilinear or linear.
+ElementGather::Group ElementGather::Group::quarters(std::size_t lane) const {
+    struct Corner {
+        Point p;
+        Spectrum b;
+    };
+    const auto corner = [&](std::size_t c) {
+        Corner out{{corners[c][0][lane], corners[c][1][lane], corners[c][2][lane]}, {}};
+        for (std::size_t k = 0; k < bands; ++k) out.b[k] = mean[k][lane] + lean[c][k][lane];
+        return out;
+    };
+    const auto between = [](const Corner& i, const Corner& j) { return Corner{0.5 * (i.p + j.p), 0.5 * (i.b + j.b)}; };
+    const bool triangle = last[lane] < 1;
+    Group out;
+    const auto set = [&](std::size_t to, const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+        out.set(to, Node({a.p, b.p, c.p, d.p}, {a.b, b.b, c.b, d.b}, triangle));
+    };
+    const Corner a = corner(0), b = corner(1), c = corner(2), d = corner(3), ab = between(a, b), bc = between(b, c);
+    if (triangle) {
+        const Corner ca = between(c, a);
+        set(0, a, ab, ca, ca), set(1, ab, b, bc, bc), set(2, ca, bc, c, c), set(3, ab, bc, ca, ca);
+    } else {
+        const Corner cd = between(c, d), da = between(d, a), middle = between(ab, cd);
+        set(0, a, ab, middle, da), set(1, ab, b, bc, middle), set(2, middle, bc, c, cd), set(3, da, middle, cd, d);
     }
     return out;
 }
 
-ElementGather::Node ElementGather::leaf_node(ElementId e) const {
-    const std::vector<Vec2> domain = b_.tree.domain(e);
-    Node out = part_of(e, four_corners(domain)).node;
-    if (!b_.tree.is_cell(e)) return out;
-    // A cell is any convex polygon: without its slope it is only cut sooner.
-    out.centre = b_.tree.patch(e).at(b_.tree.centre(e));
-    out.mean = b_.at({e, b_.tree.centre(e)});
-    out.lean = {}, out.slope = {}, out.radius = 0;
-    for (const Vec2& uv : domain) {
-        out.rest = larger(out.rest, magnitude(b_.at({e, uv}) - out.mean));
-        out.radius = std::max(out.radius, norm(b_.tree.patch(e).at(uv) - out.centre));
+/// Nodes of all elements from the leaves up, then groups of them from the roots down.
+class ElementGather::Builder {
+  public:
+    Builder(const Stage& stage, const ElementFunction& b) : b_(b), tree_(b.tree) {
+        nodes_.resize(tree_.size()), moments_.resize(tree_.size());
+        is_quad_.resize(tree_.size()), is_dark_.resize(tree_.size());
+        for (std::size_t i = tree_.size(); i-- > 0;) {
+            const ElementId e(i);
+            is_quad_[e] = tree_.domain(e).size() <= 4;
+            if (tree_.is_leaf(e)) {
+                const Normal& n = stage.scene.regions()[tree_.region(e)].plane.n;
+                const Point centre = tree_.patch(e).at(tree_.centre(e));
+                is_dark_[e] = stage.occluders.is_covered(centre, n, tree_.region(e));
+                nodes_[e] = is_dark_[e] ? Node() : leaf_node(e);
+                nodes_[e].centre = centre;
+                continue;
+            }
+            is_dark_[e] = true;
+            for (ElementId child : tree_.children(e)) is_dark_[e] &= is_dark_[child];
+            nodes_[e] = inner_node(e);
+        }
     }
+
+    /// All groups: those of the roots first, whose regions go to `of_region`.
+    std::vector<Group> groups(std::vector<std::array<RegionId, lanes>>& of_region) {
+        std::vector<Piece> roots;
+        for (ElementId root : tree_.roots()) add_element(root, roots);
+        of_region.resize((roots.size() + lanes - 1) / lanes);
+        for (std::size_t i = 0; i < roots.size(); ++i) of_region[i / lanes][i % lanes] = tree_.region(roots[i].element);
+        add_groups(roots);
+        return std::move(groups_);
+    }
+
+  private:
+    /// A convex quad: an element, or a part of a leaf.
+    struct Piece {
+        Node node;
+        ElementId element;
+        bool is_whole;
+    };
+
+    Node part(ElementId leaf, const std::array<Vec2, 4>& uv) const;
+    Node leaf_node(ElementId e);
+    Node inner_node(ElementId e);
+    void set_lean(Node& node, ElementId e) const;
+    void add_element(ElementId e, std::vector<Piece>& out) const;
+    std::vector<Piece> pieces_below(ElementId e) const;
+    std::uint32_t add_groups(const std::vector<Piece>& pieces);
+
+    const ElementFunction& b_;
+    const ElementTree& tree_;
+    Field<ElementId, Node> nodes_;
+    Field<ElementId, std::array<Vec3, bands>> moments_;  ///< 1/A int (b - mean) (y - centre) dA, W/m.
+    Field<ElementId, std::uint8_t> is_quad_;             ///< No more than four corners.
+    Field<ElementId, std::uint8_t> is_dark_;             ///< Nothing leaves it.
+    std::vector<Group> groups_;
+};
+
+ElementGather::Node ElementGather::Builder::part(ElementId leaf, const std::array<Vec2, 4>& uv) const {
+    std::array<Point, 4> corners;
+    std::array<Spectrum, 4> b;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = tree_.patch(leaf).at(uv[i]), b[i] = b_.at({leaf, uv[i]});
+    return {corners, b, uv[2] == uv[3]};
+}
+
+ElementGather::Node ElementGather::Builder::leaf_node(ElementId e) {
+    const std::vector<Vec2> domain = tree_.domain(e);
+    Node out = part(e, four_corners(domain));
+    if (tree_.is_cell(e)) {  // any convex polygon: those above it take it for even
+        out.mean = b_.at({e, tree_.centre(e)});
+        out.lean = {};
+        for (const Vec2& uv : domain) out.rest = larger(out.rest, magnitude(b_.at({e, uv}) - out.mean));
+    }
+    for (std::size_t k = 0; k < bands; ++k)
+        for (std::size_t c = 0; c < (out.triangle ? 3 : 4); ++c)
+            moments_[e][k] = moments_[e][k] + out.lean[c][k] / 12 * (out.corners[c] - out.centre);
     return out;
 }
 
 /// The linear function with an element's moments: in its coordinates the variances of u and v are 1/12 on a
 /// parallelogram, 1/18 with a covariance of -1/36 on a triangle.
-void ElementGather::set_lean(Node& node, ElementId e, const std::array<Vec3, bands>& moment) const {
-    const Patch& patch = b_.tree.patch(e);
-    if (b_.tree.is_cell(e)) return;
-    const Vec2 centre = b_.tree.centre(e);
+void ElementGather::Builder::set_lean(Node& node, ElementId e) const {
+    if (tree_.is_cell(e)) return;
+    const Patch& patch = tree_.patch(e);
+    const Vec2 centre = tree_.centre(e);
     for (std::size_t k = 0; k < bands; ++k) {
-        const Vec2 m = patch.coordinates(patch.origin + moment[k]);
+        const Vec2 m = patch.coordinates(patch.origin + moments_[e][k]);
         const Vec2 slope = node.triangle ? Vec2{24 * m.x + 12 * m.y, 12 * m.x + 24 * m.y} : 12 * m;
         for (int c = 0; c < 4; ++c)
             node.lean[static_cast<std::size_t>(c)][k] =
                 dot(slope, patch.corner_uv(std::min(c, patch.corner_count() - 1)) - centre);
     }
-    for (const Spectrum& lean : node.lean) node.slope = larger(node.slope, magnitude(lean));
 }
 
-ElementGather::Node ElementGather::inner_node(ElementId e) {
-    const ElementTree& tree = b_.tree;
-    const Patch& patch = tree.patch(e);
-    const std::array<Vec2, 4> corners = four_corners(tree.domain(e));
+ElementGather::Node ElementGather::Builder::inner_node(ElementId e) {
+    const Patch& patch = tree_.patch(e);
+    const std::array<Vec2, 4> corners = four_corners(tree_.domain(e));
     Node out;
-    out.triangle = is_triangle(corners);
-    out.centre = patch.at(tree.centre(e));
-    for (std::size_t k = 0; k < 4; ++k) {
-        out.corners[k] = patch.at(corners[k]);
-        out.radius = std::max(out.radius, norm(out.corners[k] - out.centre));
-    }
+    out.triangle = corners[2] == corners[3];
+    out.centre = patch.at(tree_.centre(e));
+    for (std::size_t k = 0; k < 4; ++k) out.corners[k] = patch.at(corners[k]);
+    out.find_radius();
     double area = 0;
-    for (ElementId child : tree.children(e)) {
-        area += tree.area(child);
-        out.mean += tree.area(child) * nodes_[child].mean;
+    for (ElementId child : tree_.children(e)) {
+        area += tree_.area(child);
+        out.mean += tree_.area(child) * nodes_[child].mean;
     }
     out.mean *= 1 / area;
     std::array<Vec3, bands>& moment = moments_[e];
-    for (ElementId child : tree.children(e))
+    for (ElementId child : tree_.children(e))
         for (std::size_t k = 0; k < bands; ++k)
-            moment[k] = moment[k] + tree.area(child) / area *
+            moment[k] = moment[k] + tree_.area(child) / area *
                                         (moments_[child][k] +
                                          (nodes_[child].mean - out.mean)[k] * (nodes_[child].centre - out.centre));
-    set_lean(out, e, moment);
+    set_lean(out, e);
     const auto linear_at = [&](const Point& y) {
         // Two of the corners and the mean span the function: a parallelogram's opposite ones lean alike.
-        const Vec2 uv = patch.coordinates(y), c = tree.centre(e);
+        const Vec2 uv = patch.coordinates(y), c = tree_.centre(e);
         const std::size_t last = out.triangle ? 2 : 3;
         const double u = uv.x - c.x, v = uv.y - c.y;
         return out.mean + u * (out.lean[1] - out.lean[0]) + v * (out.lean[last] - out.lean[0]);
     };
-    for (ElementId child : tree.children(e))
+    for (ElementId child : tree_.children(e))
         out.rest =
             larger(out.rest, magnitude(nodes_[child].mean - linear_at(nodes_[child].centre)) + nodes_[child].rest);
     return out;
 }
 
-/// An element to be summed; one with many corners as those below it, or as triangles.
-void ElementGather::add_element(ElementId e, Workspace& w) const {
+/// An element to be summed; one with many corners as those below it, a cell as triangles.
+void ElementGather::Builder::add_element(ElementId e, std::vector<Piece>& out) const {
     if (is_dark_[e]) return;
-    if (is_quad_[e]) {
-        w.next_.push_back({e, whole});
-    } else if (!b_.tree.is_leaf(e)) {
-        for (ElementId child : b_.tree.children(e)) add_element(child, w);
+    if (tree_.is_leaf(e) && tree_.is_cell(e)) {
+        const std::vector<Vec2> domain = tree_.domain(e);
+        for (std::size_t k = 2; k < domain.size(); ++k)
+            out.push_back({part(e, {domain[0], domain[k - 1], domain[k], domain[k]}), e, false});
+    } else if (is_quad_[e]) {
+        out.push_back({nodes_[e], e, true});
     } else {
-        const std::vector<Vec2> domain = b_.tree.domain(e);
-        for (std::size_t k = 2; k < domain.size(); ++k) {
-            w.next_.push_back({e, static_cast<std::uint32_t>(w.parts_.size())});
-            w.parts_.push_back(part_of(e, {domain[0], domain[k - 1], domain[k], domain[k]}));
+        for (ElementId child : tree_.children(e)) add_element(child, out);
+    }
+}
+
+/// Pieces of an element. As long as there are fewer than four, the largest that is not too many itself gives way to
+/// those below it.
+std::vector<ElementGather::Builder::Piece> ElementGather::Builder::pieces_below(ElementId e) const {
+    std::vector<Piece> out;
+    for (ElementId child : tree_.children(e)) add_element(child, out);
+    std::vector<Piece> open = out;
+    const auto smaller = [](const Piece& a, const Piece& b) { return a.node.radius < b.node.radius; };
+    while (out.size() < lanes) {
+        std::erase_if(open, [&](const Piece& p) { return !p.is_whole || tree_.is_leaf(p.element); });
+        if (open.empty()) break;
+        const auto largest = std::max_element(open.begin(), open.end(), smaller);
+        const ElementId cut = largest->element;
+        open.erase(largest);
+        std::vector<Piece> below;
+        for (ElementId child : tree_.children(cut)) add_element(child, below);
+        if (out.size() - 1 + below.size() > lanes) continue;
+        std::erase_if(out, [&](const Piece& p) { return p.element == cut; });
+        out.insert(out.end(), below.begin(), below.end());
+        open.insert(open.end(), below.begin(), below.end());
+    }
+    return out;
+}
+
+/// `pieces`, four a group, and all groups below them; returns the first one's number.
+std::uint32_t ElementGather::Builder::add_groups(const std::vector<Piece>& pieces) {
+    const std::size_t first = groups_.size(), count = (pieces.size() + lanes - 1) / lanes;
+    groups_.resize(first + count);
+    for (std::size_t g = 0; g < count; ++g) {
+        groups_[first + g].more = g + 1 < count;
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const std::size_t i = lanes * g + lane;
+            if (i < pieces.size()) {
+                groups_[first + g].set(lane, pieces[i].node);
+                if (!pieces[i].is_whole || tree_.is_leaf(pieces[i].element)) continue;
+                const std::uint32_t below = add_groups(pieces_below(pieces[i].element));
+                groups_[first + g].below[lane] = below;
+            } else {
+                Node spare = pieces.back().node;
+                spare.mean = spare.rest = {}, spare.lean = {};
+                groups_[first + g].set(lane, spare);
+            }
         }
     }
+    return static_cast<std::uint32_t>(first);
 }
 
-/// Children of an element, or quarters of a leaf or of a part of it.
-void ElementGather::add_pieces(Item item, Workspace& w) const {
-    const ElementId e = item.element;
-    if (item.part == whole && !b_.tree.is_leaf(e)) {
-        for (ElementId child : b_.tree.children(e)) add_element(child, w);
-        return;
-    }
-    const std::array<Vec2, 4> uv = item.part == whole ? four_corners(b_.tree.domain(e)) : w.parts_[item.part].uv;
-    const auto between = [&](std::size_t i, std::size_t j) { return 0.5 * (uv[i] + uv[j]); };
-    const auto add = [&](const std::array<Vec2, 4>& corners) {
-        w.next_.push_back({e, static_cast<std::uint32_t>(w.parts_.size())});
-        w.parts_.push_back(part_of(e, corners));
+ElementGather::ElementGather(const Stage& stage, const ElementFunction& b) {
+    groups_ = Builder(stage, b).groups(of_region_);
+}
+
+// ------------------------------------------------------------------------------------------------------------- the sum
+
+namespace {
+
+template <std::size_t count>
+EXITANCE_INLINE Real lanes_at(const std::array<double, count>& values) {
+    return four::load(values.data());
+}
+
+EXITANCE_INLINE four::Vec lanes_at(const std::array<std::array<double, four::lanes>, 3>& place) {
+    return {lanes_at(place[0]), lanes_at(place[1]), lanes_at(place[2])};
+}
+
+/// Form factors of four quads, by the first rule that takes each.
+Real form_factors(const Point& x, const Normal& n, const Quads<Real>& quads) {
+    // A corner in the plane of x may be below it by rounding.
+    constexpr double rounding = 1e-12;
+    const double sunk = rounding * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z) + quads.radius[0]);
+    Real F{};
+    int taken = 0;
+    const auto take = [&](int more, const Real& by_rule) {
+        for (std::size_t i = 0; i < four::lanes; ++i)
+            if (more & ~taken & 1 << i) F[i] = by_rule[i];
+        taken |= more;
     };
-    const Vec2 ab = between(0, 1), bc = between(1, 2);
-    if (is_triangle(uv)) {
-        const Vec2 ca = between(2, 0);
-        add({uv[0], ab, ca, ca}), add({ab, uv[1], bc, bc}), add({ca, bc, uv[2], uv[2]}), add({ab, bc, ca, ca});
-        return;
+    Real by_rule{};
+    // Closer than this there are edges that look longer than 45 degrees.
+    const Real nearest = 2 * quads.radius;
+    const bool is_near = where_less(dot(quads.middle, quads.middle), nearest * nearest) != 0;
+    if (is_near)
+        take(apply<Rule::edges>(n, quads, sunk, by_rule), by_rule);
+    else
+        take(apply<Rule::narrow_edges>(n, quads, sunk, by_rule), by_rule);
+    if (taken != all_lanes<Real>) take(apply<Rule::points>(n, quads, sunk, by_rule), by_rule);
+    if (taken != all_lanes<Real> && !is_near) take(apply<Rule::edges>(n, quads, sunk, by_rule), by_rule);
+    for (std::size_t i = 0; i < four::lanes && taken != all_lanes<Real>; ++i) {
+        if (taken >> i & 1) continue;
+        std::array<Point, 4> corners;
+        for (std::size_t c = 0; c < 4; ++c) corners[c] = x + Vec3{quads.r[c].x[i], quads.r[c].y[i], quads.r[c].z[i]};
+        F[i] = point_to_polygon(x, n, corners);
     }
-    const Vec2 cd = between(2, 3), da = between(3, 0), middle = 0.5 * (ab + cd);
-    add({uv[0], ab, middle, da}), add({ab, uv[1], bc, middle}), add({middle, bc, uv[2], cd});
-    add({da, middle, cd, uv[3]});
+    return F;
 }
 
-/// The mean of b over a node as x sees it.
-Spectrum ElementGather::mean_seen(const Node& node, const Point& x, const Normal& n) {
-    const std::size_t count = node.triangle ? 3 : 4;
-    const double inward = node.triangle ? 0.5 : 0.5773502691896257;  // Gauss's points: halfway, or 1 / sqrt(3), out
-    Spectrum sum;
-    double weight = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 d = node.centre + inward * (node.corners[i] - node.centre) - x;
-        const double above = std::max(0.0, dot(n, d)), below = squared_norm(d);
-        if (below <= 0) continue;
-        const double K = above / (below * below);  // the height of x over the node's plane is the same for all points
-        weight += K;
-        sum += K * node.lean[i];
+/// Of each of Gauss's points its share in what x sees of an element, times how far out it lies: what the lean at the
+/// corner there counts.
+EXITANCE_INLINE void weigh_corners(const Normal& n, const Quads<Real>& quads, const Real& inward, const Real& last,
+                                   Real (&weight)[4]) {
+    Real sum{};
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+        const four::Vec out = quads.r[i] - quads.middle;
+        const four::Vec d = {quads.middle.x + inward * out.x, quads.middle.y + inward * out.y,
+                             quads.middle.z + inward * out.z};
+        const Real above = max(Real{}, dot(n, d)), squared = max(dot(d, d), Real{} + 1e-100);
+        // The height of x over the element's plane is the same for all points.
+        weight[i] = above / (squared * squared) * (i < 2 ? Real{} + 1 : last);
+        sum += weight[i];
     }
-    return weight > 0 ? node.mean + inward / weight * sum : node.mean;
+    const Real scale = inward / max(sum, Real{} + 1e-300);
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) weight[i] *= scale;
 }
+
+}  // namespace
 
 Spectrum ElementGather::operator()(const Point& x, const Normal& n, RegionId own, double share, Workspace& w) const {
-    constexpr int most_levels = 16;
-    w.parts_.clear(), w.next_.clear();
-    for (ElementId root : b_.tree.roots())
-        if (b_.tree.region(root) != own) add_element(root, w);
-    const auto node_of = [&](Item item) -> const Node& {
-        return item.part == whole ? nodes_[item.element] : w.parts_[item.part].node;
+    constexpr int most_cuts = 12;  // of a leaf
+    const four::Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
+    const auto seen_from_x = [&](const Group& group) __attribute__((always_inline)) {
+        return Quads<Real>{{lanes_at(group.corners[0]) - origin, lanes_at(group.corners[1]) - origin,
+                            lanes_at(group.corners[2]) - origin, lanes_at(group.corners[3]) - origin},
+                           lanes_at(group.centre) - origin,
+                           lanes_at(group.radius)};
     };
-    Spectrum E, allowed;
-    for (int level = 0; !w.next_.empty(); ++level) {
-        std::swap(w.level_, w.next_);
-        w.quads_.clear(), w.next_.clear();
-        for (const Item& item : w.level_) {
-            const Node& node = node_of(item);
-            w.quads_.add(node.corners, node.centre, node.radius);
-        }
-        w.F_.resize(w.level_.size());
-        point_to_quads(x, n, w.quads_, w.F_);
-        if (level == 0)
-            for (std::size_t i = 0; i < w.level_.size(); ++i)
-                allowed += share * w.F_[i] * magnitude(node_of(w.level_[i]).mean);
-        for (std::size_t i = 0; i < w.level_.size(); ++i) {
-            const Node& node = node_of(w.level_[i]);
-            const double F = w.F_[i];
-            if (F <= 0) continue;
-            // How much the kernel varies over the node, and what is left over by Gauss's points.
-            const double near = std::min(1.0, 3 * node.radius / norm(node.centre - x)), rest = 0.3 * near * near;
-            bool even = true, level_enough = true;
-            for (std::size_t k = 0; k < bands; ++k) {
-                even &= F * (rest * node.slope[k] + 0.3 * near * node.rest[k]) <= allowed[k];
-                level_enough &= F * near * node.slope[k] <= 0.1 * allowed[k];
-            }
-            if (even || level == most_levels)
-                E += F * (level_enough ? node.mean : mean_seen(node, x, n));
-            else
-                add_pieces(w.level_[i], w);
+    const auto form_factors_of = [&](std::uint32_t group, const Quads<Real>& quads) __attribute__((always_inline)) {
+        Real F = form_factors(x, n, quads);
+        if (group < of_region_.size())
+            for (std::size_t i = 0; i < lanes; ++i)
+                if (of_region_[group][i] == own) F[i] = 0;
+        return F;
+    };
+
+    Real E[bands] = {}, allowed[bands] = {};
+    for (std::uint32_t g = 0; g < of_region_.size(); ++g) {
+        const Real F = form_factors_of(g, seen_from_x(groups_[g]));
+        for (std::size_t k = 0; k < bands; ++k) {
+            const Real light = lanes_at(groups_[g].mean[k]);
+            allowed[k] += share * F * max(light, -light);
         }
     }
-    return E;
+    for (Real& a : allowed) a = Real{} + ((a[0] + a[1]) + (a[2] + a[3]));
+
+    if (!groups_.empty()) w.open_.push_back({0, 0});
+    while (!w.open_.empty()) {
+        const auto [number, cuts] = w.open_.back();
+        Group part;
+        if (number == none) part = w.parts_.back(), w.parts_.pop_back();
+        const Group& group = number == none ? part : groups_[number];
+        if (group.more)
+            ++w.open_.back().group;
+        else
+            w.open_.pop_back();
+
+        const Quads<Real> quads = seen_from_x(group);
+        const Real F = form_factors_of(number, quads);
+        // How much the kernel varies over an element, and what is left over by Gauss's points.
+        const Real near = min(Real{} + 1, 3 * quads.radius / sqrt(dot(quads.middle, quads.middle)));
+        const Real of_slope = 0.3 * F * near * near, of_rest = 0.3 * F * near;
+        four::Mask uneven{}, leans{};
+        for (std::size_t k = 0; k < bands; ++k) {
+            const Real slope = lanes_at(group.slope[k]);
+            uneven |= of_slope * slope + of_rest * lanes_at(group.rest[k]) > allowed[k];
+            leans |= F * near * slope > 0.1 * allowed[k];
+        }
+        if (cuts == most_cuts) uneven = four::Mask{};
+        const Real summed = uneven ? Real{} : F;
+        for (std::size_t k = 0; k < bands; ++k) E[k] += summed * lanes_at(group.mean[k]);
+        if (four::any(leans & ~uneven)) {
+            Real weight[4];
+            weigh_corners(n, quads, lanes_at(group.inward), lanes_at(group.last), weight);
+            for (std::size_t k = 0; k < bands; ++k)
+                for (std::size_t c = 0; c < 4; ++c) E[k] += summed * (weight[c] * lanes_at(group.lean[c][k]));
+        }
+        const int cut = four::bits(uneven);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!(cut >> i & 1)) continue;
+            if (group.below[i] != none) {
+                w.open_.push_back({group.below[i], 0});
+            } else {
+                w.open_.push_back({none, cuts + 1});
+                w.parts_.push_back(group.quarters(i));
+            }
+        }
+    }
+    Spectrum sum;
+    for (std::size_t k = 0; k < bands; ++k) sum[k] = (E[k][0] + E[k][1]) + (E[k][2] + E[k][3]);
+    return sum;
 }
 
 }  // namespace exitance

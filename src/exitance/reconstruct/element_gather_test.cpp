@@ -51,6 +51,25 @@ TEST(ElementGather, GathersEvenLightExactly) {
     for (double E : gathered(scene, gather, b.tree, 1e-3)) EXPECT_NEAR(E, 2, 1e-11);
 }
 
+TEST(ElementGather, GathersEvenLightExactlyOverCellsThatStandAskew) {
+    // A tent with both gables closed: strips along the edges of the triangles are cells of three to five corners.
+    // Turned, so that places are in the planes of corners only up to rounding.
+    const auto turned = [](const Point& p) {
+        const double c = std::cos(0.7), s = std::sin(0.7);
+        const Point q = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+        return Point{q.x, c * q.y - s * q.z, s * q.y + c * q.z};
+    };
+    const Point a = turned({0, 0, 0}), b = turned({2, 0, 0}), c = turned({2, 1, 0}), d = turned({0, 1, 0}),
+                near = turned({0, 0.5, 1}), far = turned({2, 0.5, 1});
+    const Scene scene =
+        test::make({{{a, b, c, d}}, {{a, d, near}}, {{a, near, far, b}}, {{d, c, far, near}}, {{b, far, c}}});
+    const Stage stage(scene);
+    ASSERT_TRUE(ElementGather::suits(stage));
+    const ElementFunction even = on_elements(stage, {0.2, 3}, [](const Point&) { return 2.0; });
+    const ElementGather gather(stage, even);
+    for (double E : gathered(scene, gather, even.tree, 1e-3)) EXPECT_NEAR(E, 2, 1e-10);
+}
+
 TEST(ElementGather, MissesAboutAsMuchAsItMay) {
     const Scene scene = box_scene(2, 1, 1.5, 0.5, 1);
     const Stage stage(scene);
