@@ -100,6 +100,25 @@ void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> va
     }
 }
 
+std::vector<ElementFunction> delivered_functions(const Scene& scene, const ElementFunction& indirect,
+                                                 const DirectProjection& direct, const Spectrum& direct_weight,
+                                                 const Spectrum& c) {
+    std::vector<ElementFunction> out = {indirect, as_function(direct)};
+    const auto turn = [&](ElementFunction& f, const Spectrum& factor, const Spectrum& emitted) {
+        for (ElementId e : f.tree.leaves()) {
+            const Material& material = scene.material(f.tree.region(e));
+            const Spectrum rho = factor * material.reflectance, more = emitted * material.exitance;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(f.tree.patch(e).corner_count()); ++i) {
+                std::array<float, bands>& value = f.values[f.first_value[e] + i];
+                for (std::size_t k = 0; k < bands; ++k)
+                    value[k] = static_cast<float>(rho[k] * static_cast<double>(value[k]) + more[k]);
+            }
+        }
+    };
+    turn(out[0], Spectrum(1.0), c), turn(out[1], direct_weight, Spectrum());
+    return out;
+}
+
 namespace {
 
 /// k of every region: the mean over the method's leaves, by what they reflect.

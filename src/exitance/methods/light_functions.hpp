@@ -49,6 +49,11 @@ class DeliveredLight final : public ReflectedLight {
     Spectrum direct_weight_, c_;
 };
 
+/// The same as functions to be summed over elements; what they hold adds up.
+std::vector<ElementFunction> delivered_functions(const Scene& scene, const ElementFunction& indirect,
+                                                 const DirectProjection& direct, const Spectrum& direct_weight,
+                                                 const Spectrum& c);
+
 /// RMS over the surfaces of the standard error of rho E_ind, where a method is a random one, W/m^2.
 double rms_standard_error(const Stage& stage, const GlobalLight& light);
 

@@ -58,5 +58,22 @@ TEST(KeepFlux, LeavesAloneWhatMuchEscapesFromOrIsFarOff) {
     EXPECT_NEAR(Furnace(1, 1.2).after_keeping(), 1.2 * Furnace::exact(1), 1e-6);
 }
 
+TEST(DeliveredFunctions, AddUpToWhatRaysRead) {
+    Furnace furnace(1, 1);
+    for (ElementId e : furnace.direct.tree.leaves()) furnace.direct.fit[e].corners.fill(Spectrum(0.7));
+    const Spectrum weight(0.75), c(0.25);
+    const DeliveredLight rays(furnace.scene, furnace.gathered, furnace.direct, weight, c);
+    const auto parts = delivered_functions(furnace.scene, furnace.gathered, furnace.direct, weight, c);
+    for (ElementId e : furnace.direct.tree.leaves()) {
+        const Vec2 uv = {0.3, 0.6};
+        Spectrum sum;
+        for (const ElementFunction& part : parts) sum += part.at({e, uv});
+        const HitPoint hit = {furnace.direct.tree.region(e), furnace.direct.tree.patch(e).at(uv)};
+        Spectrum read;
+        rays.read({&hit, 1}, {&read, 1});
+        EXPECT_NEAR(sum[0], read[0], 1e-6);
+    }
+}
+
 }  // namespace
 }  // namespace exitance

@@ -66,7 +66,8 @@ class Solver {
         stage_.leave_out(find_unlit_sides(stage_, options.seed));
         const std::vector<Piece> lit = stage_.lit_pieces();
         knobs_ = knobs_for_error(error, lit, options);
-        if (ElementGather::suits(stage_)) knobs_ = knobs_for_sums(knobs_, error, lit, options);
+        sums_ = ElementGather::suits(stage_);
+        if (sums_) knobs_ = knobs_for_sums(knobs_, error, lit, options);
     }
 
     Result<Solution> run() {
@@ -215,8 +216,10 @@ class Solver {
         Stopwatch watch;
         const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
         const QuickFunction b(light, stage_.scene.regions().size());
+        std::optional<ElementGather> elements;
+        if (gathers() && sums_) elements.emplace(stage_, light);
         if (step_ == Step::gather) {
-            const bool whole = deliver(light, b);
+            const bool whole = deliver(elements ? &*elements : nullptr, b);
             statistics().seconds["reconstruct"] += watch.restart();
             if (!whole) return;
             reach(Step::certify);
@@ -225,7 +228,7 @@ class Solver {
         CertificateOptions look{.error = options_.error_target(),
                                 .points = CertificateOptions::points_for(solution_.indirect.tree.leaves().size())};
         if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
-        certify_solution(look, options_.error_demand());
+        certify_solution(look, options_.error_demand(), elements ? &*elements : nullptr);
         statistics().seconds["certify"] += watch.restart();
         reach(Step::decide);
     }
@@ -241,12 +244,11 @@ class Solver {
         statistics().seconds["solve"] += watch.seconds();
     }
 
-    /// Light everywhere, from what the method found. False when a request to stop cut that short.
-    bool deliver(const ElementFunction& light, const QuickFunction& b) {
-        std::optional<ElementGather> elements;
-        if (gathers() && ElementGather::suits(stage_)) elements.emplace(stage_, light);
+    /// Light everywhere, from what the method found: `b`, as elements where those are summed. False when a request to
+    /// stop cut that short.
+    bool deliver(const ElementGather* elements, const QuickFunction& b) {
         gathered_ = {};
-        ElementFunction indirect = gathers() ? gather(b, elements ? &*elements : nullptr, fresh_) : on_leaves();
+        ElementFunction indirect = gathers() ? gather(b, elements, fresh_) : on_leaves();
         if (gathers() && !light_->kept.empty()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
@@ -298,15 +300,23 @@ class Solver {
         return out;
     }
 
-    void certify_solution(CertificateOptions options, std::optional<double> demand = {}) {
+    void certify_solution(CertificateOptions options, std::optional<double> demand = {},
+                          const ElementGather* gathered = nullptr) {
         options.seed = options_.seed;
         options.direct_in_elements = light_->holds_direct;
         if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
         // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
         const bool older = options_.bounces > 0;
         const Spectrum c = solution_.direct_share;
-        const DeliveredLight delivered(stage_.scene, older ? constant_on_leaves(*light_) : solution_.indirect, direct_,
-                                       light_->holds_direct ? Spectrum() : Spectrum(1.0) - c, c);
+        const Spectrum direct_weight = light_->holds_direct ? Spectrum() : Spectrum(1.0) - c;
+        const ElementFunction indirect = older ? constant_on_leaves(*light_) : solution_.indirect;
+        const DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
+        SummedLight summed{.delivered = {}, .gathered = gathered, .share = 0.05 * options.error};
+        if (sums_) {
+            for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
+                summed.delivered.emplace_back(stage_, part);
+            options.summed = &summed;
+        }
         Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
         certificate_ = certifier.look();
         // Few points tell an estimate to a tenth or so. One just too large is looked at again, which is cheaper than
@@ -361,6 +371,7 @@ class Solver {
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
     bool has_links_ = false;
+    bool sums_ = false;  ///< Is light summed over elements rather than found by rays?
     Solution solution_;
     Stage stage_;
     Knobs knobs_;

@@ -159,6 +159,7 @@ void Certifier::Content::measure_residuals() {
     samples.resize(before + places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         GatherWorkspace workspace;
+        ElementGather::Workspace sums;
         DirectLight::Workspace exact;
         for (std::size_t k = begin; k < end; ++k) {
             const auto& [place, weight] = places[k];
@@ -168,8 +169,22 @@ void Certifier::Content::measure_residuals() {
             const Spectrum& reflectance = stage.scene.material(region).reflectance;
             Spectrum delivered = indirect.at(place);
             if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
-            const unsigned rays = rays_at(place.element);
             Sample& sample = samples[before + k];
+            sample.region = region, sample.weight = weight;
+            sample.leaf = light.numbering.number[coarse.find(region, x).element];
+            if (options.summed) {
+                const bool is_covered = stage.occluders.is_covered(x, n, region);
+                const auto sum = [&](const ElementGather& elements) {
+                    return is_covered ? Spectrum() : elements(x, n, region, options.summed->share, sums);
+                };
+                Spectrum arriving;
+                for (const ElementGather& part : options.summed->delivered) arriving += sum(part);
+                sample.r1 = sample.r2 = reflectance * (arriving - delivered);
+                if (options.summed->gathered)
+                    sample.local1 = sample.local2 = reflectance * (sum(*options.summed->gathered) - delivered);
+                continue;
+            }
+            const unsigned rays = rays_at(place.element);
             const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
                 const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
                 cast_gather(stage, x, n, region, rays, key, workspace);
@@ -179,8 +194,7 @@ void Certifier::Content::measure_residuals() {
             };
             measure(1, sample.r1, sample.local1);
             measure(2, sample.r2, sample.local2);
-            sample.region = region, sample.weight = weight, sample.rays = 2 * rays;
-            sample.leaf = light.numbering.number[coarse.find(region, x).element];
+            sample.rays = 2 * rays;
         }
     });
     ++looks;

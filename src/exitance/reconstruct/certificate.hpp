@@ -9,6 +9,13 @@
 
 namespace exitance {
 
+/// Light as elements to be summed, where nothing stands between (`ElementGather::suits`).
+struct SummedLight {
+    std::vector<ElementGather> delivered;     ///< What the delivered function reflects is the sum of these.
+    const ElementGather* gathered = nullptr;  ///< What the local pass gathered, where there was one.
+    double share = 0;                         ///< What an element may miss.
+};
+
 struct CertificateOptions {
     double error = 0.02;  ///< The relative error that is to be resolved: it sets the number of points and rays.
     std::uint64_t seed = 1;
@@ -23,6 +30,8 @@ struct CertificateOptions {
     std::vector<ElementTree::Place> places = {};
     /// What the local pass gathered, where there was one: tells its error from the method's.
     const ReflectedLight* gathered = nullptr;
+    /// In place of rays. Null where those are cast.
+    const SummedLight* summed = nullptr;
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -48,7 +57,8 @@ struct Certificate {
 /// independent ray gathers over `b` give r1 and r2, so that E[r1 r2] = r^2 without the rays' noise. Error e = (I - rho
 /// H)^-1 r: its rough part is r itself, its smooth part is the response of a coarse solve to the regions' mean
 /// residuals. The bound takes the norm of (I - rho H)^-1, sqrt(C_1 C_inf) from two coarse solves with unit light, and
-/// Student's upper limit of ||r||. Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays).
+/// Student's upper limit of ||r||. Where light is summed over elements, so is the residual, without noise: r1 = r2.
+/// Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays).
 class Certifier {
   public:
     /// `light` gives mesh and direct light for the coarse solves; `b` must read the delivered function. All must
