@@ -39,7 +39,6 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // What hides from all places of an element weighs more where there is less noise to hide in.
     knobs.gather_noise = 0.75 * error * std::pow(std::min(1.0, error / 0.02), 0.15);
     knobs.gather_tolerance = (knobs.gather_curved ? 0.5 : 0.4) * error;
-    if (error < 0.01) knobs.gather_relative_tolerance = 0.6 * error;
     knobs.gather_element_share = 0.05 * error;
     apply_user_knobs(knobs, options);
     return knobs;
@@ -49,18 +48,25 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     Knobs out = knobs;
     // Summed light costs by the element that is summed, not by the element that it is summed for.
     const auto edge_for = [&](double e) { return edge_for_elements(pieces, static_cast<std::size_t>(4 / e)); };
+    // Places cost alike on any element, so that more straight elements cost less than places to bend fewer by.
+    out.gather_curved = false;
     if (error < 0.01) {
-        out.gather_mesh.edge = edge_for(error), out.gather_tolerance = 0.4 * error;
-        out.solve_mesh.longest_end = out.gather_mesh.longest_end = 4;
-        // Two strips more than the mean square needs: at an edge, too, light is to be right. Within, a coarser mesh
-        // does.
+        // The gather smooths what the method has, and its own elements are cut where they have to be.
+        out.solve_mesh.edge *= 2, out.solve_rays.average *= 0.5;
+        out.gather_mesh.edge = 2 * edge_for(error);
+        // At an edge, too, light is to be right: two strips more than the mean square needs, cut to squares at open
+        // ends, and no strip with so few rays that its noise is seen from the strip across the edge.
         out.gather_mesh.grading_levels += 2;
-        constexpr double coarser = 1.5;
-        out.solve_mesh.edge *= coarser, out.gather_mesh.edge *= coarser;
-        out.gather_element_share *= 2;
+        out.solve_mesh.longest_end = out.gather_mesh.longest_end = 2;
+        out.solve_rays.least = 64;
+        out.gather_tolerance = 0.6 * error;
+        // Well above what the sum itself may miss, a few shares: finer elements would follow that for ever.
+        out.gather_relative_tolerance = 3 * error;
+        out.gather_element_share = 0.2 * error;
+        apply_user_knobs(out, options);
         return out;
     }
-    // Coarser than this, and the certificate, which reads the light that the method's elements hold, sees too little.
+    // Coarser than this, and the certificate, which follows late reflections on the method's elements, sees too little.
     constexpr double coarsest = 0.05;
     const double coarser = std::clamp(2.5 * error, error, std::max(error, coarsest));
     const Knobs coarse = knobs_for_error(coarser, pieces, options);
@@ -69,7 +75,6 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     if (coarser == coarsest) out.solve_rays.average *= 4;
     out.gather_mesh = {edge_for(coarser), coarse.gather_mesh.grading_levels}, out.gather_tolerance = 0.4 * coarser;
     out.gather_element_share = coarse.gather_element_share;
-    out.gather_curved = false;
     return out;
 }
 

@@ -28,7 +28,7 @@ struct Knobs {
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options);
 
 /// The same where light is summed over elements (`ElementGather`). Nothing is lost to noise there, so that meshes for a
-/// larger error do; below 1%, where places by themselves are to be right, meshes stay and ends of edges are graded.
+/// larger error do; below 1%, where places by themselves are to be right, edges and their ends are graded further.
 Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options);
 
 /// What an error is made of, RMS relative to the mean reflected light: the method's elements, and of the local pass the

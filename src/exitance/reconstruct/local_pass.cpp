@@ -25,11 +25,12 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
 }
 
 /// An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Without noise it can
-/// be told how far dim places are off, too.
+/// be told how far dim places are off, too; not the darkest, where that would follow the method's elements.
 double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
     const double share = demand.tolerance * std::sqrt(mean_area_ / tree_.area(e));
     if (demand.elements == nullptr || demand.relative_tolerance == 0) return share;
-    return std::min(share, demand.relative_tolerance * light);
+    constexpr double darkest = 0.3;
+    return std::min(share, std::max(demand.relative_tolerance * light, darkest * demand.tolerance));
 }
 
 bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
@@ -85,8 +86,7 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
         const unsigned cast = gather_at(e, places, b, rays, more, demand, w);
         SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, demand.curved, spread_.gain());
         out.place_rays = rays;
-        // Summed light has no noise, and what judges it should have little, too.
-        out.rays = (demand.elements != nullptr ? 4 : 1) * cast;
+        out.rays = cast;
         if (may_cut && is_too_rough(e, out, demand)) return out;
         if (noise_excess(e, out, demand) <= tolerated || 2 * rays > demand.rays.most) {
             if (may_cut && demand.elements == nullptr) look_between(e, out, b, demand, w);
