@@ -400,9 +400,9 @@ Spectrum ElementGather::operator()(const Point& x, const Normal& n, RegionId own
     for (Real& a : allowed) a = Real{} + ((a[0] + a[1]) + (a[2] + a[3]));
 
     if (!groups_.empty()) w.open_.push_back({0, 0});
+    Group part;
     while (!w.open_.empty()) {
         const auto [number, cuts] = w.open_.back();
-        Group part;
         if (number == none) part = w.parts_.back(), w.parts_.pop_back();
         const Group& group = number == none ? part : groups_[number];
         if (group.more)
