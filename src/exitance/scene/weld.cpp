@@ -18,20 +18,19 @@ std::uint64_t cell_hash(double i, double j, double k) {
 }  // namespace
 
 std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance) {
-    double farthest = 0;
-    for (const Point& p : points)
-        if (is_finite(p)) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     // Cells much wider than the tolerance: few points lie so close to a wall that a neighbour has to be asked too. They
-    // are numbered in doubles: where these have no digits left for cells, neither have points for the tolerance. And
-    // not too narrow, lest numbers overflow.
-    const double cell = std::max({64 * tolerance, farthest * 0x1p-1000, 1e-300});
+    // are numbered in doubles: where these have no digits left for cells, neither have points for the tolerance.
+    const double cell = std::max(64 * tolerance, 1e-300);
 
     HashChains chains(points.size());
     std::vector<std::uint32_t> placed;  // entry of the chains -> point
     std::vector<std::uint32_t> out(points.size());
     const double to_cell = 1 / cell, margin = tolerance * to_cell;
     // Half a cell aside, since walls lie at round numbers.
-    const auto number = [&](double coordinate, double aside) { return std::floor(coordinate * to_cell + 0.5 + aside); };
+    const auto number = [&](double coordinate, double aside) {
+        const double cells = std::floor(coordinate * to_cell + 0.5 + aside);
+        return std::isfinite(cells) ? cells : coordinate;
+    };
     const auto hash_of = [&](const Point& p) { return cell_hash(number(p.x, 0), number(p.y, 0), number(p.z, 0)); };
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         out[i] = i;

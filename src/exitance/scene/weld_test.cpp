@@ -30,7 +30,7 @@ TEST(Weld, FindsTheFirstPointNearby) {
             const auto moved = [&](double x) { return x + 3e-9 * size * (random.uniform() - 0.5); };
             points.push_back({moved(p.x), moved(p.y), moved(p.z)});
         }
-        points.push_back({0, 1e28, 0}), points.push_back({HUGE_VAL, 0, 0}), points.push_back({0, 1e28, 0});
+        for (const double far : {1e28, HUGE_VAL, 1e308, 1e28, 1e308}) points.push_back({0, far, 0});
         for (const double tolerance : {0.0, 1e-9 * size})
             EXPECT_EQ(weld(points, tolerance), weld_slowly(points, tolerance));
     }
