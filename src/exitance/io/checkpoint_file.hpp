@@ -20,8 +20,8 @@ std::string scene_fingerprint(const Scene& scene);
 /// that wrote it and on the same kind of machine only.
 class CheckpointFile final : public CheckpointStore {
   public:
-    /// The program's version and build are added to the facts. `every`: seconds from one checkpoint to the next; infinite: write
-    /// none.
+    /// The program's version and build are added to the facts. `every`: seconds from one checkpoint to the next;
+    /// infinite: write none.
     CheckpointFile(std::string path, CheckpointFacts facts, double every);
 
     /// Reads the file, so that the solve goes on from there. False where there is none. An error (bad_input) names what

@@ -306,10 +306,11 @@ class Solver {
         options.direct_in_elements = light_->holds_direct;
         if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
         // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
-        const bool older = options_.bounces > 0;
+        std::optional<ElementFunction> older;
+        if (options_.bounces > 0) older = constant_on_leaves(*light_);
+        const ElementFunction& indirect = older ? *older : solution_.indirect;
         const Spectrum c = solution_.direct_share;
         const Spectrum direct_weight = light_->holds_direct ? Spectrum() : Spectrum(1.0) - c;
-        const ElementFunction indirect = older ? constant_on_leaves(*light_) : solution_.indirect;
         const DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
         SummedLight summed{.delivered = {}, .gathered = gathered, .share = 0.05 * options.error};
         if (sums_) {

@@ -372,6 +372,19 @@ EXITANCE_INLINE void weigh_corners(const Normal& n, const Quads<Real>& quads, co
 
 }  // namespace
 
+/// Of the lanes whose bits are set, what lies below them is summed instead: their pieces, or quarters of a leaf.
+void ElementGather::open_pieces(const Group& group, int uneven, int cuts, Workspace& w) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(uneven >> i & 1)) continue;
+        if (group.below[i] != none) {
+            w.open_.push_back({group.below[i], 0});
+        } else {
+            w.open_.push_back({none, cuts + 1});
+            w.parts_.push_back(group.quarters(i));
+        }
+    }
+}
+
 Spectrum ElementGather::operator()(const Point& x, const Normal& n, RegionId own, double share, Workspace& w) const {
     constexpr int most_cuts = 12;  // of a leaf
     const four::Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
@@ -430,16 +443,7 @@ Spectrum ElementGather::operator()(const Point& x, const Normal& n, RegionId own
             for (std::size_t k = 0; k < bands; ++k)
                 for (std::size_t c = 0; c < 4; ++c) E[k] += summed * (weight[c] * lanes_at(group.lean[c][k]));
         }
-        const int cut = four::bits(uneven);
-        for (std::size_t i = 0; i < lanes; ++i) {
-            if (!(cut >> i & 1)) continue;
-            if (group.below[i] != none) {
-                w.open_.push_back({group.below[i], 0});
-            } else {
-                w.open_.push_back({none, cuts + 1});
-                w.parts_.push_back(group.quarters(i));
-            }
-        }
+        open_pieces(group, four::bits(uneven), cuts, w);
     }
     Spectrum sum;
     for (std::size_t k = 0; k < bands; ++k) sum[k] = (E[k][0] + E[k][1]) + (E[k][2] + E[k][3]);

@@ -56,6 +56,7 @@ class ElementGather {
         void set(std::size_t lane, const Node& node);
         Group quarters(std::size_t lane) const;
     };
+    static void open_pieces(const Group& group, int uneven, int cuts, Workspace& w);
 
     std::vector<Group> groups_;                           ///< Those of the roots first.
     std::vector<std::array<RegionId, lanes>> of_region_;  ///< Of these.

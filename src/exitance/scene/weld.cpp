@@ -20,12 +20,12 @@ std::uint64_t cell_hash(double i, double j, double k) {
 std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance) {
     // Cells much wider than the tolerance: few points lie so close to a wall that a neighbour has to be asked too. They
     // are numbered in doubles: where these have no digits left for cells, neither have points for the tolerance.
-    const double cell = std::max(64 * tolerance, 1e-300);
+    const double width = std::max(64 * tolerance, 1e-300);
 
     HashChains chains(points.size());
     std::vector<std::uint32_t> placed;  // entry of the chains -> point
     std::vector<std::uint32_t> out(points.size());
-    const double to_cell = 1 / cell, margin = tolerance * to_cell;
+    const double to_cell = 1 / width, margin = tolerance * to_cell;
     // Half a cell aside, since walls lie at round numbers.
     const auto number = [&](double coordinate, double aside) {
         const double cells = std::floor(coordinate * to_cell + 0.5 + aside);
@@ -38,19 +38,21 @@ std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance)
         if (soon < points.size() && is_finite(points[soon])) chains.prefetch(hash_of(points[soon]));
         const Point& p = points[i];
         if (!is_finite(p)) continue;
-        double lo[3], hi[3];
-        for (std::size_t a = 0; a < 3; ++a) lo[a] = number(p[a], -margin), hi[a] = number(p[a], margin);
+        // Within reach lies one cell an axis, or two.
+        double reached[3][2];
+        int count[3];
+        for (std::size_t a = 0; a < 3; ++a) {
+            reached[a][0] = number(p[a], -margin), reached[a][1] = number(p[a], margin);
+            count[a] = reached[a][0] == reached[a][1] ? 1 : 2;
+        }
         std::uint32_t best = i;
-        // One cell an axis or two: the lower one's number and the upper one's.
-        const auto sides = [&](std::size_t a) { return lo[a] == hi[a] ? 1 : 2; };
-        for (int a = 0; a < sides(0); ++a)
-            for (int b = 0; b < sides(1); ++b)
-                for (int c = 0; c < sides(2); ++c)
-                    for (std::uint32_t e =
-                             chains.first(cell_hash(a ? hi[0] : lo[0], b ? hi[1] : lo[1], c ? hi[2] : lo[2]));
-                         e != HashChains::end; e = chains.next(e))
-                        if (placed[e] < best && squared_norm(points[placed[e]] - p) <= tolerance * tolerance)
-                            best = placed[e];
+        const auto look_into = [&](std::uint64_t cell) {
+            for (std::uint32_t e = chains.first(cell); e != HashChains::end; e = chains.next(e))
+                if (placed[e] < best && squared_norm(points[placed[e]] - p) <= tolerance * tolerance) best = placed[e];
+        };
+        for (int a = 0; a < count[0]; ++a)
+            for (int b = 0; b < count[1]; ++b)
+                for (int c = 0; c < count[2]; ++c) look_into(cell_hash(reached[0][a], reached[1][b], reached[2][c]));
         out[i] = best;
         if (best != i) continue;
         chains.add(hash_of(p));
