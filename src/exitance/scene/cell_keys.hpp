@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -18,20 +19,20 @@ struct CellCoordinate {
 /// a key, and most things get just one. `kind` separates things that are never to meet.
 template <std::size_t N, class Take>
 void each_cell_key(std::uint64_t kind, const std::array<CellCoordinate, N>& coordinates, const Take& take) {
-    std::array<std::int64_t, N> own, other;
-    unsigned near = 0;  // coordinates that have a neighbour's cell too
+    std::array<double, N> own, other;  // for far places, which have no digits left for cells
+    unsigned near = 0;                 // coordinates that have a neighbour's cell too
     for (unsigned i = 0; i < N; ++i) {
         // Rounded, not floored: exact zeros, which abound in scenes, lie amid their cell.
         const double x = coordinates[i].value / coordinates[i].cell, e = coordinates[i].error / coordinates[i].cell;
         const double nearest = std::floor(x + 0.5);  // one instruction, where llround is a call
-        own[i] = static_cast<std::int64_t>(nearest);
-        other[i] = own[i] + (x + e >= nearest + 0.5 ? 1 : x - e < nearest - 0.5 ? -1 : 0);
+        own[i] = nearest;
+        other[i] = nearest + (x + e >= nearest + 0.5 ? 1 : x - e < nearest - 0.5 ? -1 : 0);
         if (other[i] != own[i]) near |= 1u << i;
     }
     for (unsigned chosen = near;; chosen = (chosen - 1) & near) {  // every subset of them
         std::uint64_t key = kind;
         for (unsigned i = 0; i < N; ++i)
-            key = hash(key, static_cast<std::uint64_t>((chosen >> i & 1u) != 0 ? other[i] : own[i]));
+            key = hash(key, std::bit_cast<std::uint64_t>((chosen >> i & 1u) != 0 ? other[i] : own[i]));
         take(key);
         if (chosen == 0) return;
     }

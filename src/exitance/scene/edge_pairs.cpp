@@ -12,9 +12,10 @@
 namespace exitance {
 namespace {
 
-/// Cells that lines are told by: of the coordinates of their direction, and of their place in sizes of the scene.
+/// Cells that lines are told by: of the coordinates of their direction, and of their place in sizes of the scene
+/// (find_extent).
 constexpr double direction_cell = 1e-3, place_cell = 1e-4;
-constexpr unsigned grades = 4;  ///< Of coarseness, see EdgePairs::grade.
+constexpr unsigned grades = 8;  ///< Of coarseness, see EdgePairs::grade.
 
 }  // namespace
 
@@ -31,6 +32,7 @@ EdgePairs::EdgePairs(const FaceMesh& mesh, const Tolerances& tolerances, std::sp
     }
     first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));
     pair_whole_edges();
+    find_extent();
     pair_parts_of_edges();
 }
 
@@ -78,34 +80,58 @@ void EdgePairs::pair_whole_edges() {
     }
 }
 
+/// The middle of the edges, and about how far they reach to either side: of fifteen in sixteen, axis by axis, so that
+/// few far points do not make all others look alike.
+void EdgePairs::find_extent() {
+    constexpr std::size_t samples = 4096;
+    const std::size_t step = edges_.size() / samples + 1;
+    std::vector<double> at;
+    Vec3 reach{0, 0, 0};
+    for (std::size_t a = 0; a < 3; ++a) {
+        at.clear();
+        for (std::size_t e = 0; e < edges_.size(); e += step) at.push_back(point(edges_[e].from)[a]);
+        std::sort(at.begin(), at.end());
+        const std::size_t few = at.size() / 32;
+        centre_[a] = 0.5 * (at[few] + at[at.size() - 1 - few]);
+        reach[a] = at[at.size() - 1 - few] - at[few];
+    }
+    size_ = norm(reach);
+    if (size_ > 0) return;
+    Box box;
+    for (const Edge& e : edges_) box.add(point(e.from));
+    size_ = box.diagonal();
+}
+
+EdgePairs::LineErrors EdgePairs::line_errors(std::uint32_t edge) const {
+    const Point &p = point(edges_[edge].from), &q = point(edges_[edge].to);
+    const double direction = 2 * tol_.place / norm(q - p);
+    return {direction, tol_.place + std::max(norm(p - centre_), norm(q - centre_)) * direction};
+}
+
 /// How coarse the cells must be for the line through an edge to be told within an eighth of one: each grade is eight
 /// times as coarse as the one before it. Nearly all edges are of grade 0; those above are short beside the scene.
 unsigned EdgePairs::grade(std::uint32_t edge) const {
-    const double length = norm(point(edges_[edge].to) - point(edges_[edge].from));
-    const double error = 8 * 2 * tol_.place / length;  // of the direction; of the place, in sizes of the scene, as much
+    const auto [direction, foot] = line_errors(edge);
     unsigned grade = 0;
-    for (double cell = place_cell; cell < error && grade + 1 < grades; cell *= 8) ++grade;
+    for (double cell = 1; grade + 1 < grades; cell *= 8, ++grade)
+        if (8 * direction <= cell * direction_cell && 8 * foot <= cell * place_cell * size_) break;
     return grade;
 }
 
-/// Keys of the line through an edge: cells of its direction and of its point nearest to the scene's centre. Near a
-/// cell's wall the neighbour's key is given as well, so that edges of one line always have a key in common.
-void EdgePairs::add_line_keys(std::uint32_t edge, unsigned grade, const Point& centre, double size,
-                              std::vector<LineEntry>& out) const {
+/// Calls take(key) for the line through an edge: by cells of its direction and of its point nearest to the centre.
+/// Near a cell's wall the neighbour's key is given as well, so that edges of one line always have a key in common.
+template <class Take>
+void EdgePairs::each_line_key(std::uint32_t edge, unsigned grade, const Take& take) const {
     const Point& p = point(edges_[edge].from);
-    Vec3 d = point(edges_[edge].to) - p;
-    const double length = norm(d), coarser = std::ldexp(1.0, 3 * static_cast<int>(grade));
-    d = d / length;
+    Vec3 d = normalized(point(edges_[edge].to) - p);
+    const double coarser = std::ldexp(1.0, 3 * static_cast<int>(grade));
     if (dot(d, Vec3{0.5377, 0.7323, 0.4181}) < 0) d = -d;  // no line of a practical scene is at a right angle to this
-    const Vec3 foot = (p - centre) - dot(p - centre, d) * d;
-    const double direction_error = 2 * tol_.place / length, foot_error = tol_.place + size * direction_error;
-    const auto direction = [&](double x) { return CellCoordinate{x, coarser * direction_cell, direction_error}; };
-    const auto place = [&](double x) { return CellCoordinate{x, coarser * place_cell * size, foot_error}; };
-    each_cell_key<6>(grade,
-                     {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)},
-                     [&](std::uint64_t key) {
-                         out.push_back({key, edge});
-                     });
+    const Vec3 foot = (p - centre_) - dot(p - centre_, d) * d;
+    const LineErrors error = line_errors(edge);
+    const auto direction = [&](double x) { return CellCoordinate{x, coarser * direction_cell, error.direction}; };
+    const auto place = [&](double x) { return CellCoordinate{x, coarser * place_cell * size_, error.foot}; };
+    each_cell_key<6>(
+        grade, {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)}, take);
 }
 
 /// Marks where the ends of `other` lie inside edge e, whose unit direction is d.
@@ -189,39 +215,54 @@ void EdgePairs::add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t
 
 /// Unpaired edges by their lines; of those between the same two points, which pair_whole_edges has compared, the last
 /// stands for all. Edges with a line to themselves, as nearly all are that curved surfaces leave unpaired, are not
-/// among them: a table of counts tells, before anything is sorted.
+/// among them: a table of counts tells, before anything is kept or sorted.
 std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
-    Box box;
-    for (const Edge& e : edges_) box.add(point(e.from));
-    std::vector<char> is_last(edges_.size(), true);
-    std::size_t count = 0;
-    std::vector<std::uint32_t> twins;
-    std::vector<LineEntry> entries;
-    for (std::uint32_t e = 0; e < edges_.size(); ++e)
-        if (edges_[e].twin != none) is_last[edges_[e].twin] = false;
-    const double size = box.diagonal();
+    std::vector<char> stands(edges_.size(), true);
+    for (const Edge& e : edges_)
+        if (e.twin != none) stands[e.twin] = false;
+    struct Entrant {
+        std::uint32_t edge;
+        unsigned grade;
+    };
+    std::vector<Entrant> entrants;
     std::array<bool, grades> is_there{};
-    for (std::uint32_t e = 0; e < edges_.size(); ++e) is_there[grade(e)] = true;
+    std::vector<std::uint32_t> twins;
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-        if (!is_last[e]) continue;
+        if (!stands[e]) continue;
         twins.clear();
         add_unpaired_twins(e, twins);
         if (twins.empty()) continue;
-        // An edge meets the shorter ones among their cells.
-        for (unsigned g = grade(e); g < grades; ++g)
-            if (is_there[g]) add_line_keys(e, g, box.centre(), size, entries), ++count;
+        entrants.push_back({e, grade(e)});
+        is_there[entrants.back().grade] = true;
     }
-    std::vector<std::uint8_t> held(std::bit_ceil(4 * count + 1));
+    const auto each_entry = [&](const auto& take) {
+        for (const auto [e, finest] : entrants)
+            // An edge meets the shorter ones among their cells.
+            for (unsigned g = finest; g < grades; ++g)
+                if (is_there[g])
+                    each_line_key(e, g, [&, e = e](std::uint64_t key) {
+                        take(LineEntry{static_cast<std::uint32_t>(key), e});
+                    });
+    };
+    std::vector<std::uint8_t> held(std::bit_ceil(4 * entrants.size() + 1));
     const auto slot = [&](const LineEntry& entry) -> std::uint8_t& { return held[entry.key & (held.size() - 1)]; };
-    for (const LineEntry& entry : entries) slot(entry) = std::min(slot(entry) + 1, 2);
-    std::erase_if(entries, [&](const LineEntry& entry) { return slot(entry) < 2; });
+    std::size_t met = 0;  // entries under keys that others have too
+    each_entry([&](const LineEntry& entry) {
+        std::uint8_t& n = slot(entry);
+        met += n == 0 ? 0 : n == 1 ? 2 : 1;
+        n = std::min(n + 1, 2);
+    });
+    std::vector<LineEntry> entries;
+    entries.reserve(met);
+    each_entry([&](const LineEntry& entry) {
+        if (slot(entry) > 1) entries.push_back(entry);
+    });
     return entries;
 }
 
 void EdgePairs::pair_parts_of_edges() {
     std::vector<LineEntry> entries = line_entries();
-    std::sort(entries.begin(), entries.end(),
-              [](const LineEntry& a, const LineEntry& b) { return a.key != b.key ? a.key < b.key : a.edge < b.edge; });
+    std::sort(entries.begin(), entries.end());
     std::vector<std::uint32_t> group;
     for (std::size_t i = 0, j; i < entries.size(); i = j) {
         group.clear();

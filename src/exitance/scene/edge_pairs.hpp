@@ -46,8 +46,13 @@ class EdgePairs {
   private:
     /// The first unpaired edge between two points under one of the keys of its line.
     struct LineEntry {
-        std::uint64_t key;
+        std::uint32_t key;
         std::uint32_t edge;
+        auto operator<=>(const LineEntry&) const = default;
+    };
+    /// How far off the line through an edge may be: its direction, and its point nearest to the centre, metres.
+    struct LineErrors {
+        double direction, foot;
     };
     /// How far an edge reaches along a direction.
     struct Interval {
@@ -61,9 +66,11 @@ class EdgePairs {
     void pair_whole_edges();
     void pair_parts_of_edges();
     std::vector<LineEntry> line_entries() const;
+    void find_extent();
+    LineErrors line_errors(std::uint32_t edge) const;
     unsigned grade(std::uint32_t edge) const;
-    void add_line_keys(std::uint32_t edge, unsigned grade, const Point& centre, double size,
-                       std::vector<LineEntry>& out) const;
+    template <class Take>
+    void each_line_key(std::uint32_t edge, unsigned grade, const Take& take) const;
     void add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t>& out) const;
     static double crowding(const std::vector<Interval>& intervals);
     std::vector<Interval> intervals_along(const Vec3& d, std::span<const std::uint32_t> group) const;
@@ -74,6 +81,8 @@ class EdgePairs {
     const FaceMesh& mesh_;
     const Tolerances& tol_;
     std::span<const std::uint32_t> faces_;
+    Point centre_{0, 0, 0};  ///< That lines are told by, and
+    double size_ = 0;        ///< how far most edges reach, metres.
     DisjointSets sets_;
     std::vector<Edge> edges_;
     std::vector<std::uint32_t> first_edge_;

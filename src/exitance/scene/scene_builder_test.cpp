@@ -79,6 +79,24 @@ TEST(Regions, FloorsCutWithTVerticesAreOnePolygonEachInALongRow) {
     }
 }
 
+TEST(Regions, FloorsCutWithTVerticesAreJoinedUnderAFarPoint) {
+    // Its distance leaves doubles few digits for what is near.
+    constexpr int floors = 2000;
+    for (const double far : {1e3, 1e6, 1e9, 1e11}) {
+        Sketch sketch;
+        for (int i = 0; i < floors; ++i) {
+            const double x = 10 * (i % 40), y = 10 * (i / 40);
+            sketch.rectangle(x, y, x + 1, y + 2)
+                .rectangle(x + 1, y, x + 2, y + 1)
+                .rectangle(x + 1, y + 1, x + 2, y + 2);
+        }
+        sketch.add({{0, 0, 5}, {1, 0, 5}, {0, 0, far}});
+        const auto s = sketch.light().make();
+        ASSERT_TRUE(s.scene);
+        EXPECT_EQ(s.scene->regions().size(), floors + 2u) << far;
+    }
+}
+
 TEST(Regions, AWallThatStandsOnTheJointDoesNotKeepFloorsApart) {
     // The wall's lower edge runs between the same points as the first floor's, either way round: one line, three edges.
     for (const bool turned : {false, true}) {
