@@ -200,4 +200,11 @@ LeafNumbering::LeafNumbering(const ElementTree& tree) : leaves(tree.leaves()), n
     for (std::size_t i = 0; i < leaves.size(); ++i) number[leaves[i]] = static_cast<std::uint32_t>(i);
 }
 
+std::vector<double> leaf_areas(const ElementTree& tree, const LeafNumbering& numbering) {
+    std::vector<double> area;
+    area.reserve(numbering.leaves.size());
+    for (ElementId e : numbering.leaves) area.push_back(tree.area(e));
+    return area;
+}
+
 }  // namespace exitance

@@ -47,4 +47,7 @@ struct LeafNumbering {
     Field<ElementId, std::uint32_t> number;  ///< Of a leaf: its place in `leaves`.
 };
 
+/// Area of every leaf, by leaf number, m^2.
+std::vector<double> leaf_areas(const ElementTree& tree, const LeafNumbering& numbering);
+
 }  // namespace exitance

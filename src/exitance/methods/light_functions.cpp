@@ -4,6 +4,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/solve/conserving_transport.hpp"
+#include "exitance/transport/open_share.hpp"
 
 namespace exitance {
 
@@ -117,6 +118,43 @@ std::vector<ElementFunction> delivered_functions(const Scene& scene, const Eleme
     };
     turn(out[0], Spectrum(1.0), c), turn(out[1], direct_weight, Spectrum());
     return out;
+}
+
+namespace {
+
+/// Does all light arrive that leaves send, `radiosity(leaf)` of it per area?
+template <class Radiosity>
+bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                 const Radiosity& radiosity, std::uint64_t seed) {
+    std::vector<double> power = leaf_areas(tree, numbering);
+    for (std::size_t i = 0; i < power.size(); ++i) power[i] *= mean(radiosity(numbering.leaves[i]));
+    const ElementLocator locator(tree, stage.scene.regions().size());
+    return is_closed(stage, tree, numbering, locator, seed, power);
+}
+
+}  // namespace
+
+Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed) {
+    if (!stage.scene.lights().empty()) return Spectrum(1.0);
+    const auto exitance = [&](ElementId e) { return stage.scene.material(direct.tree.region(e)).exitance; };
+    if (!all_arrives(stage, direct.tree, LeafNumbering(direct.tree), exitance, seed)) return Spectrum(1.0);
+    Spectrum emitted, received;  // W
+    for (ElementId e : direct.tree.leaves()) {
+        emitted += direct.tree.area(e) * exitance(e);
+        received += direct.tree.area(e) * direct.fit[e].mean;
+    }
+    const Spectrum scale = conserving_scale(emitted, received);
+    for (DirectFit& fit : direct.fit) {
+        fit.mean *= scale;
+        for (Spectrum& corner : fit.corners) corner *= scale;
+    }
+    return scale;
+}
+
+bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed) {
+    return all_arrives(
+        stage, light.tree, light.numbering, [&](ElementId e) { return light.reflected[light.numbering.number[e]]; },
+        seed);
 }
 
 namespace {

@@ -39,6 +39,21 @@ struct Furnace {
     }
 };
 
+TEST(KeepEmittedFlux, MakesProjectedLightWhatIsEmittedWhereAllArrives) {
+    Furnace furnace(0.99, 1);
+    EXPECT_NEAR(keep_emitted_flux(furnace.direct, furnace.stage, 1)[0], 1 / 0.99, 1e-12);
+    for (ElementId e : furnace.direct.tree.leaves()) EXPECT_NEAR(furnace.direct.fit[e].mean[0], 1, 1e-12);
+}
+
+TEST(KeepEmittedFlux, LeavesAloneWhatShinesIntoTheOpen) {
+    const Scene scene = built_scene("spiral");
+    const Stage stage(scene);
+    DirectProjection direct{stage.make_elements({.edge = 1, .grading_levels = 0}), {}};
+    direct.fit.resize(direct.tree.size());
+    for (ElementId e : direct.tree.leaves()) direct.fit[e].mean = Spectrum(0.1);
+    EXPECT_EQ(keep_emitted_flux(direct, stage, 1)[0], 1);
+}
+
 TEST(KeepFlux, MakesGatheredLightWhatArrivesOfItAndOfDirectLight) {
     for (const double kept : {1.0, 0.99})
         for (const double wrong : {0.99, 1.0, 1.02})

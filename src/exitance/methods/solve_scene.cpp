@@ -196,7 +196,11 @@ class Solver {
                                                        .may_give_up = direct_.tree.size() > 0,
                                                        .seed = options_.seed},
                                                       stop_);
-        if (fresh.tree.size() > 0) direct_ = std::move(fresh);
+        if (fresh.tree.size() > 0) {
+            const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);
+            progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
+            direct_ = std::move(fresh);
+        }
         statistics().seconds["mesh"] += watch.seconds();
     }
 
@@ -249,7 +253,7 @@ class Solver {
     bool deliver(const ElementGather* elements, const QuickFunction& b) {
         gathered_ = {};
         ElementFunction indirect = gathers() ? gather(b, elements, fresh_) : on_leaves();
-        if (gathers() && !light_->kept.empty()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
+        if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
             if (certificate_.points > 0) return false;
@@ -267,6 +271,11 @@ class Solver {
 
     /// Is the method's light gathered once more, or are its elements what is delivered?
     bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
+
+    /// Is it known how much light is to arrive? As the method tells, or because the scene is closed.
+    bool keeps_flux() const {
+        return options_.bounces < 0 && (!light_->kept.empty() || keeps_reflected_light(stage_, *light_, options_.seed));
+    }
 
     ElementFunction on_leaves() const {
         const std::string& basis = solution_.statistics.basis;

@@ -47,8 +47,13 @@ TEST(SolveScene, LosesNoLightInClosedScenes) {
             EXPECT_LT(solved(built_scene(name), {.method = Method::matrix, .seed = seed}).statistics.energy.defect,
                       1e-3)
                 << name << " " << seed;
-    const Solution by_links = solved(built_scene("complex"), {.method = Method::hierarchical});
-    EXPECT_LT(by_links.statistics.energy.defect, 1e-3);
+    // Coarse means of direct light would leave up to 3e-3 more of what the lamps of an office give.
+    for (std::uint64_t seed : {1, 2})
+        EXPECT_LT(solved(built_scene("office"), {.method = Method::matrix, .error = 0.05, .seed = seed})
+                      .statistics.energy.defect,
+                  1e-3);
+    for (const Method method : {Method::hierarchical, Method::progressive, Method::monte_carlo})
+        EXPECT_LT(solved(built_scene("complex"), {.method = method}).statistics.energy.defect, 1e-4);
     // Nothing hides the light in a tube, so its direct projection is off by rounding; all else is kept.
     for (Method method : {Method::matrix, Method::hierarchical})
         EXPECT_LT(solved(built_scene("tube", {{"rho", "0.9"}}), {.method = method}).statistics.energy.defect, 1e-6);

@@ -15,11 +15,4 @@ std::vector<Spectrum> leaf_reflectances(const Scene& scene, const ElementTree& t
     return rho;
 }
 
-std::vector<double> leaf_areas(const ElementTree& tree, const LeafNumbering& numbering) {
-    std::vector<double> area;
-    area.reserve(numbering.leaves.size());
-    for (ElementId e : numbering.leaves) area.push_back(tree.area(e));
-    return area;
-}
-
 }  // namespace exitance

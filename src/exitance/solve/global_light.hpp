@@ -56,7 +56,4 @@ struct GlobalLight {
 /// Reflectance of every leaf, by leaf number.
 std::vector<Spectrum> leaf_reflectances(const Scene& scene, const ElementTree& tree, const LeafNumbering& numbering);
 
-/// Area of every leaf, by leaf number, m^2.
-std::vector<double> leaf_areas(const ElementTree& tree, const LeafNumbering& numbering);
-
 }  // namespace exitance

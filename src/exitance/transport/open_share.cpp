@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
@@ -27,15 +28,16 @@ bool is_certainly_open(const Stage& stage, const ElementTree& tree, ElementId p,
     return shaft.classify(candidates) == View::open;
 }
 
-/// One leaf in each of many strata of equal area.
-std::vector<ElementId> leaves_by_area(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering) {
+/// One leaf in each of many strata of equal weight, by leaf number.
+std::vector<ElementId> leaves_in_strata(const LeafNumbering& numbering, std::span<const double> weight) {
     constexpr std::size_t count = 512;
+    const double total = std::accumulate(weight.begin(), weight.end(), 0.0);
     std::vector<ElementId> out;
     double before = 0;
-    for (const ElementId e : numbering.leaves) {
-        before += tree.area(e);
-        while (out.size() < count && static_cast<double>(out.size()) + 0.5 <= count * before / stage.area)
-            out.push_back(e);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+        before += weight[i];
+        while (out.size() < count && (static_cast<double>(out.size()) + 0.5) * total <= count * before)
+            out.push_back(numbering.leaves[i]);
     }
     return out;
 }
@@ -51,7 +53,7 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
             return *this;
         }
     };
-    const std::vector<ElementId> leaves = leaves_by_area(stage, tree, numbering);
+    const std::vector<ElementId> leaves = leaves_in_strata(numbering, leaf_areas(tree, numbering));
     const Light sum = parallel_sum<Light>(leaves.size(), [&](std::size_t k) {
         ElementRays rays(stage, tree, locator);
         std::uint32_t hit = 0;
@@ -68,9 +70,10 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
 }
 
 bool is_closed(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-               const ElementLocator& locator, std::uint64_t seed) {
-    constexpr std::size_t each = 16;
-    const std::vector<ElementId> leaves = leaves_by_area(stage, tree, numbering);
+               const ElementLocator& locator, std::uint64_t seed, std::span<const double> power) {
+    constexpr std::size_t each = 8;
+    const std::vector<ElementId> leaves =
+        power.empty() ? leaves_in_strata(numbering, leaf_areas(tree, numbering)) : leaves_in_strata(numbering, power);
     const double missed = parallel_sum<double>(leaves.size(), [&](std::size_t k) {
         ElementRays rays(stage, tree, locator);
         std::array<std::uint32_t, each> hits{};
