@@ -15,7 +15,8 @@ namespace {
 /// Cells that lines are told by: of the coordinates of their direction, and of their place in sizes of the scene
 /// (find_extent).
 constexpr double direction_cell = 1e-3, place_cell = 1e-4;
-constexpr unsigned grades = 8;  ///< Of coarseness, see EdgePairs::grade.
+constexpr double vague = 1.0 / 16;  ///< Radians: an edge whose direction is less certain tells no line.
+constexpr unsigned grades = 8;      ///< Of coarseness, see EdgePairs::grade.
 
 }  // namespace
 
@@ -159,11 +160,19 @@ void EdgePairs::pair_parts(std::uint32_t e, std::uint32_t f) {
     split_at_ends(f, e, normalized(b), norm(b));
 }
 
-/// How many of the others an interval meets, about, were they spread evenly.
-double EdgePairs::crowding(const std::vector<Interval>& intervals) {
-    double lo = intervals[0].lo, hi = intervals[0].hi, sum = 0;
-    for (const Interval& i : intervals) lo = std::min(lo, i.lo), hi = std::max(hi, i.hi), sum += i.hi - i.lo;
-    return sum / (hi - lo);
+/// How many pairs of these intervals meet. O(n log n).
+double EdgePairs::meetings(const std::vector<Interval>& intervals) {
+    std::vector<double> begins, ends;
+    for (const Interval& i : intervals) begins.push_back(i.lo), ends.push_back(i.hi);
+    std::sort(begins.begin(), begins.end());
+    std::sort(ends.begin(), ends.end());
+    double pairs = 0;
+    std::size_t ended = 0;
+    for (std::size_t begun = 0; begun < begins.size(); ++begun) {
+        while (ended < begun && ends[ended] <= begins[begun]) ++ended;
+        pairs += static_cast<double>(begun - ended);
+    }
+    return pairs;
 }
 
 std::vector<EdgePairs::Interval> EdgePairs::intervals_along(const Vec3& d, std::span<const std::uint32_t> group) const {
@@ -191,11 +200,11 @@ void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
     }
     const Edge& first = edges_[group[0]];
     std::vector<Interval> intervals = intervals_along(normalized(point(first.to) - point(first.from)), group);
-    constexpr double crowded = 32;
-    if (crowding(intervals) > crowded)
+    constexpr double crowded = 32;  // others that an interval meets
+    if (double least = meetings(intervals); least > crowded * static_cast<double>(group.size()))
         for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
             std::vector<Interval> other = intervals_along(axis, group);
-            if (crowding(other) < crowding(intervals)) intervals = std::move(other);
+            if (const double pairs = meetings(other); pairs < least) least = pairs, intervals = std::move(other);
         }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });
@@ -215,7 +224,8 @@ void EdgePairs::add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t
 
 /// Unpaired edges by their lines; of those between the same two points, which pair_whole_edges has compared, the last
 /// stands for all. Edges with a line to themselves, as nearly all are that curved surfaces leave unpaired, are not
-/// among them: a table of counts tells, before anything is kept or sorted.
+/// among them: a table of counts tells, before anything is kept or sorted. Nor are those so short that their lines
+/// might be any.
 std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     std::vector<char> stands(edges_.size(), true);
     for (const Edge& e : edges_)
@@ -228,7 +238,7 @@ std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     std::array<bool, grades> is_there{};
     std::vector<std::uint32_t> twins;
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-        if (!stands[e]) continue;
+        if (!stands[e] || line_errors(e).direction > vague) continue;
         twins.clear();
         add_unpaired_twins(e, twins);
         if (twins.empty()) continue;
