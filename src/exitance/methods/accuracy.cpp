@@ -66,15 +66,18 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
         apply_user_knobs(out, options);
         return out;
     }
-    // Coarser than this, and the certificate, which follows late reflections on the method's elements, sees too little.
+    // What is gathered is refined, so that the method may be rough; but the certificate follows late reflections on its
+    // elements, and through fewer of them sees too little.
+    out.refined = true;
     constexpr double coarsest = 0.05;
     const double coarser = std::clamp(2.5 * error, error, std::max(error, coarsest));
     const Knobs coarse = knobs_for_error(coarser, pieces, options);
-    out.solve_mesh = coarse.solve_mesh, out.solve_rays = coarse.solve_rays;
-    // Few elements cast few rays, whose noise would deal light out among them otherwise, and never average out.
-    if (coarser == coarsest) out.solve_rays.average *= 4;
-    out.gather_mesh = {edge_for(coarser), coarse.gather_mesh.grading_levels}, out.gather_tolerance = 0.4 * coarser;
-    out.gather_element_share = coarse.gather_element_share;
+    const auto fewer = [](int levels, int less) { return std::max(0, levels - less); };
+    out.solve_mesh = {std::sqrt(2.0) * coarse.solve_mesh.edge, fewer(coarse.gather_mesh.grading_levels, 2)};
+    out.solve_rays = coarse.solve_rays, out.solve_rays.average = 128;
+    out.gather_mesh = {std::sqrt(2.0) * edge_for(coarser), fewer(knobs.gather_mesh.grading_levels, 1)};
+    out.gather_tolerance = 0.4 * coarser, out.gather_element_share = 0.035 * coarser;
+    apply_user_knobs(out, options);
     return out;
 }
 

@@ -21,6 +21,7 @@ struct Knobs {
     bool gather_curved = false;            ///< By polynomials of second degree.
     double gather_relative_tolerance = 0;  ///< Error of interpolation where elements are summed, of the light there.
     double gather_element_share = 0;       ///< What an element may miss there, of the light there.
+    bool refined = false;                  ///< What is summed is refined and summed once more (`refined_light`).
 };
 
 /// Knobs for a relative error, where the pieces of the scene are these. Rules of thumb that the certificate checks:
@@ -28,7 +29,8 @@ struct Knobs {
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options);
 
 /// The same where light is summed over elements (`ElementGather`). Nothing is lost to noise there, so that meshes for a
-/// larger error do; below 1%, where places by themselves are to be right, edges and their ends are graded further.
+/// larger error do, and rougher ones still where what was summed is refined; below 1%, where places by themselves are
+/// to be right, edges and their ends are graded further.
 Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options);
 
 /// What an error is made of, RMS relative to the mean reflected light: the method's elements, and of the local pass the

@@ -11,6 +11,7 @@
 #include "exitance/methods/light_functions.hpp"
 #include "exitance/methods/memory_plan.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/refined_light.hpp"
 #include "exitance/methods/smoothing.hpp"
 #include "exitance/methods/solve_archive.hpp"
 #include "exitance/methods/solve_report.hpp"
@@ -101,14 +102,14 @@ class Solver {
     }
 
     /// What comes next within an attempt.
-    enum class Step : std::uint8_t { project, solve, gather, certify, decide };
+    enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide };
 
     SolveStatistics& statistics() { return solution_.statistics; }
 
     /// All that the steps to come depend on; `phase` is the state within a step, or empty.
     template <class Archive>
     void archive_state(Archive& a, std::string& phase) {
-        a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, gathered_, certificate_, phase);
+        a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase);
         a(solution_.indirect, solution_.direct_share, solution_.direct_in_elements, solution_.statistics);
         bool has_local_pass = local_pass_.has_value();
         a(has_local_pass);
@@ -220,19 +221,27 @@ class Solver {
         Stopwatch watch;
         const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
         const QuickFunction b(light, stage_.scene.regions().size());
-        std::optional<ElementGather> elements;
-        if (gathers() && sums_) elements.emplace(stage_, light);
         if (step_ == Step::gather) {
-            const bool whole = deliver(elements ? &*elements : nullptr, b);
+            refined_.clear();
+            const bool whole = deliver(parts_to_sum({&light, 1}), b, fresh_);
             statistics().seconds["reconstruct"] += watch.restart();
             if (!whole) return;
-            reach(Step::certify);
+            reach(Step::refine);
         }
+        if (step_ == Step::refine && refines()) {
+            if (refined_.empty()) refined_ = refine();
+            const bool whole = deliver(parts_to_sum(refined_), b, true);
+            statistics().seconds["reconstruct"] += watch.restart();
+            if (!whole) return;
+        }
+        reach(Step::certify);
+        const std::vector<ElementGather> elements = refines() ? parts_to_sum(refined_) : parts_to_sum({&light, 1});
         progress_.phase("certify");
         CertificateOptions look{.error = options_.error_target(),
                                 .points = CertificateOptions::points_for(solution_.indirect.tree.leaves().size())};
+        if (sums_) look.points /= 2;  // without noise
         if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
-        certify_solution(look, options_.error_demand(), elements ? &*elements : nullptr);
+        certify_solution(look, options_.error_demand(), elements);
         statistics().seconds["certify"] += watch.restart();
         reach(Step::decide);
     }
@@ -248,11 +257,27 @@ class Solver {
         statistics().seconds["solve"] += watch.seconds();
     }
 
-    /// Light everywhere, from what the method found: `b`, as elements where those are summed. False when a request to
-    /// stop cut that short.
-    bool deliver(const ElementGather* elements, const QuickFunction& b) {
+    /// Functions as elements to be summed over; none where light is found by rays.
+    std::vector<ElementGather> parts_to_sum(std::span<const ElementFunction> functions) const {
+        std::vector<ElementGather> out;
+        if (gathers() && sums_)
+            for (const ElementFunction& f : functions) out.emplace_back(stage_, f);
+        return out;
+    }
+
+    bool refines() const { return gathers() && sums_ && knobs_.refined; }
+
+    /// One step on from what is delivered.
+    std::vector<ElementFunction> refine() const {
+        return refined_light(stage_, *light_, solution_.indirect, direct_, share_, knobs_.solve_rays,
+                             knobs_.gather_element_share, options_.seed);
+    }
+
+    /// Light everywhere, from what the method found: `b`, as elements where those are summed. `fresh`: it is not what
+    /// was gathered last. False when a request to stop cut that short.
+    bool deliver(std::span<const ElementGather> elements, const QuickFunction& b, bool fresh) {
         gathered_ = {};
-        ElementFunction indirect = gathers() ? gather(b, elements, fresh_) : on_leaves();
+        ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
         if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
@@ -292,7 +317,7 @@ class Solver {
         return find_direct_share(stage_, *light_, locator, options_.seed);
     }
 
-    ElementFunction gather(const ReflectedLight& b, const ElementGather* elements, bool fresh) {
+    ElementFunction gather(const ReflectedLight& b, std::span<const ElementGather> elements, bool fresh) {
         progress_.phase("gather");
         const double scale = light_->mean_reflected(stage_.area);
         if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
@@ -310,7 +335,7 @@ class Solver {
     }
 
     void certify_solution(CertificateOptions options, std::optional<double> demand = {},
-                          const ElementGather* gathered = nullptr) {
+                          std::span<const ElementGather> gathered = {}) {
         options.seed = options_.seed;
         options.direct_in_elements = light_->holds_direct;
         if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
@@ -388,6 +413,7 @@ class Solver {
     DirectProjection direct_;
     std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
     std::optional<LocalPass> local_pass_;
+    std::vector<ElementFunction> refined_;  ///< What is gathered in the end where light is summed, in parts.
     LocalPassReport gathered_;
     Certificate certificate_;
     int attempt_ = 1;

@@ -20,7 +20,8 @@ struct Sample {
     double weight = 0;
     Spectrum r1, r2;          ///< The residual.
     Spectrum local1, local2;  ///< Its part by the local pass, where known.
-    std::uint32_t leaf = 0;   ///< Leaf number in the coarse mesh.
+    bool tells_local = false;
+    std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
     std::uint32_t rays = 0;
 };
 
@@ -89,6 +90,9 @@ double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span
     for (Spectrum& v : w) v += Spectrum(1.0);
     return std::sqrt(largest(u) * largest(w));
 }
+
+/// Where light is summed, one sample in so many tells the parts of the residual: that is another sum, for less to know.
+constexpr std::size_t local_every = 4;
 
 constexpr std::size_t batches = 32;   ///< Of samples, for the spread of their mean.
 constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
@@ -174,14 +178,17 @@ void Certifier::Content::measure_residuals() {
             sample.leaf = light.numbering.number[coarse.find(region, x).element];
             if (options.summed) {
                 const bool is_covered = stage.occluders.is_covered(x, n, region);
-                const auto sum = [&](const ElementGather& elements) {
-                    return is_covered ? Spectrum() : elements(x, n, region, options.summed->share, sums);
+                const auto sum = [&](std::span<const ElementGather> parts) {
+                    Spectrum arriving;
+                    for (const ElementGather& part : parts)
+                        if (!is_covered) arriving += part(x, n, region, options.summed->share, sums);
+                    return arriving;
                 };
-                Spectrum arriving;
-                for (const ElementGather& part : options.summed->delivered) arriving += sum(part);
-                sample.r1 = sample.r2 = reflectance * (arriving - delivered);
-                if (options.summed->gathered)
-                    sample.local1 = sample.local2 = reflectance * (sum(*options.summed->gathered) - delivered);
+                sample.r1 = sample.r2 = reflectance * (sum(options.summed->delivered) - delivered);
+                if (!options.summed->gathered.empty() && k % local_every == 0) {
+                    sample.local1 = sample.local2 = reflectance * (sum(options.summed->gathered) - delivered);
+                    sample.tells_local = true;
+                }
                 continue;
             }
             const unsigned rays = rays_at(place.element);
@@ -189,6 +196,7 @@ void Certifier::Content::measure_residuals() {
                 const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
                 cast_gather(stage, x, n, region, rays, key, workspace);
                 r = reflectance * (read_gather(b, workspace).irradiance - delivered);
+                sample.tells_local = options.gathered != nullptr;
                 if (options.gathered)
                     local = reflectance * (read_gather(*options.gathered, workspace).irradiance - delivered);
             };
@@ -225,23 +233,26 @@ Certificate Certifier::Content::judge() const {
     Certificate out{.constant = constant, .mean_reflected = mean_reflected, .points = samples.size(), .rays = H.rays()};
     const std::vector<Spectrum> response = late_response();
     std::array<double, batches> residual_squared{}, error_squared{};
-    double local_squared = 0, method_squared = 0;
+    double local_squared = 0, method_squared = 0, told = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
         const double weight = s.weight / static_cast<double>(looks);
         const Spectrum& late = response[s.leaf];
         residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
         error_squared[k % batches] += weight * batches * mean((s.r1 + late) * (s.r2 + late));
-        local_squared += weight * mean(s.local1 * s.local2);
-        method_squared += weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
+        if (s.tells_local) {
+            told += weight;
+            local_squared += weight * mean(s.local1 * s.local2);
+            method_squared += weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
+        }
         out.rays += s.rays;
     }
     const BatchMean residual(residual_squared), error(error_squared);
     const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
     out.residual = std::sqrt(std::max(0.0, residual.mean)) / mean_reflected;
     if (options.gathered) {
-        out.local = std::sqrt(std::max(0.0, local_squared)) / mean_reflected;
-        out.method = std::sqrt(std::max(0.0, method_squared)) / mean_reflected;
+        out.local = std::sqrt(std::max(0.0, local_squared / told)) / mean_reflected;
+        out.method = std::sqrt(std::max(0.0, method_squared / told)) / mean_reflected;
     }
     // Less than its own uncertainty cannot be claimed.
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;

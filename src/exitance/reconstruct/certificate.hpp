@@ -11,9 +11,9 @@ namespace exitance {
 
 /// Light as elements to be summed, where nothing stands between (`ElementGather::suits`).
 struct SummedLight {
-    std::vector<ElementGather> delivered;     ///< What the delivered function reflects is the sum of these.
-    const ElementGather* gathered = nullptr;  ///< What the local pass gathered, where there was one.
-    double share = 0;                         ///< What an element may miss.
+    std::vector<ElementGather> delivered;          ///< What the delivered function reflects is the sum of these.
+    std::span<const ElementGather> gathered = {};  ///< What the local pass gathered, where there was one.
+    double share = 0;                              ///< What an element may miss.
 };
 
 struct CertificateOptions {

@@ -47,7 +47,7 @@ struct PlantedError {
         ElementFunction reflected = delivered;
         for (std::array<float, bands>& value : reflected.values)
             for (float& v : value) v = static_cast<float>(rho * (1 + static_cast<double>(v)));
-        const SummedLight summed{{ElementGather(stage, reflected)}, nullptr, 1e-3};
+        const SummedLight summed{{ElementGather(stage, reflected)}, {}, 1e-3};
         const PointwiseLight unread([](RegionId, const Point&) { return Spectrum(); });
         return Certifier(stage, light, delivered, unread, {.error = 0.02, .seed = seed, .summed = &summed}).look();
     }

@@ -28,7 +28,7 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
 /// be told how far dim places are off, too; not the darkest, where that would follow the method's elements.
 double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
     const double share = demand.tolerance * std::sqrt(mean_area_ / tree_.area(e));
-    if (demand.elements == nullptr || demand.relative_tolerance == 0) return share;
+    if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
     constexpr double darkest = 0.3;
     return std::min(share, std::max(demand.relative_tolerance * light, darkest * demand.tolerance));
 }
@@ -50,15 +50,16 @@ unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& pla
     const unsigned most = more ? 2 * rays : rays;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Point x = tree_.patch(e).at(places[i].uv);
-        if (demand.elements != nullptr) {
-            if (!stage_.occluders.is_covered(x, n, region))
-                w.gathered[i].irradiance = (*demand.elements)(x, n, region, demand.element_share, w.elements);
+        if (!demand.elements.empty()) {
+            if (stage_.occluders.is_covered(x, n, region)) continue;
+            for (const ElementGather& part : demand.elements)
+                w.gathered[i].irradiance += part(x, n, region, demand.element_share, w.elements);
         } else if (w.growing[i].rays() < most && !(more && i % 2 == 0)) {
             w.short_places.push_back({x, hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, i)});
             w.short_of.push_back(&w.growing[i]);
         }
     }
-    if (demand.elements == nullptr) {
+    if (demand.elements.empty()) {
         grow_together(stage_, w.short_places, n, region, most, b, w.short_of, w.rays);
         for (std::size_t i = 0; i < places.size(); ++i) w.gathered[i] = w.growing[i].gathered();
     }
@@ -89,7 +90,7 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
         out.rays = cast;
         if (may_cut && is_too_rough(e, out, demand)) return out;
         if (noise_excess(e, out, demand) <= tolerated || 2 * rays > demand.rays.most) {
-            if (may_cut && demand.elements == nullptr) look_between(e, out, b, demand, w);
+            if (may_cut && demand.elements.empty()) look_between(e, out, b, demand, w);
             return out;
         }
     }
@@ -196,7 +197,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
             const double done = static_cast<double>(first) / static_cast<double>(active.size());
             progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
         }
-        if (demand.elements == nullptr)
+        if (demand.elements.empty())
             for (ElementId e : active) report.rays += sampled_[e].rays;
         report.interrupted = stop.requested();
         if (depth == demand.max_depth || report.interrupted) break;

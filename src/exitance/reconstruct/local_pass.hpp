@@ -18,8 +18,9 @@ struct LocalPassDemand {
     bool curved = false;   ///< Fit polynomials of second degree, where they are larger than their noise.
     /// As much of the light there as interpolation may leave on an element that elements are summed for; 0: any.
     double relative_tolerance = 0;
-    /// The same b, to be summed over in place of rays, where that suits the scene; and what one element may miss.
-    const ElementGather* elements = nullptr;
+    /// The same b, in parts to be summed over in place of rays, where that suits the scene; and what one element may
+    /// miss. Empty: rays.
+    std::span<const ElementGather> elements = {};
     double element_share = 1e-4;
     int max_depth = 8;  ///< Rounds of cutting.
 };
