@@ -281,9 +281,11 @@ class Solver {
         if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
-            if (certificate_.points > 0) return false;
-            solution_.indirect = constant_on_leaves(*light_);
-            solution_.direct_in_elements = light_->holds_direct;
+            if (step_ != Step::refine) {
+                if (certificate_.points > 0) return false;
+                solution_.indirect = constant_on_leaves(*light_);
+                solution_.direct_in_elements = light_->holds_direct;
+            }
             constexpr double roughly = 0.1;
             certify_solution({.error = roughly});
             return false;
