@@ -356,12 +356,12 @@ class Solver {
         }
         Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
         certificate_ = certifier.look();
-        // Few points tell an estimate to a tenth or so. One just too large is looked at again, which is cheaper than
-        // another attempt for nothing.
+        // Few points tell an estimate to a tenth or so, or to a third where a few of them hold most of it. One that is
+        // not surely too large is looked at again, which is cheaper than another attempt for nothing.
         constexpr std::size_t most_looks = 4;
         for (std::size_t looks = 1; demand && looks < most_looks && !stop_.requested(); ++looks) {
             const double limit = margin(certificate_.points) * *demand;
-            if (certificate_.estimate <= limit || certificate_.estimate >= 1.25 * limit) break;
+            if (certificate_.estimate <= limit || certificate_.estimate - 2 * certificate_.uncertainty > limit) break;
             certificate_ = certifier.look();
         }
         record_certificate(certificate_, *light_, solution_.indirect, statistics());

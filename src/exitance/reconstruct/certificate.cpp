@@ -256,6 +256,7 @@ Certificate Certifier::Content::judge() const {
     }
     // Less than its own uncertainty cannot be claimed.
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
+    out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
     out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
     return out;
 }
