@@ -49,6 +49,7 @@ class Hierarchy {
         if (wants_clusters()) make_clusters();
         project_direct();
         b_ = first_;
+        light_.delivers = delivers();
         // By the light that is reflected once, at first; then by all of it.
         constexpr double links_in_a_sum = 300;
         const bool somewhere = !input_.options.importance.empty();  // else light is as good everywhere
@@ -62,7 +63,7 @@ class Hierarchy {
         constexpr int most_rounds = 8;
         int round = 0;
         const auto state = [&](auto& a) {
-            a(round, tolerance, light_.tree, light_.report, light_.delivers);
+            a(round, tolerance, light_.tree, light_.report);
             for (NodalField* field : {&direct_, &first_, &b_}) field->archive_state(a);
             refiner_.archive_state(a);
             if (far_) far_->archive_state(a);
@@ -75,7 +76,6 @@ class Hierarchy {
             const double judged_by = light_norm();
             refine(tolerance);
             relax();
-            light_.delivers = is_polynomial_ && open_share() > mostly_open;
             // What links miss grows with the light, of which the first round knows but one reflection. Where rays
             // correct it, that does not matter.
             const double missed = light_.delivers ? error() * light_norm() / judged_by : error();
@@ -161,17 +161,22 @@ class Hierarchy {
                 .seed = input_.options.seed};
     }
 
-    /// Bilinear sources hide most from near receivers, all with one sign. Where rays correct it, that does not matter.
-    double hidden() const {
-        constexpr double little = 0.5, by_bilinear = 1.5;
-        if (!is_polynomial_ || basis_.order() != 2) return little;
+    /// Do polynomials give the light as exactly as it is asked for? That the scene decides, not how far its links are
+    /// refined: attempts of one solve do not take turns.
+    bool delivers() const {
+        if (!is_polynomial_) return false;
         const LeafNumbering numbering(light_.tree);
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         std::vector<Spectrum> light;
         for (ElementId e : numbering.leaves) light.push_back(mean_over(sites_, first_, e));
-        const double open =
-            exitance::open_share(input_.stage, light_.tree, numbering, locator, light, input_.options.seed);
-        return open > mostly_open ? by_bilinear : little;
+        return exitance::open_share(input_.stage, light_.tree, numbering, locator, light, input_.options.seed) >
+               mostly_open;
+    }
+
+    /// Bilinear sources hide most from near receivers, all with one sign. Where rays correct it, that does not matter.
+    double hidden() const {
+        constexpr double little = 0.5, by_bilinear = 1.5;
+        return light_.delivers && basis_.order() == 2 ? by_bilinear : little;
     }
 
     /// How much larger the error of light may be that is gathered once more.
@@ -355,11 +360,12 @@ class Hierarchy {
                 for (ElementId child : light_.tree.children(e)) active.push_back(child);
         }
         light_.numbering = LeafNumbering(light_.tree);
+        light_.kept.clear();  // was of other leaves
     }
 
     void hand_over() {
         NodalField E = gather();
-        if (basis_.order() > 2) cut_for_delivery(E);
+        if (basis_.order() > 2 && (light_.delivers || input_.options.smoothing)) cut_for_delivery(E);
         write_nodal_light(sites_, direct_, E, input_.direct, light_);
         light_.links = system_.size();
         if (input_.options.keep_links) light_.kept_links = system_.links().list();
