@@ -63,12 +63,15 @@ void LinkJudge::set_source(ElementId q, const Spectrum& weight) {
 }
 
 LinkJudge::Row LinkJudge::row(const Point& x, const Normal& n) {
+    if (!near_) return kernel_row(x, n);
     Row out{};
-    if (near_) {
-        ++form_factors_;
-        near_row_(x, n, out.data());
-        return out;
-    }
+    ++form_factors_;
+    near_row_(x, n, out.data());
+    return out;
+}
+
+LinkJudge::Row LinkJudge::kernel_row(const Point& x, const Normal& n) const {
+    Row out{};
     for (std::size_t l = 0; l < n_; ++l) {
         const Vec3 d = source_node_[l] - x;
         const double here = dot(n, d), there = -dot(source_normal_, d), rr = squared_norm(d);
@@ -106,11 +109,11 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     ratio_ = ratio;
 
     // The rule's error relative to what it gives falls like (size / distance)^(2 M).
-    constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1;
+    constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1, hardly = 0.2;  // of what is allowed
     const double rule_error = tolerance_.systematic * rule_constant * std::pow(ratio, 2 * M);
-    near_ = false;
+    near_ = keeps_block_ = false;
     block_.clear();
-    double unit = 0, most = 0;
+    double unit = 0, most = 0, kernel_error = 0;
     const auto at_nodes = [&] {
         unit = most = 0;
         departure.fill(0);
@@ -124,16 +127,17 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     if (ratio <= surely_near) {
         at_nodes();
         // Strength says nothing of the rule: there the good one is taken.
-        const bool is_rough = tolerance_.oracle != LinkOracle::transport || most * rule_error > 0.2 * allowed;
+        const bool is_rough = tolerance_.oracle != LinkOracle::transport || most * rule_error > hardly * allowed;
         near_ = ratio > surely_far && is_rough;
     }
     if (ratio > surely_near || near_) {
         near_ = true;
         near_row_.set_source(q);
         at_nodes();
-        if (n_ > 1)
-            for (std::size_t k = 0; k < n_; ++k)
-                for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(rows_[k][l]));
+        kernel_error = tolerance_.systematic * error_of_kernel(p, q);
+        const bool will_do = tolerance_.oracle == LinkOracle::transport && kernel_error <= hardly * allowed;
+        keeps_block_ = n_ > 1 && !(will_do && allowed < HUGE_VAL);
+        if (keeps_block_) set_block(), kernel_error = 0;
     }
     form_factor_ = rows_[0][0];
     for (std::size_t i = 0; i < checks.at.size(); ++i) {
@@ -141,7 +145,36 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
         for (std::size_t k = 0; k < n_; ++k) departure[i] -= checks.factors[i * n_ + k] * node_light_[k];
     }
     const double unevenness = tolerance_.hidden * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
-    return (near_ ? 0 : most * rule_error) + tolerance_.systematic * unevenness;
+    return (near_ ? kernel_error : most * rule_error) + tolerance_.systematic * unevenness;
+}
+
+/// How much light the kernel, made anew and scaled to send what near rows do in the mean, misplaces at the node where
+/// that is most: of small or dim sources little, near as they are.
+double LinkJudge::error_of_kernel(ElementId p, ElementId q) {
+    if (n_ == 1) return 0;
+    constexpr double least = 1e-3;  // of their sizes: single precision loses nodes that are nearer
+    const double nearest = least * (sites_.radius(p) + sites_.radius(q));
+    std::array<Row, 9> kernel;
+    double exact = 0, rule = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+        const Point x = sites_.node(p, k);
+        kernel[k] = kernel_row(x, sites_.normal(p));
+        for (std::size_t l = 0; l < n_; ++l) {
+            exact += sites_.weight(p, k) * rows_[k][l], rule += sites_.weight(p, k) * kernel[k][l];
+            if (squared_norm(source_node_[l] - x) < nearest * nearest) return HUGE_VAL;
+        }
+    }
+    kernel_scale_ = scale_to(exact, rule);
+    double most = 0;
+    for (std::size_t k = 0; k < n_; ++k)
+        most = std::max(most, std::abs(kernel_scale_ * light(kernel[k]) - node_light_[k]));
+    return most;
+}
+
+void LinkJudge::set_block() {
+    block_.clear();
+    for (std::size_t k = 0; k < n_; ++k)
+        for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(rows_[k][l]));
 }
 
 void LinkJudge::triage(LinkPair& pair, std::span<const PieceId> pool) {
@@ -305,9 +338,15 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     return out;
 }
 
+double LinkJudge::scale_to(double exact, double rule) {
+    constexpr double least = 0.5, most = 2;  // beyond, it is the horizon that cuts the source
+    return rule > 0 ? std::clamp(exact / rule, least, most) : 1;
+}
+
 double LinkJudge::scale_of_rule(ElementId p, ElementId q) {
     constexpr double hardly = 1e-5;  // of what arrives
-    if (near_ || std::pow(ratio_, 2 * sites_.basis().order()) < hardly) return 1;
+    if (near_) return kernel_scale_;
+    if (std::pow(ratio_, 2 * sites_.basis().order()) < hardly) return 1;
     const Normal& n = sites_.normal(p);
     const std::vector<Point> outline = sites_.tree().outline(q);
     double exact = 0, rule = 0;
@@ -316,8 +355,7 @@ double LinkJudge::scale_of_rule(ElementId p, ElementId q) {
         for (std::size_t l = 0; l < n_; ++l) rule += sites_.weight(p, k) * rows_[k][l];
     }
     ++form_factors_;
-    constexpr double least = 0.5, most = 2;  // beyond, it is the horizon that cuts the source
-    return rule > 0 ? std::clamp(exact / rule, least, most) : 1;
+    return scale_to(exact, rule);
 }
 
 /// What the rays have shown becomes bits where it is yes or no, and part of the block where it is in between.
@@ -340,15 +378,14 @@ void LinkJudge::hand_over(bool open, Result& out) {
             visible_.fill(share);
             partial = share > 0 && share < 1;
         }
-        if (partial && !near_) {
-            const double scale = scale_of_rule(out.link.receiver, out.link.source);
+        if (partial && !keeps_block_) {
+            const double scale = near_ ? 1 : scale_of_rule(out.link.receiver, out.link.source);
             for (Row& row : rows_)
                 for (double& K : row) K *= scale;
-            for (std::size_t k = 0; k < n_; ++k)
-                for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(rows_[k][l]));
-            near_ = true;
+            set_block();
+            keeps_block_ = true;
         }
-        if (near_)
+        if (keeps_block_)
             for (std::size_t i = 0; i < n_ * n_; ++i) block_[i] *= static_cast<float>(visible_[i]);
     }
     for (double& d : out.departure) d *= share;
@@ -358,10 +395,10 @@ void LinkJudge::hand_over(bool open, Result& out) {
             for (std::size_t l = 0; l < n_; ++l)
                 out.shadowed[k] += rows_[k][l] * visible_[k * n_ + l] * source_light_[l];
     }
-    out.near = near_;
-    if (!near_) out.link.set_far(static_cast<float>(scale_of_rule(out.link.receiver, out.link.source)));
+    out.near = keeps_block_;
+    if (!keeps_block_) out.link.set_far(static_cast<float>(scale_of_rule(out.link.receiver, out.link.source)));
     for (std::size_t i = 0; i < n_ * n_; ++i)
-        if (open || near_ || visible_[i] > 0) out.link.set(i);
+        if (open || keeps_block_ || visible_[i] > 0) out.link.set(i);
 }
 
 }  // namespace exitance

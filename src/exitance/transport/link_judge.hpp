@@ -90,6 +90,7 @@ class LinkJudge {
     bool may_see(ElementId p, ElementId q) const;
     void set_source(ElementId q, const Spectrum& weight);
     Row row(const Point& x, const Normal& n);
+    Row kernel_row(const Point& x, const Normal& n) const;  ///< By Gauss's rule, be it near or not.
     Row mean_row(const Patch& receiver, const Normal& n, Departure& light);
     double light(const Row& row) const;
     /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
@@ -105,6 +106,9 @@ class LinkJudge {
     /// By how much the kernel of orders 2 and 3 is to be scaled, so that even light arrives exactly in the mean over
     /// the receiver. Constants have rays to correct them.
     double scale_of_rule(ElementId p, ElementId q);
+    static double scale_to(double exact, double rule);
+    double error_of_kernel(ElementId p, ElementId q);
+    void set_block();
     void hand_over(bool open, Result& out);
 
     struct Checks {
@@ -136,9 +140,11 @@ class LinkJudge {
     std::array<double, 81> visible_{};  ///< Share of the rays from a receiver's node to a source's that get through.
     std::array<double, 9> variance_{};  ///< Of the light at the receiver's nodes.
     std::array<Row, 9> rows_;           ///< From the receiver's nodes.
-    bool near_ = false;
-    double ratio_ = 0;        ///< Size of the source to its distance.
-    double form_factor_ = 0;  ///< From the receiver's first node.
+    bool near_ = false;                 ///< Are rows those of NearRow?
+    bool keeps_block_ = false;          ///< Are they handed over?
+    double kernel_scale_ = 1;           ///< Of near rows that are not.
+    double ratio_ = 0;                  ///< Size of the source to its distance.
+    double form_factor_ = 0;            ///< From the receiver's first node.
     std::size_t rays_ = 0, form_factors_ = 0;
 };
 
