@@ -6,6 +6,7 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/mesh/adaptive.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/linked_by_rays.hpp"
@@ -31,25 +32,40 @@ bool is_polynomial(HierarchyBasis kind) {
     return kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
 }
 
+/// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error.
+bool wants_clusters(const MethodInput& input) {
+    constexpr std::size_t many_pieces = 500;
+    const SolveOptions& o = input.options;
+    return o.clusters.value_or(input.direct.tree.roots().size() > many_pieces && o.oracle == LinkOracle::transport);
+}
+
+/// Clusters look at elements before links come to them; and from the means of flatlets nothing below is read.
+LinkSites::Held held_by(const MethodInput& input, HierarchyBasis kind) {
+    const bool has_means = kind == HierarchyBasis::flatlet2 || kind == HierarchyBasis::flatlet3;
+    return wants_clusters(input) || has_means ? LinkSites::Held::all : LinkSites::Held::roots;
+}
+
 class Hierarchy {
   public:
-    Hierarchy(const MethodInput& input, HierarchyBasis kind)
+    /// `held`: by all elements, or by those that links come to.
+    Hierarchy(const MethodInput& input, HierarchyBasis kind, LinkSites::Held held)
         : input_(input),
           is_polynomial_(is_polynomial(kind)),
           basis_(kind),
           light_{.tree = input.direct.tree},
-          sites_(input.stage, light_.tree, basis_),
-          direct_(sites_),
+          sites_(input.stage, light_.tree, basis_, held),
           first_(sites_),
           b_(sites_),
-          refiner_(light_.tree, sites_),
+          refiner_(light_.tree, sites_,
+                   [this](const std::vector<ElementId>& parents, Field<ElementId, double>& roughness) {
+                       find_light_below(parents, roughness);
+                   }),
           system_(input, sites_) {}
 
     GlobalLight solve() {
-        if (wants_clusters()) make_clusters();
-        project_direct();
-        b_ = first_;
+        if (wants_clusters(input_)) make_clusters();
         light_.delivers = delivers();
+        project_direct();
         // By the light that is reflected once, at first; then by all of it.
         constexpr double links_in_a_sum = 300;
         const bool somewhere = !input_.options.importance.empty();  // else light is as good everywhere
@@ -64,12 +80,13 @@ class Hierarchy {
         int round = 0;
         const auto state = [&](auto& a) {
             a(round, tolerance, light_.tree, light_.report);
-            for (NodalField* field : {&direct_, &first_, &b_}) field->archive_state(a);
+            sites_.archive_state(a);
+            for (NodalField* field : {&first_, &b_}) field->archive_state(a);
             refiner_.archive_state(a);
             if (far_) far_->archive_state(a);
         };
         SafePoints safe_points = input_.safe_points;
-        if (safe_points.resume(state)) sites_.update();
+        safe_points.resume(state);
         for (; round < most_rounds; ++round) {
             safe_points.pass(state);
             input_.progress.phase("link");
@@ -105,7 +122,6 @@ class Hierarchy {
     /// All pairs of leaves as they are, in place of what a hierarchy would link.
     GlobalLight solve_on_leaves() {
         project_direct();
-        b_ = first_;
         input_.progress.phase("link");
         light_.numbering = LeafNumbering(light_.tree);
         // As many links as there are at most, each of one error, come to the one asked for.
@@ -128,13 +144,6 @@ class Hierarchy {
     }
 
   private:
-    /// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error.
-    bool wants_clusters() const {
-        constexpr std::size_t many_pieces = 500;
-        const SolveOptions& o = input_.options;
-        return o.clusters.value_or(light_.tree.roots().size() > many_pieces && o.oracle == LinkOracle::transport);
-    }
-
     void make_clusters() {
         const Rooms rooms = find_rooms(input_.stage, light_.tree, input_.options.seed);
         light_.rays += rooms.rays;
@@ -168,7 +177,7 @@ class Hierarchy {
         const LeafNumbering numbering(light_.tree);
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         std::vector<Spectrum> light;
-        for (ElementId e : numbering.leaves) light.push_back(mean_over(sites_, first_, e));
+        for (ElementId e : numbering.leaves) light.push_back(material(e).reflectance * input_.direct.fit[e].mean);
         return exitance::open_share(input_.stage, light_.tree, numbering, locator, light, input_.options.seed) >
                mostly_open;
     }
@@ -200,21 +209,48 @@ class Hierarchy {
         return within_a_sum * std::min(10.0, 1 / (1 - reflected / input_.stage.area));
     }
 
-    /// Exact direct light as it was projected, at the nodes of leaves.
+    /// What rho E_dir, as projected on the leaves, comes to on an element.
+    FromBelow reflected_once(ElementId e) const {
+        FromBelow out = pull_from_leaves(sites_, e, [&](ElementId leaf) {
+            NodalValues E = projected_light(sites_, input_.direct, leaf);
+            for (Spectrum& value : E) value = material(leaf).reflectance * value;
+            return E;
+        });
+        return out;
+    }
+
     void project_direct() {
-        const std::vector<ElementId> leaves = light_.tree.leaves();
-        parallel_for(leaves.size(), 64, [&](std::size_t i) {
-            const ElementId e = leaves[i];
-            const Patch& patch = light_.tree.patch(e);
-            for (std::size_t k = 0; k < sites_.nodes(); ++k) {
-                const Spectrum E = sites_.nodes() == 1 ? input_.direct.fit[e].mean
-                                                       : input_.direct.at({e, patch.coordinates(sites_.node(e, k))});
-                direct_.set_node(e, k, E);
-                first_.set_node(e, k, material(e).reflectance * E);
+        const std::vector<ElementId> ends = sites_.ends();
+        Field<ElementId, double> roughness(light_.tree.size(), 0.0);
+        parallel_for(ends.size(), 1, [&](std::size_t i) {
+            const FromBelow found = reflected_once(ends[i]);
+            first_.set(ends[i], found.values);
+            roughness[ends[i]] = std::sqrt(found.departure_squared);
+        });
+        first_.pull();
+        b_ = first_;
+        refiner_.set_roughness(std::move(roughness));
+    }
+
+    /// On the children of elements, where links come to them: below what they were held by, light is E_dir as projected
+    /// and E_ind as their parent has it.
+    void find_light_below(const std::vector<ElementId>& parents, Field<ElementId, double>& roughness) {
+        first_.resize(), b_.resize();
+        parallel_for(parents.size(), 1, [&](std::size_t i) {
+            for (ElementId child : light_.tree.children(parents[i])) {
+                const FromBelow found = reflected_once(child);
+                first_.set(child, found.values);
+                roughness[child] = std::sqrt(found.departure_squared);
+                const auto push = sites_.push(child);
+                const std::size_t n = sites_.nodes();
+                for (std::size_t k = 0; k < n; ++k) {
+                    Spectrum b = found.values[k];
+                    for (std::size_t j = 0; j < n; ++j)
+                        b += push[k * n + j] * (b_.node(parents[i], j) - first_.node(parents[i], j));
+                    b_.set_node(child, k, b);
+                }
             }
         });
-        direct_.pull();
-        first_.pull();
     }
 
     /// Mean over the surfaces of the light that elements reflect, times the root of their area, W/m^2 m: what the
@@ -228,7 +264,7 @@ class Hierarchy {
     }
 
     void refine(const LinkTolerance& tolerance) {
-        NodalField* const also[] = {&direct_, &first_};
+        NodalField* const also[] = {&first_};
         if (!far_) return refiner_.refine(b_, also, tolerance, input_.progress, input_.stop);
         const std::vector<LinkPair> near = far_->refine(b_, tolerance, input_.stop);
         refiner_.refine(near, b_, also, tolerance, input_.progress, input_.stop);
@@ -252,24 +288,36 @@ class Hierarchy {
         if (!input_.options.importance.empty()) find_importance();
     }
 
+    /// What leaves hold, on all elements.
+    template <class OfLeaf>
+    NodalField pulled(const OfLeaf& of_leaf) const {
+        const std::vector<ElementId> ends = sites_.ends();
+        NodalField out(sites_);
+        parallel_for(ends.size(), 1,
+                     [&](std::size_t i) { out.set(ends[i], pull_from_leaves(sites_, ends[i], of_leaf).values); });
+        out.pull();
+        return out;
+    }
+
     /// How much errors of elements count at the points that are looked at: by reciprocity the same links bear it,
     /// w = w_0 + F rho w. Solved for rho w, which obeys the equation of light: v = rho w_0 + rho F v.
     void find_importance() {
         const std::vector<Spectrum> points =
             looked_at(input_.stage, light_.tree, light_.numbering, input_.options.importance, input_.options.seed);
         const std::vector<ElementId>& leaves = light_.numbering.leaves;
-        NodalField source(sites_), w(sites_);
-        for (std::size_t i = 0; i < leaves.size(); ++i)
-            for (std::size_t k = 0; k < sites_.nodes(); ++k)
-                source.set_node(leaves[i], k, material(leaves[i]).reflectance * points[i]);
-        source.pull();
+        NodalField w(sites_);
+        const NodalField source = pulled([&](ElementId leaf) {
+            NodalValues out{};
+            out.fill(material(leaf).reflectance * points[light_.numbering.number[leaf]]);
+            return out;
+        });
         NodalField v = source;
         system_.solve(source, v);
         system_.gather(v, w);
         Field<ElementId, double> importance(light_.tree.size(), 0.0);
         double total = 0;
         for (std::size_t i = 0; i < leaves.size(); ++i) {
-            const double here = mean(points[i] + mean_over(sites_, w, leaves[i]));
+            const double here = mean(points[i] + mean_over(sites_, w.values(leaves[i]), leaves[i]));
             importance[leaves[i]] = light_.tree.area(leaves[i]) * std::max(0.0, here);
             total += importance[leaves[i]];
         }
@@ -310,51 +358,54 @@ class Hierarchy {
         ConservingTransport conserving(rows, area, light_.kept);
         const std::vector<ElementId>& leaves = light_.numbering.leaves;
         std::vector<Spectrum> b(leaves.size()), E(leaves.size());
-        missed_.assign(leaves.size(), Spectrum());
-        NodalField first = first_;
+        missed_ = Field<ElementId, Spectrum>(light_.tree.size());
         constexpr int steps = 2;
         for (int step = 0; step < steps && !input_.stop.requested(); ++step) {
-            for (std::size_t i = 0; i < leaves.size(); ++i) b[i] = mean_over(sites_, b_, leaves[i]);
+            const NodalField F_b = gather();
+            parallel_for(leaves.size(), 64, [&](std::size_t i) {
+                const ElementId e = leaves[i];
+                const NodalValues E_dir = projected_light(sites_, input_.direct, e);
+                b[i] = material(e).reflectance *
+                       (mean_over(sites_, E_dir, e) + mean_over(sites_, indirect_light(F_b, e), e));
+            });
             conserving.conserve(b);
             conserving.gather(b, E);
-            const NodalField found = gather();
-            for (std::size_t i = 0; i < leaves.size(); ++i) {
-                const Spectrum missed = E[i] - mean_over(sites_, found, leaves[i]),
-                               rho = material(leaves[i]).reflectance;
-                missed_[i] += missed;
-                for (std::size_t k = 0; k < sites_.nodes(); ++k)
-                    first.set_node(leaves[i], k, first.node(leaves[i], k) + rho * missed);
-            }
-            first.pull();
+            parallel_for(leaves.size(), 64, [&](std::size_t i) {
+                missed_[leaves[i]] += E[i] - mean_over(sites_, indirect_light(F_b, leaves[i]), leaves[i]);
+            });
+            const NodalField first = pulled([&](ElementId leaf) {
+                NodalValues out = projected_light(sites_, input_.direct, leaf);
+                for (Spectrum& value : out) value = material(leaf).reflectance * (value + missed_[leaf]);
+                return out;
+            });
             solve_on_links(first, b_);
         }
         light_.rays += rows.rays();
     }
 
-    /// E_ind of leaves, by the links, and by what rays found them to miss.
+    /// F b by the links.
     NodalField gather() const {
         NodalField E(sites_);
         system_.gather(b_, E);
-        parallel_for(light_.numbering.leaves.size(), 256, [&](std::size_t i) {
-            const ElementId e = light_.numbering.leaves[i];
-            for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, system_.scale() * E.node(e, k));
-        });
-        for (std::size_t i = 0; i < missed_.size(); ++i) {
-            const ElementId e = light_.numbering.leaves[i];
-            for (std::size_t k = 0; k < sites_.nodes(); ++k) E.set_node(e, k, E.node(e, k) + missed_[i]);
-        }
         return E;
     }
 
+    /// E_ind of any element no larger than those that are held: F b, and what rays found it to miss.
+    NodalValues indirect_light(const NodalField& F_b, ElementId e) const {
+        NodalValues out = F_b.values(e);
+        while (e.value >= missed_.size() && !missed_.empty()) e = light_.tree.parent(e);
+        for (Spectrum& value : out) value = system_.scale() * value + (missed_.empty() ? Spectrum() : missed_[e]);
+        return out;
+    }
+
     /// Cuts leaves, for the sake of what is handed on, until linear functions hold what quadratic ones have found.
-    void cut_for_delivery(NodalField& E) {
+    void cut_for_delivery(const NodalLight& E) {
         const double allowed = 0.3 * input_.knobs.link_error * light_norm() / std::sqrt(input_.stage.area);
         std::vector<ElementId> active = light_.tree.leaves();
         constexpr int most_levels = 3;
         for (int level = 0; level < most_levels && !active.empty(); ++level) {
             const std::vector<ElementId> rough = rough_elements(sites_, E, active, allowed);
-            NodalField* const also[] = {&b_, &direct_, &first_};
-            refiner_.cut_elements(rough, E, also);
+            for (ElementId e : rough) refine_element(light_.tree, e);
             active.clear();
             for (ElementId e : rough)
                 for (ElementId child : light_.tree.children(e)) active.push_back(child);
@@ -364,13 +415,17 @@ class Hierarchy {
     }
 
     void hand_over() {
-        NodalField E = gather();
+        // The mesh below the elements that are held is that of direct light.
+        const std::size_t element_bytes = light_.tree.memory_bytes() * sites_.size() / light_.tree.size() +
+                                          sites_.memory_bytes() + refiner_.field_bytes() + 2 * b_.memory_bytes();
+        const NodalField F_b = gather();
+        const NodalLight E = [&](ElementId e) { return indirect_light(F_b, e); };
         if (basis_.order() > 2 && (light_.delivers || input_.options.smoothing)) cut_for_delivery(E);
-        write_nodal_light(sites_, direct_, E, input_.direct, light_);
+        write_nodal_light(sites_, E, input_.direct, light_);
         light_.links = system_.size();
         if (input_.options.keep_links) light_.kept_links = system_.links().list();
         light_.link_memory_bytes = system_.memory_bytes();
-        light_.element_memory_bytes = light_.tree.memory_bytes() + sites_.memory_bytes() + 3 * b_.memory_bytes();
+        light_.element_memory_bytes = element_bytes;
         light_.rays += rays();
         light_.form_factors = refiner_.form_factors();
     }
@@ -380,12 +435,12 @@ class Hierarchy {
     NodalBasis basis_;
     GlobalLight light_;
     LinkSites sites_;
-    NodalField direct_, first_, b_;  ///< E_dir, rho E_dir, and all reflected light.
+    NodalField first_, b_;  ///< rho E_dir, and all reflected light.
     LinkRefiner refiner_;
     LinkedSystem system_;
     std::optional<ClusterTree> clusters_;  ///< None where every piece is linked to every other to begin with.
     std::optional<ClusterRefiner> far_;
-    std::vector<Spectrum> missed_;  ///< By the links, of E_ind; of every leaf, or empty.
+    Field<ElementId, Spectrum> missed_;  ///< By the links, of E_ind; of every leaf, or empty.
 };
 
 }  // namespace
@@ -405,11 +460,11 @@ GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind) {
         const std::optional<double> delivering = is_polynomial(kind) ? std::optional(mostly_open) : std::nullopt;
         if (std::optional<GlobalLight> light = solve_linked_by_rays(input, delivering)) return std::move(*light);
     }
-    return Hierarchy(input, kind).solve();
+    return Hierarchy(input, kind, held_by(input, kind)).solve();
 }
 
 GlobalLight solve_galerkin(const MethodInput& input, HierarchyBasis kind) {
-    return Hierarchy(input, kind).solve_on_leaves();
+    return Hierarchy(input, kind, LinkSites::Held::all).solve_on_leaves();
 }
 
 /// Hierarchical radiosity [Hanrahan91]: constant elements, links between levels.

@@ -43,9 +43,9 @@ SolveReport LinkedSystem::solve(const NodalField& rhs, NodalField& x, bool close
             x.set_node(part.ends[i], k, value[i * n + k] - first[i * n + k]);  // rho F x
     });
     x.push();
-    const std::vector<ElementId> leaves = tree.leaves();
-    parallel_for(leaves.size(), 256, [&](std::size_t i) {
-        for (std::size_t k = 0; k < n; ++k) x.set_node(leaves[i], k, rhs.node(leaves[i], k) + x.node(leaves[i], k));
+    const std::vector<ElementId> ends = sites_.ends();
+    parallel_for(ends.size(), 256, [&](std::size_t i) {
+        for (std::size_t k = 0; k < n; ++k) x.set_node(ends[i], k, rhs.node(ends[i], k) + x.node(ends[i], k));
     });
     x.pull();
     return report;

@@ -24,7 +24,7 @@ class LinkedSystem {
     /// `closed`: with all light that leaves made to arrive; then `scale` says by how much more than links bring.
     SolveReport solve(const NodalField& rhs, NodalField& x, bool closed = false);
 
-    /// E = F b, W/m^2, of leaves; unscaled.
+    /// E = F b, W/m^2, of the ends of what is held; unscaled.
     void gather(const NodalField& b, NodalField& E) const;
 
     const Spectrum& scale() const { return scale_; }  ///< Of what links bring, see ConservingTransport.

@@ -17,34 +17,37 @@ ElementId projected(const DirectProjection& projection, const ElementTree& tree,
 
 }  // namespace
 
-Spectrum mean_over(const LinkSites& sites, const NodalField& field, ElementId e) {
+Spectrum mean_over(const LinkSites& sites, const NodalValues& values, ElementId e) {
     Spectrum sum;
-    for (std::size_t k = 0; k < sites.nodes(); ++k) sum += sites.weight(e, k) * field.node(e, k);
+    for (std::size_t k = 0; k < sites.nodes(); ++k) sum += sites.weight(e, k) * values[k];
     return sum;
 }
 
-ElementFit fit_polynomial(const LinkSites& sites, const NodalField& field, ElementId e) {
+ElementFit fit_polynomial(const LinkSites& sites, const NodalValues& values, ElementId e) {
     const Patch& patch = sites.tree().patch(e);
+    const Patch frame = sites.frame(e);
     std::vector<WeightedPlace> places;
-    std::vector<Spectrum> values;
+    std::vector<Spectrum> at_places;
     for (std::size_t k = 0; k < sites.nodes(); ++k) {
         if (sites.weight(e, k) == 0) continue;
-        places.push_back({patch.coordinates(sites.node(e, k)), sites.weight(e, k)});
-        values.push_back(field.node(e, k));
+        places.push_back({patch.coordinates(sites.node(frame, k)), sites.weight(e, k)});
+        at_places.push_back(values[k]);
     }
-    return ElementFit(sites.tree(), e, places, values);
+    return ElementFit(sites.tree(), e, places, at_places);
 }
 
-std::vector<ElementId> rough_elements(const LinkSites& sites, const NodalField& E,
+std::vector<ElementId> rough_elements(const LinkSites& sites, const NodalLight& E,
                                       const std::vector<ElementId>& elements, double allowed) {
     std::vector<std::uint8_t> is_rough(elements.size());
     parallel_for(elements.size(), 64, [&](std::size_t i) {
         const ElementId e = elements[i];
-        const ElementFit bilinear = fit_polynomial(sites, E, e);
+        const NodalValues values = E(e);
+        const ElementFit bilinear = fit_polynomial(sites, values, e);
+        const Patch frame = sites.frame(e);
         const Spectrum weight = light_weight(material(sites, e));
         double sum = 0;
         for (std::size_t k = 0; k < sites.nodes(); ++k) {
-            const Spectrum off = E.node(e, k) - bilinear.at(sites.tree().patch(e).coordinates(sites.node(e, k)));
+            const Spectrum off = values[k] - bilinear.at(sites.tree().patch(e).coordinates(sites.node(frame, k)));
             sum += sites.weight(e, k) * squared(weight * off) / static_cast<double>(bands);
         }
         is_rough[i] = sum > allowed * allowed;
@@ -55,16 +58,32 @@ std::vector<ElementId> rough_elements(const LinkSites& sites, const NodalField& 
     return rough;
 }
 
-void write_nodal_light(const LinkSites& sites, const NodalField& direct, const NodalField& indirect,
-                       const DirectProjection& projection, GlobalLight& light) {
+NodalValues projected_light(const LinkSites& sites, const DirectProjection& projection, ElementId leaf) {
+    const ElementId own = projected(projection, sites.tree(), leaf);
+    NodalValues out{};
+    if (sites.nodes() == 1) {
+        out[0] = projection.fit[own].mean;
+        return out;
+    }
+    const Patch& patch = projection.tree.patch(own);
+    const Patch frame = sites.frame(leaf);
+    for (std::size_t k = 0; k < sites.nodes(); ++k)
+        out[k] = projection.at({own, patch.coordinates(sites.node(frame, k))});
+    return out;
+}
+
+void write_nodal_light(const LinkSites& sites, const NodalLight& indirect, const DirectProjection& projection,
+                       GlobalLight& light) {
     const std::vector<ElementId>& leaves = light.numbering.leaves;
     light.direct.resize(leaves.size()), light.indirect.resize(leaves.size()), light.reflected.resize(leaves.size());
     light.indirect_corners.resize(leaves.size()), light.direct_corners.resize(leaves.size());
     parallel_for(leaves.size(), 64, [&](std::size_t leaf) {
         const ElementId e = leaves[leaf];
-        light.direct[leaf] = mean_over(sites, direct, e), light.indirect[leaf] = mean_over(sites, indirect, e);
+        const NodalValues E = indirect(e);
+        light.direct[leaf] = mean_over(sites, projected_light(sites, projection, e), e);
+        light.indirect[leaf] = mean_over(sites, E, e);
         light.reflected[leaf] = material(sites, e).reflectance * (light.direct[leaf] + light.indirect[leaf]);
-        const ElementFit polynomial = fit_polynomial(sites, indirect, e);
+        const ElementFit polynomial = fit_polynomial(sites, E, e);
         const ElementId own = projected(projection, light.tree, e);
         const Patch &patch = light.tree.patch(e), &of_own = projection.tree.patch(own);
         for (int i = 0; i < patch.corner_count(); ++i) {

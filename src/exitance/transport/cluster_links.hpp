@@ -22,7 +22,7 @@ class Bodies {
     const ElementTree& elements() const { return sites_->tree(); }
     const ClusterTree& clusters() const { return *clusters_; }
 
-    const Point& centre(Body b) const {
+    Point centre(Body b) const {
         return b.is_cluster() ? clusters_->centre(b.cluster()) : sites_->centre(b.element());
     }
     double radius(Body b) const {

@@ -72,13 +72,16 @@ void prefetch(const SourceRecord<n>& record) {
 
 template <std::size_t n>
 void fill(SourceRecord<n>& out, const LinkSites& sites, const NodalField& b, ElementId e, double scale) {
-    const double* const at[] = {sites.x(e), sites.y(e), sites.z(e)};
+    const Patch frame = sites.frame(e);
+    const Point centre = frame.centre();
     const double area = sites.tree().area(e) * scale * scale / pi;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        out.centre[axis] = sites.centre(e)[axis];
+        out.centre[axis] = centre[axis];
         out.normal[axis] = static_cast<float>(sites.normal(e)[axis]);
-        for (std::size_t l = 0; l < n; ++l)
-            out.node[axis][l] = static_cast<float>(scale * (at[axis][l] - out.centre[axis]));
+    }
+    for (std::size_t l = 0; l < n; ++l) {
+        const Vec3 at = scale * (sites.node(frame, l) - centre);
+        for (std::size_t axis = 0; axis < 3; ++axis) out.node[axis][l] = static_cast<float>(at[axis]);
     }
     for (std::size_t l = 0; l < n; ++l) {
         const double share = area * sites.weight(e, l);
@@ -101,11 +104,12 @@ class ReceivedLight {
 
   public:
     ReceivedLight(const LinkSites& sites, ElementId p, double scale) : centre_(sites.centre(p)), scale_(scale) {
-        const double* const at[] = {sites.x(p), sites.y(p), sites.z(p)};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            normal_[axis] = static_cast<float>(sites.normal(p)[axis]);
-            for (std::size_t k = 0; k < n; ++k) {
-                const auto x = static_cast<float>(scale * (at[axis][k] - centre_[axis]));
+        const Patch frame = sites.frame(p);
+        for (std::size_t axis = 0; axis < 3; ++axis) normal_[axis] = static_cast<float>(sites.normal(p)[axis]);
+        for (std::size_t k = 0; k < n; ++k) {
+            const Vec3 at = scale * (sites.node(frame, k) - centre_);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto x = static_cast<float>(at[axis]);
                 if (k < lanes)
                     x_[axis][k] = x;
                 else

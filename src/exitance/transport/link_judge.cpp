@@ -55,8 +55,9 @@ void LinkJudge::set_source(ElementId q, const Spectrum& weight) {
     source_normal_ = sites_.normal(q);
     source_area_ = sites_.tree().area(q) / pi;
     source_roughness_ = mean(weight) * roughness_[q];
+    const Patch frame = sites_.frame(q);
     for (std::size_t l = 0; l < n_; ++l) {
-        source_node_[l] = sites_.node(q, l);
+        source_node_[l] = sites_.node(frame, l);
         source_weight_[l] = sites_.weight(q, l);
         source_light_[l] = mean(weight * b_.node(q, l));
     }
@@ -118,7 +119,7 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
         unit = most = 0;
         departure.fill(0);
         for (std::size_t k = 0; k < n_; ++k) {
-            rows_[k] = n_ == 1 ? mean_row(frame, n, departure) : row(sites_.node(p, k), n);
+            rows_[k] = n_ == 1 ? mean_row(frame, n, departure) : row(sites_.node(frame, k), n);
             node_light_[k] = light(rows_[k]);
             most = std::max(most, std::abs(node_light_[k]));
             for (std::size_t l = 0; l < n_; ++l) unit += sites_.weight(p, k) * rows_[k][l];

@@ -14,15 +14,14 @@ template <std::size_t groups>
 class SourceNodes {
   public:
     SourceNodes(const LinkSites& sites, ElementId source) : normal_(sites.normal(source)) {
-        const double* const x = sites.x(source);
-        const double* const y = sites.y(source);
-        const double* const z = sites.z(source);
+        const Patch frame = sites.frame(source);
         const double area = sites.tree().area(source) / pi;
         const auto nodes = sites.basis().nodes(sites.tree().patch(source).shape);
         for (std::size_t g = 0; g < groups; ++g) {
-            at_[g] = {four::load(x + 4 * g), four::load(y + 4 * g), four::load(z + 4 * g)};
             for (std::size_t lane = 0; lane < four::lanes; ++lane) {
                 const std::size_t l = 4 * g + lane;
+                const Point y = l < nodes.size() ? sites.node(frame, l) : frame.centre();
+                at_[g].x[lane] = y.x, at_[g].y[lane] = y.y, at_[g].z[lane] = y.z;
                 weight_[g][lane] = l < nodes.size() ? area * nodes[l].weight : 0;
             }
         }

@@ -131,8 +131,10 @@ std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const L
     const bool may_keep = tolerance.oracle == LinkOracle::transport && importance_.empty();
     Field<ElementId, float> growth_of(tree_.size(), -1.0f);
     if (may_keep)
-        parallel_for(tree_.size(), 256,
-                     [&](std::size_t e) { growth_of[ElementId(e)] = static_cast<float>(growth(b, ElementId(e))); });
+        parallel_for(tree_.size(), 256, [&](std::size_t i) {
+            const ElementId e(i);
+            if (sites_.holds(e)) growth_of[e] = static_cast<float>(growth(b, e));
+        });
     const std::size_t n = sites_.nodes();
     std::vector<LinkPair> stale;
     std::vector<float> blocks, shadows;
@@ -171,10 +173,9 @@ void LinkRefiner::judge_again(const NodalField& b, const LinkTolerance& toleranc
 void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalField& b,
                                std::span<NodalField* const> also) {
     for (ElementId e : elements) refine_element(tree_, e);
-    sites_.update();
+    sites_.open(elements);
     b.resize();
     for (NodalField* field : also) field->resize();
-    judged_.resize();
     roughness_.resize(tree_.size(), 0.0);
     if (!importance_.empty()) importance_.resize(tree_.size(), 0.0);
     parallel_for(elements.size(), 64, [&](std::size_t i) {
@@ -182,10 +183,19 @@ void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalFiel
         for (ElementId child : tree_.children(e)) {
             if (!importance_.empty()) importance_[child] = importance_[e];
             inherit(sites_, e, child, b);
-            inherit(sites_, e, child, judged_);
             for (NodalField* field : also) inherit(sites_, e, child, *field);
         }
     });
+}
+
+/// From now on the children of these are held, with the light that there is.
+void LinkRefiner::open(std::vector<ElementId> parents) {
+    std::sort(parents.begin(), parents.end());
+    parents.erase(std::unique(parents.begin(), parents.end()), parents.end());
+    std::erase_if(parents, [&](ElementId e) { return tree_.is_leaf(e) || sites_.is_open(e); });
+    if (parents.empty()) return;
+    sites_.open(parents);
+    light_below_(parents, roughness_);
 }
 
 void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
@@ -237,6 +247,7 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
             {"judge links", [&](std::size_t i) { return tree_.region(pairs[i * block_size].receiver).value; }, true});
         pairs.clear();
         std::vector<PieceId> next_pool;
+        std::vector<ElementId> cut;
         for (Block& block : blocks) {
             for (Found& found : block.links) {
                 if (found.near) found.link.block += static_cast<std::uint32_t>(blocks_.size());
@@ -247,6 +258,7 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
             shadows_.insert(shadows_.end(), block.shadows.begin(), block.shadows.end());
             rays_ += block.rays, form_factors_ += block.form_factors;
             for (LinkPair pair : block.cut) {
+                cut.push_back(pair.source);
                 pair.first += static_cast<std::uint32_t>(next_pool.size());
                 for (ElementId child : tree_.children(pair.source)) {
                     pairs.push_back(pair);
@@ -256,6 +268,7 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
             next_pool.insert(next_pool.end(), block.candidates.begin(), block.candidates.end());
         }
         pool = std::move(next_pool);
+        open(std::move(cut));
     }
 }
 
@@ -301,6 +314,10 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     std::vector<ElementId> leaves;
     const Field<ElementId, std::uint8_t> too_much = judge_receivers(receivers, tolerance, leaves);
     cut_elements(leaves, b, also);
+    std::vector<ElementId> cut;
+    for (ElementId e : too_much.ids())
+        if (too_much[e]) cut.push_back(e);
+    open(std::move(cut));
     // A link that hardly departs stays; all such ones of a receiver together are a share of what is allowed.
     const double negligible = 0.03 * tolerance.interpolation;
     enum : std::uint8_t { untouched, left, handed_on };
@@ -349,22 +366,22 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
 
 void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,
                          Progress& progress, const StopRequest& stop) {
-    roughness_ = b.roughness();
+    roughness_ = b.roughness(roughness_);
     if (std::exchange(begun_, true))
         judge_again(b, tolerance, stop);
     else
         judge_all_pieces(b, tolerance, stop);
-    judged_ = b;
     cut_until_good(b, also, tolerance, progress, stop);
+    judged_ = b;
 }
 
 void LinkRefiner::refine(const std::vector<LinkPair>& fresh, NodalField& b, std::span<NodalField* const> also,
                          const LinkTolerance& tolerance, Progress& progress, const StopRequest& stop) {
-    roughness_ = b.roughness();
+    roughness_ = b.roughness(roughness_);
     judge_again(b, tolerance, stop);
     judge(fresh, b, tolerance, stop);
-    judged_ = b;
     cut_until_good(b, also, tolerance, progress, stop);
+    judged_ = b;
 }
 
 void LinkRefiner::cut_until_good(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,

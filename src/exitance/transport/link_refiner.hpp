@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "exitance/core/progress.hpp"
@@ -15,7 +16,13 @@ namespace exitance {
 /// order of their ids. So the result does not depend on threads. O(pairs + links).
 class LinkRefiner {
   public:
-    LinkRefiner(ElementTree& tree, LinkSites& sites) : tree_(tree), sites_(sites), judged_(sites) {}
+    /// Finds light on elements that links come to: what fields hold on the children of `parents`, and how rough it is
+    /// there, as NodalField::roughness() tells it. Called when their places are made.
+    using Light = std::function<void(const std::vector<ElementId>& parents, Field<ElementId, double>& roughness)>;
+
+    /// `light`: where `sites` do not hold all elements.
+    LinkRefiner(ElementTree& tree, LinkSites& sites, Light light = {})
+        : tree_(tree), sites_(sites), light_below_(std::move(light)), judged_(sites) {}
 
     /// Starts with all pairs of pieces, or goes on from the links that it found before. `b`: the light that elements
     /// reflect, at the nodes of all of them; elements that are cut hand on theirs, here and in each of `also`.
@@ -28,6 +35,9 @@ class LinkRefiner {
     /// How much errors count on each element as a receiver, squared and relative to the mean, from the next refinement
     /// on; parts take it from their wholes. Empty: alike everywhere.
     void set_importance(Field<ElementId, double> importance) { importance_ = std::move(importance); }
+
+    /// Of elements whose children are not held; of others it is found by itself.
+    void set_roughness(Field<ElementId, double> roughness) { roughness_ = std::move(roughness); }
 
     /// Cuts leaves; their parts take their functions, of `b` and of each of `also`.
     void cut_elements(const std::vector<ElementId>& elements, NodalField& b, std::span<NodalField* const> also);
@@ -47,10 +57,11 @@ class LinkRefiner {
     /// What was found so far, for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(importance_, links_, blocks_, shadows_, interpolation_, rays_, form_factors_, begun_, limited_);
+        a(importance_, roughness_, links_, blocks_, shadows_, interpolation_, rays_, form_factors_, begun_, limited_);
         judged_.archive_state(a);
     }
 
+    std::size_t field_bytes() const { return judged_.memory_bytes() + 8 * roughness_.size(); }
     std::size_t rays() const { return rays_; }
     std::size_t form_factors() const { return form_factors_; }
 
@@ -94,12 +105,15 @@ class LinkRefiner {
     std::vector<LinkPair> cut_receivers(NodalField& b, std::span<NodalField* const> also,
                                         const LinkTolerance& tolerance, Receivers& receivers);
 
+    void open(std::vector<ElementId> parents);
     void sum_up();
 
     ElementTree& tree_;
     LinkSites& sites_;
+    Light light_below_;
     double weight(ElementId receiver) const { return importance_.empty() ? 1 : importance_[receiver]; }
-    Field<ElementId, double> roughness_, importance_;
+    Field<ElementId, double> roughness_;  ///< Of elements that are held.
+    Field<ElementId, double> importance_;
     std::vector<Found> links_;
     std::vector<float> blocks_, shadows_;
     NodalField judged_;         ///< The light that links were judged by last.

@@ -8,13 +8,19 @@
 
 namespace exitance {
 
-LinkSites::LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis)
+LinkSites::LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis, Held held)
     : stage_(&stage),
       tree_(&tree),
       basis_(&basis),
       n_(basis.count()),
       stride_(basis.count() == 1 ? 1 : (basis.count() + 3) / 4 * 4) {
-    update();
+    if (held == Held::all) {
+        std::vector<ElementId> all;
+        for (ElementId e : tree.ids()) all.push_back(e);
+        hold(all);
+    } else {
+        hold(tree.roots());
+    }
 }
 
 /// The parallelogram with the domain's area, middle and second moments: with C their matrix about the middle, and C = L
@@ -40,67 +46,58 @@ Patch LinkSites::inertia_parallelogram(ElementId e) const {
 }
 
 Patch LinkSites::frame(ElementId e) const {
-    return cell_frame_[e] == regular ? tree_->patch(e) : cell_frames_[cell_frame_[e]];
+    if (!tree_->is_cell(e)) return tree_->patch(e);
+    return holds(e) ? cell_frames_[cell_frame_[place_[e]]] : inertia_parallelogram(e);
 }
 
-void LinkSites::add_depth(ElementId e) {
-    cell_frame_.add(regular);
-    if (tree_->is_cell(e)) {
-        cell_frame_[e] = static_cast<std::uint32_t>(cell_frames_.size());
-        cell_frames_.emplace_back();
-    }
-    const ElementId parent = tree_->parent(e);
-    depth_.add(parent.is_none() ? 0 : depth_[parent] + 1);
-    if (parent.is_none() || e != tree_->children(parent).front()) return;
-    if (inner_.size() < depth_[e]) inner_.resize(depth_[e]);
-    inner_[depth_[parent]].push_back(parent);
+ElementId LinkSites::held_above(ElementId e) const {
+    while (!holds(e)) e = tree_->parent(e);
+    return e;
 }
 
-void LinkSites::set_nodes(ElementId e) {
-    if (tree_->is_cell(e)) cell_frames_[cell_frame_[e]] = inertia_parallelogram(e);
-    const Patch patch = frame(e);
-    const Point middle = patch.centre();
-    const auto nodes = basis_->nodes(patch.shape);
-    for (std::size_t k = 0; k < stride_; ++k) {
-        const Point p = k < n_ ? patch.at(nodes[k].at) : middle;
-        for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][e.value * stride_ + k] = p[axis];
-    }
-    centre_[e] = middle;
-    double radius = 0;
-    for (int i = 0; i < patch.corner_count(); ++i) radius = std::max(radius, norm(patch.corner(i) - middle));
-    radius_[e] = radius;
+std::vector<ElementId> LinkSites::ends() const {
+    std::vector<ElementId> out;
+    for (ElementId e : held_)
+        if (!is_open(e)) out.push_back(e);
+    std::sort(out.begin(), out.end());
+    return out;
 }
 
-void LinkSites::add_matrices(ElementId child) {
-    own_matrix_.add(regular);
-    const ElementId parent = tree_->parent(child);
-    if (parent.is_none()) return;
-    const bool is_regular = !tree_->is_cell(parent) && !tree_->is_cell(child) &&
-                            (tree_->way(parent) == Cut::both || tree_->ratio(parent) == 0.5);
-    if (is_regular) return;
-    own_matrix_[child] = static_cast<std::uint32_t>(push_.size());
+/// Is an element cut as NodalBasis knows it?
+bool LinkSites::is_regular(ElementId parent) const {
+    return !tree_->is_cell(parent) &&
+           (tree_->way(parent) == Cut::both || (tree_->way(parent) != Cut::line && tree_->ratio(parent) == 0.5));
+}
+
+/// Pull gives the function of the parent nearest to what its children hold: (sum a P^T W P) parent = sum a P^T W child,
+/// with P their push and a their shares of the area. Numbers without weight (a triangle's last one) stay zero.
+LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
+    ChildMatrices out;
     const Patch outer = frame(parent);
-    std::vector<Vec2> places;
-    for (std::size_t k = 0; k < n_; ++k) places.push_back(outer.coordinates(node(child, k)));
-    push_.resize(push_.size() + n_ * n_);
-    const auto push = std::span(push_).subspan(own_matrix_[child], n_ * n_);
-    basis_->push_to(outer.shape, places, push);
-    pull_.resize(push_.size());
-    if (child == tree_->children(parent)[tree_->children(parent).size() - 1]) add_pull(parent);
-}
-
-/// The function of the parent nearest to what its children hold: (sum a P^T W P) parent = sum a P^T W child, with P
-/// their push and a their shares of the area. Numbers without weight (a triangle's last one) stay zero.
-void LinkSites::add_pull(ElementId parent) {
-    const auto nodes = basis_->nodes(frame(parent).shape);
+    if (is_regular(parent)) {
+        for (std::size_t i = 0; i < tree_->children(parent).size(); ++i) {
+            const auto push = basis_->push(outer.shape, tree_->way(parent), i),
+                       pull = basis_->pull(outer.shape, tree_->way(parent), i);
+            out.push.insert(out.push.end(), push.begin(), push.end());
+            out.pull.insert(out.pull.end(), pull.begin(), pull.end());
+        }
+        return out;
+    }
+    const auto nodes = basis_->nodes(outer.shape);
     std::vector<double> gram(n_ * n_, 0.0);
     for (std::size_t j = 0; j < n_; ++j)
         if (nodes[j].weight == 0) gram[j * n_ + j] = 1;
+    std::vector<Vec2> places(n_);
     for (ElementId child : tree_->children(parent)) {
+        const Patch inner = frame(child);
+        for (std::size_t k = 0; k < n_; ++k) places[k] = outer.coordinates(node(inner, k));
+        const std::size_t first = out.push.size();
+        out.push.resize(first + n_ * n_), out.pull.resize(first + n_ * n_);
+        double* const push = &out.push[first];
+        double* const pull = &out.pull[first];
+        basis_->push_to(outer.shape, places, {push, n_ * n_});
         const double share = tree_->area(child) / tree_->area(parent);
-        const auto own = basis_->nodes(frame(child).shape);
-        const double* const push = &push_[own_matrix_[child]];
-        double* const pull = &pull_[own_matrix_[child]];
+        const auto own = basis_->nodes(inner.shape);
         for (std::size_t k = 0; k < n_; ++k)
             for (std::size_t i = 0; i < n_; ++i) {
                 pull[i * n_ + k] = share * own[k].weight * push[k * n_ + i];
@@ -108,20 +105,63 @@ void LinkSites::add_pull(ElementId parent) {
             }
     }
     for (std::size_t j = 0; j < n_; ++j) gram[j * n_ + j] *= 1 + 1e-12;  // slivers say little of some functions
-    for (ElementId child : tree_->children(parent)) {
-        std::vector<double> matrix = gram, pull(&pull_[own_matrix_[child]], &pull_[own_matrix_[child]] + n_ * n_);
+    for (std::size_t first = 0; first < out.pull.size(); first += n_ * n_) {
+        std::vector<double> matrix = gram, pull(&out.pull[first], &out.pull[first] + n_ * n_);
         solve_in_place(matrix, pull, n_, n_);
-        std::copy(pull.begin(), pull.end(), &pull_[own_matrix_[child]]);
+        std::copy(pull.begin(), pull.end(), &out.pull[first]);
+    }
+    return out;
+}
+
+void LinkSites::add(ElementId e) {
+    const ElementId parent = tree_->parent(e);
+    place_[e] = static_cast<std::uint32_t>(held_.size());
+    held_.push_back(e);
+    const bool is_cell = tree_->is_cell(e);
+    cell_frame_.push_back(is_cell ? static_cast<std::uint32_t>(cell_frames_.size()) : none);
+    if (is_cell) cell_frames_.push_back(inertia_parallelogram(e));
+    const Patch patch = frame(e);
+    const Point middle = patch.centre();
+    double radius = 0;
+    for (int i = 0; i < patch.corner_count(); ++i) radius = std::max(radius, norm(patch.corner(i) - middle));
+    radius_.push_back(radius);
+    depth_.push_back(parent.is_none() ? 0 : depth_[place_[parent]] + 1);
+    own_matrix_.push_back(none);
+    if (parent.is_none() || e != tree_->children(parent).front()) return;
+    if (inner_.size() < depth_.back()) inner_.resize(depth_.back());
+    inner_[depth_.back() - 1].push_back(parent);
+}
+
+/// Elements whose parents are held or come before them.
+void LinkSites::hold(std::span<const ElementId> elements) {
+    place_.resize(tree_->size(), none);
+    const std::size_t before = held_.size();
+    for (ElementId e : elements) add(e);
+    // Matrices when all children are there.
+    for (std::size_t i = before; i < held_.size(); ++i) {
+        const ElementId parent = tree_->parent(held_[i]);
+        if (parent.is_none() || held_[i] != tree_->children(parent).front() || is_regular(parent)) continue;
+        const ChildMatrices own = matrices(parent);
+        for (std::size_t c = 0; c < tree_->children(parent).size(); ++c)
+            own_matrix_[place_[tree_->children(parent)[c]]] = static_cast<std::uint32_t>(push_.size() + c * n_ * n_);
+        push_.insert(push_.end(), own.push.begin(), own.push.end());
+        pull_.insert(pull_.end(), own.pull.begin(), own.pull.end());
     }
 }
 
-void LinkSites::update() {
-    const std::size_t before = radius_.size(), count = tree_->size();
-    for (std::vector<double>& axis : position_) axis.resize(count * stride_);
-    centre_.resize(count), radius_.resize(count);
-    for (std::size_t e = before; e < count; ++e) add_depth(ElementId(e));
-    parallel_for(count - before, 256, [&](std::size_t i) { set_nodes(ElementId(before + i)); });
-    for (std::size_t e = before; e < count; ++e) add_matrices(ElementId(e));
+void LinkSites::hold_anew(std::span<const ElementId> elements) {
+    place_ = {};
+    held_.clear(), radius_.clear(), own_matrix_.clear(), push_.clear(), pull_.clear();
+    inner_.clear(), depth_.clear(), cell_frame_.clear(), cell_frames_.clear();
+    hold(elements);
+}
+
+void LinkSites::open(std::span<const ElementId> parents) {
+    std::vector<ElementId> children;
+    for (ElementId e : parents)
+        if (!is_open(e))
+            for (ElementId child : tree_->children(e)) children.push_back(child);
+    hold(children);
 }
 
 ElementPart LinkSites::part_with(Field<ElementId, std::uint8_t> marked) const {
@@ -136,14 +176,15 @@ ElementPart LinkSites::part_with(Field<ElementId, std::uint8_t> marked) const {
             part.ends.push_back(e);
             continue;
         }
-        if (part.inner.size() <= depth_[e]) part.inner.resize(depth_[e] + 1);
-        part.inner[depth_[e]].push_back(e);
+        if (part.inner.size() <= depth_[place_[e]]) part.inner.resize(depth_[place_[e]] + 1);
+        part.inner[depth_[place_[e]]].push_back(e);
     }
     return part;
 }
 
 std::span<const double> LinkSites::matrix(const std::vector<double>& own, ElementId child, bool pull) const {
-    if (own_matrix_[child] != regular) return std::span(own).subspan(own_matrix_[child], n_ * n_);
+    const std::uint32_t at = own_matrix_[place_[child]];
+    if (at != none) return std::span(own).subspan(at, n_ * n_);
     const ElementId parent = tree_->parent(child);
     const std::size_t i = child.value - tree_->children(parent).front().value;
     const Patch::Shape shape = tree_->patch(parent).shape;
@@ -151,7 +192,8 @@ std::span<const double> LinkSites::matrix(const std::vector<double>& own, Elemen
 }
 
 std::size_t LinkSites::memory_bytes() const {
-    return 8 * (3 * position_[0].size() + push_.size() + pull_.size()) + radius_.size() * (8 + 24 + 12 + 4);
+    return 4 * place_.size() + held_.size() * (4 + 8 + 4 + 4 + 4 + 4) + 8 * (push_.size() + pull_.size()) +
+           cell_frames_.size() * sizeof(Patch);
 }
 
 Spectrum NodalField::node(ElementId e, std::size_t k) const {
@@ -162,6 +204,28 @@ Spectrum NodalField::node(ElementId e, std::size_t k) const {
 
 void NodalField::set_node(ElementId e, std::size_t k, const Spectrum& value) {
     for (std::size_t band = 0; band < bands; ++band) at(e, band)[k] = value[band];
+}
+
+void NodalField::set(ElementId e, const NodalValues& values) {
+    for (std::size_t k = 0; k < sites_->nodes(); ++k) set_node(e, k, values[k]);
+}
+
+NodalValues NodalField::values(ElementId e) const {
+    const std::size_t n = sites_->nodes();
+    const ElementId held = sites_->held_above(e);
+    NodalValues out{};
+    if (held == e) {
+        for (std::size_t k = 0; k < n; ++k) out[k] = node(e, k);
+        return out;
+    }
+    const Patch outer = sites_->frame(held), inner = sites_->frame(e);
+    std::array<double, 9> factors{};
+    for (std::size_t k = 0; k < n; ++k) {
+        sites_->basis().interpolate(outer.shape, outer.coordinates(sites_->node(inner, k)),
+                                    std::span(factors).first(n));
+        for (std::size_t j = 0; j < n; ++j) out[k] += factors[j] * node(held, j);
+    }
+    return out;
 }
 
 namespace {
@@ -213,10 +277,12 @@ void NodalField::pull(const Levels& inner) {
     }
 }
 
-Field<ElementId, double> NodalField::roughness() const {
+Field<ElementId, double> NodalField::roughness(const Field<ElementId, double>& of_ends) const {
     const ElementTree& tree = sites_->tree();
     const std::size_t n = sites_->nodes();
     Field<ElementId, double> squared(tree.size(), 0.0);
+    for (ElementId e : of_ends.ids())
+        if (!sites_->is_open(e)) squared[e] = of_ends[e] * of_ends[e];
     for (std::size_t level = sites_->inner().size(); level-- > 0;) {
         const std::vector<ElementId>& elements = sites_->inner()[level];
         parallel_for(elements.size(), grain(n), [&](std::size_t i) {

@@ -21,12 +21,26 @@ struct ElementPart {
 /// The elements of a tree as links see them: where the nodes of a basis stand, and how functions move between levels.
 ///
 /// A cell (an element whose domain is less than its patch) is seen as the parallelogram that has the cell's area's
-/// first and second moments, so that one kind of rule serves all. Grows with the tree: update() after every change.
+/// first and second moments, so that one kind of rule serves all.
+///
+/// Functions are held by all elements, or by those alone that links have come to: the roots, and the children of what
+/// was opened. Where the mesh follows direct light far below these ends, nothing is held.
 class LinkSites {
   public:
-    LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis);
+    enum class Held : std::uint8_t { all, roots };
+    LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis, Held held = Held::all);
 
-    void update();
+    /// From now on the children of these are held too; of those that are not yet.
+    void open(std::span<const ElementId> parents);
+    std::size_t size() const { return held_.size(); }  ///< Elements that are held.
+    bool holds(ElementId e) const { return e.value < place_.size() && place_[e] != none; }
+    /// Are its children held? Not of a leaf.
+    bool is_open(ElementId e) const { return !tree_->is_leaf(e) && holds(tree_->children(e).front()); }
+    /// Where what an element holds stands among all that is held.
+    std::size_t place(ElementId e) const { return place_[e]; }
+    /// The nearest one that is held: the element itself, or one that it is part of.
+    ElementId held_above(ElementId e) const;
+    std::vector<ElementId> ends() const;  ///< Those held whose children are not, in order of their ids.
 
     const Stage& stage() const { return *stage_; }
     const ElementTree& tree() const { return *tree_; }
@@ -36,33 +50,43 @@ class LinkSites {
     std::size_t stride() const { return stride_; }
 
     const Normal& normal(ElementId e) const { return stage_->scene.regions()[tree_->region(e)].plane.n; }
-    double radius(ElementId e) const { return radius_[e]; }  ///< Of a ball about the frame's middle, metres.
-    const Point& centre(ElementId e) const { return centre_[e]; }
+    double radius(ElementId e) const { return radius_[place_[e]]; }  ///< Of a ball about the centre, metres; held.
+    Point centre(ElementId e) const { return frame(e).centre(); }
     /// The patch, or what stands for a cell.
     Patch frame(ElementId e) const;
-    /// One coordinate of every node, stride() entries; lanes past the last node repeat the middle.
-    const double* x(ElementId e) const { return &position_[0][e.value * stride_]; }
-    const double* y(ElementId e) const { return &position_[1][e.value * stride_]; }
-    const double* z(ElementId e) const { return &position_[2][e.value * stride_]; }
-    Point node(ElementId e, std::size_t k) const { return {x(e)[k], y(e)[k], z(e)[k]}; }
+    Point node(ElementId e, std::size_t k) const { return node(frame(e), k); }
+    Point node(const Patch& frame, std::size_t k) const { return frame.at(basis_->nodes(frame.shape)[k].at); }
     double weight(ElementId e, std::size_t k) const { return basis_->nodes(tree_->patch(e).shape)[k].weight; }
 
-    /// child[k] = sum_j push[k n + j] parent[j], and what pull adds to the parent: pull[j n + k] child[k].
+    /// child[k] = sum_j push[k n + j] parent[j], and what pull adds to the parent: pull[j n + k] child[k]. Held.
     std::span<const double> push(ElementId child) const { return matrix(push_, child, false); }
     std::span<const double> pull(ElementId child) const { return matrix(pull_, child, true); }
+    /// Those of all children of an element, held or not, one after the other.
+    struct ChildMatrices {
+        std::vector<double> push, pull;
+    };
+    ChildMatrices matrices(ElementId parent) const;
 
-    /// All inner elements by their depth, roots first.
+    /// All elements that are open, by their depth, roots first.
     const std::vector<std::vector<ElementId>>& inner() const { return inner_; }
-    /// The least part that holds all elements that are marked, by element. O(elements).
+    /// The least part that holds all elements that are marked, by element; which are held. O(elements).
     ElementPart part_with(Field<ElementId, std::uint8_t> marked) const;
     std::size_t memory_bytes() const;
 
+    /// What is held, for checkpoints.
+    template <class Archive>
+    void archive_state(Archive& a) {
+        std::vector<ElementId> held = held_;
+        a(held);
+        if constexpr (Archive::reads) hold_anew(held);
+    }
+
   private:
-    static constexpr std::uint32_t regular = 0xffffffffu;
-    void add_depth(ElementId e);
-    void set_nodes(ElementId e);
-    void add_matrices(ElementId child);
-    void add_pull(ElementId parent);
+    static constexpr std::uint32_t none = 0xffffffffu;
+    void hold(std::span<const ElementId> elements);
+    void hold_anew(std::span<const ElementId> elements);
+    void add(ElementId e);
+    bool is_regular(ElementId parent) const;
     std::span<const double> matrix(const std::vector<double>& own, ElementId child, bool pull) const;
     Patch inertia_parallelogram(ElementId e) const;
 
@@ -70,22 +94,26 @@ class LinkSites {
     const ElementTree* tree_;
     const NodalBasis* basis_;
     std::size_t n_, stride_;
-    std::array<std::vector<double>, 3> position_;
-    Field<ElementId, double> radius_;
-    Field<ElementId, Point> centre_;
-    Field<ElementId, std::uint32_t> own_matrix_;  ///< Of children that lie like no other: where their matrices stand.
+    Field<ElementId, std::uint32_t> place_;  ///< Of all elements.
+    std::vector<ElementId> held_;            ///< By place, as all below.
+    std::vector<double> radius_;
+    std::vector<std::uint32_t> own_matrix_;  ///< Of children that lie like no other: where their matrices stand.
     std::vector<double> push_, pull_;
     std::vector<std::vector<ElementId>> inner_;
-    Field<ElementId, std::uint32_t> depth_;
-    Field<ElementId, std::uint32_t> cell_frame_;  ///< Of a cell: where its frame stands in `cell_frames_`.
+    std::vector<std::uint32_t> depth_;
+    std::vector<std::uint32_t> cell_frame_;  ///< Of a cell: where its frame stands in `cell_frames_`.
     std::vector<Patch> cell_frames_;
 };
 
-/// Numbers of all elements, band by band: of element e, band and node k at (e bands + band) stride + k.
+/// The numbers of one element, node by node.
+using NodalValues = std::array<Spectrum, 9>;
+
+/// Numbers of all elements that are held, band by band: of element e, band and node k at (place bands + band) stride +
+/// k.
 class NodalField {
   public:
     explicit NodalField(const LinkSites& sites) : sites_(&sites) { resize(); }
-    void resize() { values_.resize(sites_->tree().size() * bands * sites_->stride(), 0.0); }
+    void resize() { values_.resize(sites_->size() * bands * sites_->stride(), 0.0); }
     std::size_t memory_bytes() const { return 8 * values_.size(); }
     template <class Archive>
     void archive_state(Archive& a) {
@@ -94,18 +122,22 @@ class NodalField {
     void clear();
     void clear(const ElementPart& part);
 
-    double* at(ElementId e, std::size_t band) { return &values_[(e.value * bands + band) * sites_->stride()]; }
+    double* at(ElementId e, std::size_t band) { return &values_[(sites_->place(e) * bands + band) * sites_->stride()]; }
     const double* at(ElementId e, std::size_t band) const {
-        return &values_[(e.value * bands + band) * sites_->stride()];
+        return &values_[(sites_->place(e) * bands + band) * sites_->stride()];
     }
     Spectrum node(ElementId e, std::size_t k) const;
     void set_node(ElementId e, std::size_t k, const Spectrum& value);
+    void set(ElementId e, const NodalValues& values);
+    /// Of any element: below those that are held, of the function of the nearest one.
+    NodalValues values(ElementId e) const;
 
     /// Every inner element takes its numbers from its children's. O(elements), level by level on all threads.
     void pull() { pull(sites_->inner()); }
     void pull(const ElementPart& part) { pull(part.inner); }
-    /// How far the mean over the bands departs from each element's own function, RMS over the element: 0 on leaves.
-    Field<ElementId, double> roughness() const;
+    /// How far the mean over the bands departs from each element's own function, RMS over the element; of ends: what is
+    /// given, or 0 where nothing is.
+    Field<ElementId, double> roughness(const Field<ElementId, double>& of_ends = {}) const;
     /// Every child adds what its parent holds; leaves end with the sum along their path. Likewise.
     void push() { push(sites_->inner()); }
     void push(const ElementPart& part) { push(part.inner); }
@@ -118,5 +150,41 @@ class NodalField {
     const LinkSites* sites_;
     std::vector<double> values_;
 };
+
+/// A function below an element, as the element sees it: the nearest numbers, and the mean square by which the mean over
+/// the bands departs from them.
+struct FromBelow {
+    NodalValues values{};
+    double departure_squared = 0;
+};
+
+/// Pulls what leaves hold up to an element, held or not. `of_leaf(e)`: the values of a leaf. O(elements below).
+template <class OfLeaf>
+FromBelow pull_from_leaves(const LinkSites& sites, ElementId e, const OfLeaf& of_leaf) {
+    const ElementTree& tree = sites.tree();
+    if (tree.is_leaf(e)) return {of_leaf(e)};
+    const std::size_t n = sites.nodes();
+    const LinkSites::ChildMatrices matrices = sites.matrices(e);
+    FromBelow out;
+    std::vector<FromBelow> parts;
+    for (ElementId child : tree.children(e)) {
+        const double* const pull = &matrices.pull[parts.size() * n * n];
+        const FromBelow& part = parts.emplace_back(pull_from_leaves(sites, child, of_leaf));
+        for (std::size_t j = 0; j < n; ++j)
+            for (std::size_t k = 0; k < n; ++k) out.values[j] += pull[j * n + k] * part.values[k];
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const ElementId child = tree.children(e)[i];
+        const double* const push = &matrices.push[i * n * n];
+        double sum = parts[i].departure_squared;
+        for (std::size_t k = 0; k < n; ++k) {
+            double departure = mean(parts[i].values[k]);
+            for (std::size_t j = 0; j < n; ++j) departure -= push[k * n + j] * mean(out.values[j]);
+            sum += sites.weight(child, k) * departure * departure;
+        }
+        out.departure_squared += tree.area(child) / tree.area(e) * sum;
+    }
+    return out;
+}
 
 }  // namespace exitance
