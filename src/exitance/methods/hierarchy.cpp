@@ -96,8 +96,7 @@ class Hierarchy {
             // What links miss grows with the light, of which the first round knows but one reflection. Where rays
             // correct it, that does not matter.
             const double missed = light_.delivers ? error() * light_norm() / judged_by : error();
-            demand = input_.knobs.link_error * (light_.delivers || input_.options.smoothing ? 1 : gathers_forgive) *
-                     light_norm();
+            demand = input_.knobs.link_error * share_of_links() * light_norm();
             input_.progress.note(
                 fmt::format("{} links, {} of clusters ({:.0f}% of their light in the open), {} elements, {} rays; "
                             "their error {:.3f}% "
@@ -188,8 +187,13 @@ class Hierarchy {
         return light_.delivers && basis_.order() == 2 ? by_bilinear : little;
     }
 
-    /// How much larger the error of light may be that is gathered once more.
-    static constexpr double gathers_forgive = 4;
+    /// How much larger the links' error may be than what the method's is to be: light that is gathered once more may
+    /// have a fourfold error; where links deliver it, no gather takes a share of the error asked for.
+    double share_of_links() const {
+        constexpr double gathers_forgive = 4, without_gather = 2;
+        if (light_.delivers) return input_.options.epsilon ? 1 : without_gather;
+        return input_.options.smoothing ? 1 : gathers_forgive;
+    }
     const Material& material(ElementId e) const { return input_.stage.scene.material(light_.tree.region(e)); }
 
     /// As many as there is room for.
