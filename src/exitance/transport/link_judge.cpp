@@ -166,6 +166,7 @@ double LinkJudge::error_of_kernel(ElementId p, ElementId q) {
         }
     }
     kernel_scale_ = scale_to(exact, rule);
+    if (std::abs(kernel_scale_ * rule - exact) > 1e-6 * exact) return HUGE_VAL;  // errors of one sign would add up
     double most = 0;
     for (std::size_t k = 0; k < n_; ++k)
         most = std::max(most, std::abs(kernel_scale_ * light(kernel[k]) - node_light_[k]));

@@ -9,11 +9,7 @@
 namespace exitance {
 
 LinkSites::LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis, Held held)
-    : stage_(&stage),
-      tree_(&tree),
-      basis_(&basis),
-      n_(basis.count()),
-      stride_(basis.count() == 1 ? 1 : (basis.count() + 3) / 4 * 4) {
+    : stage_(&stage), tree_(&tree), basis_(&basis), n_(basis.count()) {
     if (held == Held::all) {
         std::vector<ElementId> all;
         for (ElementId e : tree.ids()) all.push_back(e);
@@ -254,7 +250,7 @@ void NodalField::clear() {
 }
 
 void NodalField::clear(const ElementPart& part) {
-    const std::size_t size = bands * sites_->stride();
+    const std::size_t size = bands * sites_->nodes();
     const auto clear_one = [&](ElementId e) { std::fill_n(at(e, 0), size, 0.0); };
     for (const std::vector<ElementId>& level : part.inner)
         for (ElementId e : level) clear_one(e);

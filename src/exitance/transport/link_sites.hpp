@@ -46,8 +46,6 @@ class LinkSites {
     const ElementTree& tree() const { return *tree_; }
     const NodalBasis& basis() const { return *basis_; }
     std::size_t nodes() const { return n_; }  ///< Numbers an element holds.
-    /// From one element's numbers to the next one's: nodes(), rounded up to lanes of four where there are several.
-    std::size_t stride() const { return stride_; }
 
     const Normal& normal(ElementId e) const { return stage_->scene.regions()[tree_->region(e)].plane.n; }
     double radius(ElementId e) const { return radius_[place_[e]]; }  ///< Of a ball about the centre, metres; held.
@@ -93,7 +91,7 @@ class LinkSites {
     const Stage* stage_;
     const ElementTree* tree_;
     const NodalBasis* basis_;
-    std::size_t n_, stride_;
+    std::size_t n_;
     Field<ElementId, std::uint32_t> place_;  ///< Of all elements.
     std::vector<ElementId> held_;            ///< By place, as all below.
     std::vector<double> radius_;
@@ -108,12 +106,12 @@ class LinkSites {
 /// The numbers of one element, node by node.
 using NodalValues = std::array<Spectrum, 9>;
 
-/// Numbers of all elements that are held, band by band: of element e, band and node k at (place bands + band) stride +
+/// Numbers of all elements that are held, band by band: of element e, band and node k at (place bands + band) nodes +
 /// k.
 class NodalField {
   public:
     explicit NodalField(const LinkSites& sites) : sites_(&sites) { resize(); }
-    void resize() { values_.resize(sites_->size() * bands * sites_->stride(), 0.0); }
+    void resize() { values_.resize(sites_->size() * bands * sites_->nodes(), 0.0); }
     std::size_t memory_bytes() const { return 8 * values_.size(); }
     template <class Archive>
     void archive_state(Archive& a) {
@@ -122,9 +120,9 @@ class NodalField {
     void clear();
     void clear(const ElementPart& part);
 
-    double* at(ElementId e, std::size_t band) { return &values_[(sites_->place(e) * bands + band) * sites_->stride()]; }
+    double* at(ElementId e, std::size_t band) { return &values_[(sites_->place(e) * bands + band) * sites_->nodes()]; }
     const double* at(ElementId e, std::size_t band) const {
-        return &values_[(sites_->place(e) * bands + band) * sites_->stride()];
+        return &values_[(sites_->place(e) * bands + band) * sites_->nodes()];
     }
     Spectrum node(ElementId e, std::size_t k) const;
     void set_node(ElementId e, std::size_t k, const Spectrum& value);
