@@ -18,8 +18,7 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     if (!options.importance.empty()) return choose(Method::hierarchical, "refines for the points that are looked at");
     // Rays need R^(-4/3), links of order 3 about R^(-1/3): in a tube of reflectance 0.3, 33 against 5 s at 0.2%. Above
     // that the sums over elements which follow `matrix` are as fast, and better beside edges.
-    constexpr double fine = 0.003;
-    const bool is_fine = options.error_demand().value_or(1) <= fine;
+    const bool is_fine = options.error_demand().value_or(1) <= sums_reach;
     if (is_fine && !options.basis && ElementGather::suits(stage)) {
         out.options.basis = BasisKind::multiwavelet3;
         return choose(Method::wavelet, fmt::format("few polygons with nothing between them, {:.3g}% asked for",

@@ -8,10 +8,12 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
+#include "exitance/methods/choice.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/linked_by_rays.hpp"
 #include "exitance/methods/linked_system.hpp"
 #include "exitance/methods/nodal_light.hpp"
+#include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/transport/cluster_refiner.hpp"
 #include "exitance/transport/leaf_links.hpp"
@@ -173,6 +175,8 @@ class Hierarchy {
     /// refined: attempts of one solve do not take turns.
     bool delivers() const {
         if (!is_polynomial_) return false;
+        const bool sums = ElementGather::suits(input_.stage) && input_.options.error_target() > sums_reach;
+        if (sums && !input_.options.epsilon) return false;
         const LeafNumbering numbering(light_.tree);
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         std::vector<Spectrum> light;
