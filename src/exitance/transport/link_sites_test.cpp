@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "exitance/transport/form_factor.hpp"
 #include "exitance/transport/near_row.hpp"
 #include "support/built_scene.hpp"
@@ -67,6 +70,63 @@ TEST(NodalField, PullAndPushKeepLinearFunctionsOnRegularElementsAndCells) {
                     EXPECT_NEAR(field.node(e, k)[0], f(sites.node(e, k)), 1e-10);
                 }
         for (double r : field.roughness()) EXPECT_NEAR(r, 0, 1e-7);
+    }
+}
+
+TEST(LinkSites, OpenedStepByStepHoldWhatAllOfThemDo) {
+    const Scene scene = box_scene(1, 2, 3, 0.8, 1);
+    const Stage stage(scene);
+    const ElementTree tree = tree_with_cells(stage);
+    for (const HierarchyBasis kind :
+         {HierarchyBasis::haar, HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3}) {
+        const NodalBasis basis(kind);
+        const LinkSites all(stage, tree, basis);
+        LinkSites some(stage, tree, basis, LinkSites::Held::roots);
+        const auto f = [&](ElementId e) {
+            NodalValues out{};
+            for (std::size_t k = 0; k < all.nodes(); ++k) out[k] = Spectrum(std::exp(all.node(e, k).x));
+            return out;
+        };
+        NodalField whole(all);
+        for (ElementId e : tree.leaves()) whole.set(e, f(e));
+        whole.pull();
+        const Field<ElementId, double> roughness = whole.roughness();
+        EXPECT_EQ(some.ends(), tree.roots());
+        for (bool opened = true; opened;) {
+            opened = false;
+            for (ElementId end : some.ends()) {
+                const FromBelow found = pull_from_leaves(some, end, f);
+                EXPECT_NEAR(std::sqrt(found.departure_squared), roughness[end], rounding);
+                for (std::size_t k = 0; k < all.nodes(); ++k)
+                    EXPECT_NEAR(found.values[k][0], whole.node(end, k)[0], 1e-10);
+                if (tree.is_leaf(end)) continue;
+                EXPECT_EQ(some.held_above(tree.children(end).front()), end);
+                some.open(std::vector{end});
+                opened = true;
+            }
+        }
+        EXPECT_EQ(some.size(), tree.size());
+        for (ElementId e : tree.ids()) {
+            EXPECT_EQ(some.radius(e), all.radius(e));
+            if (tree.parent(e).is_none()) continue;
+            EXPECT_TRUE(std::ranges::equal(some.push(e), all.push(e)) && std::ranges::equal(some.pull(e), all.pull(e)));
+        }
+    }
+}
+
+TEST(NodalField, BelowWhatIsHeldIsTheFunctionOfTheNearestElement) {
+    const Scene scene = box_scene(1, 2, 3, 0.8, 1);
+    const Stage stage(scene);
+    const ElementTree tree = tree_with_cells(stage);
+    const NodalBasis basis(HierarchyBasis::multiwavelet3);
+    const LinkSites sites(stage, tree, basis, LinkSites::Held::roots);
+    const auto f = [](const Point& p) { return 1 + p.x * p.y - 2 * p.y * p.y + p.z; };
+    NodalField field(sites);
+    for (ElementId e : tree.roots())
+        for (std::size_t k = 0; k < sites.nodes(); ++k) field.set_node(e, k, Spectrum(f(sites.node(e, k))));
+    for (ElementId e : tree.leaves()) {
+        const NodalValues values = field.values(e);
+        for (std::size_t k = 0; k < sites.nodes(); ++k) EXPECT_NEAR(values[k][0], f(sites.node(e, k)), 1e-10);
     }
 }
 

@@ -133,6 +133,19 @@ TEST(Links, BringEvenLightExactlyInTheMeanOverTheirReceiver) {
     }
 }
 
+/// Most links between things that are near each other carry next to nothing: their kernel is made anew. What is missed
+/// by that is in the links' error, which is small beside what is allowed.
+TEST(Links, KeepBlocksForLightThatCounts) {
+    const Scene scene = built_scene("cornell");
+    const Linked linked(scene, HierarchyBasis::multiwavelet3, 0.05, [](const Point&) { return 1.0; });
+    const Links links = linked.refiner.make_links();
+    // 20 bytes a link, and 324 of one in six.
+    EXPECT_LT(links.memory_bytes(), 75 * links.size());
+    const Scene box = box_scene(1, 1, 1, 0.8, 1);
+    const Linked even(box, HierarchyBasis::multiwavelet3, 0.5, [](const Point&) { return 1.0; });
+    EXPECT_LT(even.error([](ElementId, const Point&) { return 1.0; }), 1.5 * even.estimate(0.8) + 1e-7);
+}
+
 /// What lies below the elements that links touch receives as they do, and sends as a whole.
 TEST(LinkOperator, OnThePartThatLinksTouchBringsWhatItDoesOnAllLeaves) {
     const Scene scene = built_scene("cornell");
