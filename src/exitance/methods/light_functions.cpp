@@ -161,7 +161,7 @@ namespace {
 
 /// k of every region: the mean over the method's leaves, by what they reflect.
 Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& light) {
-    EXI_CHECK(light.kept.size() == light.numbering.leaves.size());
+    EXI_CHECK(light.kept.empty() || light.kept.size() == light.numbering.leaves.size());
     Field<RegionId, double> sent(scene.regions().size(), 0.0), kept(scene.regions().size(), 0.0);
     for (std::size_t i = 0; i < light.kept.size(); ++i) {
         const ElementId e = light.numbering.leaves[i];
