@@ -434,6 +434,7 @@ class Hierarchy {
         if (input_.options.keep_links) light_.kept_links = system_.links().list();
         light_.link_memory_bytes = system_.memory_bytes();
         light_.element_memory_bytes = element_bytes;
+        light_.elements_by_level = sites_.count_by_level();
         light_.rays += rays();
         light_.form_factors = refiner_.form_factors();
     }

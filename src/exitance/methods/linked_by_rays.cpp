@@ -84,6 +84,7 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, std::o
     relax_constant_elements(input, LinkOperator(sites, links, nullptr, part), light);
     light.links = links.size();
     light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();
+    light.elements_by_level = sites.count_by_level();
     if (input.options.keep_links) light.kept_links = links.list();
     return light;
 }

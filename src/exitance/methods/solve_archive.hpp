@@ -33,10 +33,10 @@ template <class Archive>
 void archive(Archive& a, GlobalLight& light) {
     auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection,
            standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links,
-           link_memory_bytes, element_memory_bytes, kept_links] = light;
+           link_memory_bytes, element_memory_bytes, elements_by_level, kept_links] = light;
     a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection);
     a(standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links);
-    a(link_memory_bytes, element_memory_bytes, kept_links);
+    a(link_memory_bytes, element_memory_bytes, elements_by_level, kept_links);
 }
 
 template <class Archive>

@@ -6,20 +6,6 @@
 #include "exitance/methods/methods.hpp"
 
 namespace exitance {
-namespace {
-
-std::vector<std::size_t> count_by_level(const ElementTree& tree) {
-    std::vector<std::size_t> count;
-    Field<ElementId, std::uint32_t> level(tree.size(), 0);
-    for (ElementId e : tree.ids()) {
-        if (!tree.parent(e).is_none()) level[e] = level[tree.parent(e)] + 1;
-        if (level[e] >= count.size()) count.push_back(0);
-        ++count[level[e]];
-    }
-    return count;
-}
-
-}  // namespace
 
 void record_method(const Stage& stage, const GlobalLight& light, bool has_links, SolveStatistics& statistics) {
     statistics.iterations += light.report.iterations;
@@ -29,7 +15,7 @@ void record_method(const Stage& stage, const GlobalLight& light, bool has_links,
     statistics.links = light.links;
     statistics.link_memory_bytes = light.link_memory_bytes;
     statistics.element_memory_bytes = light.element_memory_bytes;
-    if (has_links) statistics.elements_by_level = count_by_level(light.tree);
+    statistics.elements_by_level = light.elements_by_level;
     // Links that rays have found lead between constants, whatever basis the method has else.
     if (has_links && light.indirect_corners.empty()) statistics.basis = name_in(basis_names, BasisKind::haar);
     const double scale = light.mean_reflected(stage.area);

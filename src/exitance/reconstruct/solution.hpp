@@ -44,7 +44,8 @@ struct SolveStatistics {
     EnergyBalance energy;
     std::map<std::string, double> seconds;  ///< total, read, mesh, link, solve, certify, reconstruct, write
     std::size_t peak_memory_bytes = 0, link_memory_bytes = 0;
-    /// Of a hierarchy: elements that links lead between, with their light, and how many there are at each depth.
+    /// Of a hierarchy: elements as far down as links come to them, with their light, and how many there are at each
+    /// depth.
     std::size_t element_memory_bytes = 0;
     std::vector<std::size_t> elements_by_level;
     std::vector<std::string> warnings;

@@ -44,7 +44,10 @@ struct GlobalLight {
 
     SolveReport report = {};
     std::size_t rays = 0, form_factors = 0, links = 0, link_memory_bytes = 0;
-    std::size_t element_memory_bytes = 0;  ///< Of a hierarchy's elements and the light that they hold.
+    /// Of a hierarchy's elements, as far down as links come to them, and the light that they hold; and how many those
+    /// are at each depth.
+    std::size_t element_memory_bytes = 0;
+    std::vector<std::size_t> elements_by_level = {};
 
     /// Of a hierarchy, where they are asked for: links by receiver, then by source.
     std::vector<KeptLink> kept_links = {};

@@ -187,6 +187,15 @@ std::span<const double> LinkSites::matrix(const std::vector<double>& own, Elemen
     return pull ? basis_->pull(shape, tree_->way(parent), i) : basis_->push(shape, tree_->way(parent), i);
 }
 
+std::vector<std::size_t> LinkSites::count_by_level() const {
+    std::vector<std::size_t> count;
+    for (std::uint32_t depth : depth_) {
+        if (depth >= count.size()) count.resize(depth + 1);
+        ++count[depth];
+    }
+    return count;
+}
+
 std::size_t LinkSites::memory_bytes() const {
     return 4 * place_.size() + held_.size() * (4 + 8 + 4 + 4 + 4 + 4) + 8 * (push_.size() + pull_.size()) +
            cell_frames_.size() * sizeof(Patch);

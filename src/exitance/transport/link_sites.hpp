@@ -70,6 +70,7 @@ class LinkSites {
     /// The least part that holds all elements that are marked, by element; which are held. O(elements).
     ElementPart part_with(Field<ElementId, std::uint8_t> marked) const;
     std::size_t memory_bytes() const;
+    std::vector<std::size_t> count_by_level() const;  ///< How many elements are held at each depth.
 
     /// What is held, for checkpoints.
     template <class Archive>
