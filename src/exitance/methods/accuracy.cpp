@@ -67,7 +67,8 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
         return out;
     }
     // What is gathered is refined, so that the method may be rough; but the certificate follows late reflections on its
-    // elements, and through fewer of them sees too little. Light of so many reflections solves no equation to refine by.
+    // elements, and through fewer of them sees too little. Light of so many reflections solves no equation to refine
+    // by.
     out.refined = options.bounces < 0;
     constexpr double coarsest = 0.05;
     const double coarser = std::clamp(2.5 * error, error, std::max(error, coarsest));
