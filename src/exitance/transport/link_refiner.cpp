@@ -198,76 +198,84 @@ void LinkRefiner::open(std::vector<ElementId> parents) {
     light_below_(parents, roughness_);
 }
 
+/// What becomes of some pairs; of those that are not dropped: a link, or a source to be cut. `pool` is what their
+/// candidates are taken from.
+LinkRefiner::Block LinkRefiner::judge_block(std::span<const LinkPair> pairs, LinkJudge& judge,
+                                            std::span<const PieceId> pool) const {
+    Block out;
+    for (LinkPair pair : pairs) {
+        note_source(tree_.region(pair.source).value);
+        LinkJudge::Result result = judge.judge(pair, pool);
+        if (result.verdict == LinkJudge::Verdict::drop) continue;
+        if (result.verdict == LinkJudge::Verdict::cut_source) {
+            const auto candidates = pair.view == View::mixed ? judge.candidates() : std::span<const PieceId>();
+            pair.first = static_cast<std::uint32_t>(out.candidates.size());
+            pair.count = static_cast<std::uint32_t>(candidates.size());
+            out.candidates.insert(out.candidates.end(), candidates.begin(), candidates.end());
+            out.cut.push_back(pair);
+            continue;
+        }
+        if (result.near) {
+            result.link.block = static_cast<std::uint32_t>(out.blocks.size());
+            out.blocks.insert(out.blocks.end(), judge.block().begin(), judge.block().end());
+        }
+        out.links.push_back({result, pair.view == View::open, tree_.is_leaf(pair.source)});
+        if (pair.view == View::open || sites_.nodes() == 1) continue;
+        out.links.back().shadow = static_cast<std::uint32_t>(out.shadows.size());
+        for (const auto& at_nodes : {result.shadowed, result.variance})
+            out.shadows.insert(out.shadows.end(), at_nodes.begin(),
+                               at_nodes.begin() + static_cast<std::ptrdiff_t>(sites_.nodes()));
+    }
+    out.rays = judge.rays(), out.form_factors = judge.form_factors();
+    return out;
+}
+
+void LinkRefiner::add_links_of(const Block& block) {
+    for (Found found : block.links) {
+        if (found.near) found.link.block += static_cast<std::uint32_t>(blocks_.size());
+        if (found.shadow != none) found.shadow += static_cast<std::uint32_t>(shadows_.size());
+        links_.push_back(found);
+    }
+    blocks_.insert(blocks_.end(), block.blocks.begin(), block.blocks.end());
+    shadows_.insert(shadows_.end(), block.shadows.begin(), block.shadows.end());
+    rays_ += block.rays, form_factors_ += block.form_factors;
+}
+
 void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                         const StopRequest& stop) {
     std::vector<PieceId> pool;
-    const Field<ElementId, double>* const importance = importance_.empty() ? nullptr : &importance_;
     while (!pairs.empty()) {
         const std::size_t block_size = block_size_for(pairs.size());
         std::vector<Block> blocks((pairs.size() + block_size - 1) / block_size);
         // Once a stop is asked for, what is left is linked as it is.
         LinkTolerance now = tolerance;
-        now.importance = importance;
+        now.importance = importance_.empty() ? nullptr : &importance_;
         limited_ |= links_.size() + pairs.size() > tolerance.most_links;
         if (stop.requested() || limited_) now.error = HUGE_VAL;
         parallel_for(
             blocks.size(), 1,
             [&](std::size_t i) {
                 LinkJudge judge(sites_, b, roughness_, now);
-                Block& block = blocks[i];
-                for (std::size_t k = i * block_size; k < std::min(pairs.size(), (i + 1) * block_size); ++k) {
-                    LinkPair pair = pairs[k];
-                    note_source(tree_.region(pair.source).value);
-                    LinkJudge::Result result = judge.judge(pair, pool);
-                    if (result.verdict == LinkJudge::Verdict::drop) continue;
-                    if (result.verdict == LinkJudge::Verdict::cut_source) {
-                        const auto candidates =
-                            pair.view == View::mixed ? judge.candidates() : std::span<const PieceId>();
-                        pair.first = static_cast<std::uint32_t>(block.candidates.size());
-                        pair.count = static_cast<std::uint32_t>(candidates.size());
-                        block.candidates.insert(block.candidates.end(), candidates.begin(), candidates.end());
-                        block.cut.push_back(pair);
-                        continue;
-                    }
-                    if (result.near) {
-                        result.link.block = static_cast<std::uint32_t>(block.blocks.size());
-                        block.blocks.insert(block.blocks.end(), judge.block().begin(), judge.block().end());
-                    }
-                    block.links.push_back({result, pair.view == View::open, tree_.is_leaf(pair.source)});
-                    if (pair.view == View::open || sites_.nodes() == 1) continue;
-                    block.links.back().shadow = static_cast<std::uint32_t>(block.shadows.size());
-                    for (const auto& at_nodes : {result.shadowed, result.variance})
-                        block.shadows.insert(block.shadows.end(), at_nodes.begin(),
-                                             at_nodes.begin() + static_cast<std::ptrdiff_t>(sites_.nodes()));
-                }
-                block.rays = judge.rays(), block.form_factors = judge.form_factors();
-                note_touched("rays", block.rays), note_touched("links", block.links.size());
-                note_touched("bytes", block.bytes());
+                const std::size_t first = i * block_size, count = std::min(block_size, pairs.size() - first);
+                blocks[i] = judge_block(std::span(pairs).subspan(first, count), judge, pool);
+                note_touched("rays", blocks[i].rays), note_touched("links", blocks[i].links.size());
+                note_touched("bytes", blocks[i].bytes());
             },
             {"judge links", [&](std::size_t i) { return tree_.region(pairs[i * block_size].receiver).value; }, true});
-        pairs.clear();
-        std::vector<PieceId> next_pool;
+        pairs.clear(), pool.clear();
         std::vector<ElementId> cut;
-        for (Block& block : blocks) {
-            for (Found& found : block.links) {
-                if (found.near) found.link.block += static_cast<std::uint32_t>(blocks_.size());
-                if (found.shadow != none) found.shadow += static_cast<std::uint32_t>(shadows_.size());
-                links_.push_back(found);
-            }
-            blocks_.insert(blocks_.end(), block.blocks.begin(), block.blocks.end());
-            shadows_.insert(shadows_.end(), block.shadows.begin(), block.shadows.end());
-            rays_ += block.rays, form_factors_ += block.form_factors;
+        for (const Block& block : blocks) {
+            add_links_of(block);
             for (LinkPair pair : block.cut) {
                 cut.push_back(pair.source);
-                pair.first += static_cast<std::uint32_t>(next_pool.size());
+                pair.first += static_cast<std::uint32_t>(pool.size());
                 for (ElementId child : tree_.children(pair.source)) {
                     pairs.push_back(pair);
                     pairs.back().source = child;
                 }
             }
-            next_pool.insert(next_pool.end(), block.candidates.begin(), block.candidates.end());
+            pool.insert(pool.end(), block.candidates.begin(), block.candidates.end());
         }
-        pool = std::move(next_pool);
         open(std::move(cut));
     }
 }

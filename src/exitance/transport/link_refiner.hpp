@@ -94,6 +94,8 @@ class LinkRefiner {
     /// How much more light a source sends than when its links were judged, if it is the same but for that; else -1.
     double growth(const NodalField& b, ElementId source) const;
     std::vector<LinkPair> take_stale_links(const NodalField& b, const LinkTolerance& tolerance);
+    Block judge_block(std::span<const LinkPair> pairs, LinkJudge& judge, std::span<const PieceId> pool) const;
+    void add_links_of(const Block& block);
     void judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                const StopRequest& stop);
     void cut_until_good(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,
