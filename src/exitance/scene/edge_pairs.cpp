@@ -17,6 +17,12 @@ namespace {
 constexpr double direction_cell = 1e-3, place_cell = 1e-4;
 constexpr double vague = 1.0 / 16;  ///< Radians: an edge whose direction is less certain tells no line.
 constexpr unsigned grades = 8;      ///< Of coarseness, see EdgePairs::grade.
+/// Tells the two ways along a line, and the two sides of a plane: none of a practical scene is at a right angle to
+/// this.
+constexpr Vec3 forward{0.5377, 0.7323, 0.4181};
+/// Edges of one line that overlap at one place, and those across from an edge that it is joined to. Only heaps of faces
+/// that overlap one another in one plane have more, and which of those are joined is nothing to the light.
+constexpr std::size_t most_open = 128, most_partners = 8;
 
 }  // namespace
 
@@ -126,7 +132,7 @@ void EdgePairs::each_line_key(std::uint32_t edge, unsigned grade, const Take& ta
     const Point& p = point(edges_[edge].from);
     Vec3 d = normalized(point(edges_[edge].to) - p);
     const double coarser = std::ldexp(1.0, 3 * static_cast<int>(grade));
-    if (dot(d, Vec3{0.5377, 0.7323, 0.4181}) < 0) d = -d;  // no line of a practical scene is at a right angle to this
+    if (dot(d, forward) < 0) d = -d;
     const Vec3 foot = (p - centre_) - dot(p - centre_, d) * d;
     const LineErrors error = line_errors(edge);
     const auto direction = [&](double x) { return CellCoordinate{x, coarser * direction_cell, error.direction}; };
@@ -143,21 +149,23 @@ void EdgePairs::split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& 
     }
 }
 
-/// Pairs two edges of one line that run against each other and overlap.
-void EdgePairs::pair_parts(std::uint32_t e, std::uint32_t f) {
+/// Pairs two edges of one line if they run against each other and overlap, and their faces lie in one plane.
+bool EdgePairs::pair_parts(std::uint32_t e, std::uint32_t f) {
+    if (material(edges_[e].face) != material(edges_[f].face)) return false;
     const Point &p = point(edges_[e].from), &r = point(edges_[f].from);
     const Vec3 a = point(edges_[e].to) - p, b = point(edges_[f].to) - r;
     const double length = norm(a);
-    if (dot(a, b) >= 0) return;
+    if (dot(a, b) >= 0) return false;
     const Vec3 d = a / length;
     const Vec3 w0 = r - p, w1 = point(edges_[f].to) - p;
     const double t0 = dot(w0, d), t1 = dot(w1, d);
-    if (std::min(length, t0) - std::max(0.0, t1) <= 2 * tol_.place) return;
+    if (std::min(length, t0) - std::max(0.0, t1) <= 2 * tol_.place) return false;
     const double off = std::max(squared_norm(w0 - t0 * d), squared_norm(w1 - t1 * d));
-    if (off > tol_.place * tol_.place || !coplanar(edges_[e].face, edges_[f].face)) return;
+    if (off > tol_.place * tol_.place || !coplanar(edges_[e].face, edges_[f].face)) return false;
     sets_.unite(edges_[e].face, edges_[f].face);
     split_at_ends(e, f, d, length);
     split_at_ends(f, e, normalized(b), norm(b));
+    return true;
 }
 
 /// How many pairs of these intervals meet. O(n log n).
@@ -180,7 +188,9 @@ std::vector<EdgePairs::Interval> EdgePairs::intervals_along(const Vec3& d, std::
     std::vector<Interval> out;
     for (const std::uint32_t e : group) {
         const double s = dot(point(edges_[e].from) - origin, d), t = dot(point(edges_[e].to) - origin, d);
-        out.push_back({std::min(s, t) - tol_.place, std::max(s, t) + tol_.place, e});
+        const bool against = dot(point(edges_[e].to) - point(edges_[e].from), forward) < 0;
+        const bool behind = dot(mesh_.area_vector[faces_[edges_[e].face]], forward) < 0;
+        out.push_back({std::min(s, t) - tol_.place, std::max(s, t) + tol_.place, e, against, behind});
     }
     return out;
 }
@@ -190,12 +200,9 @@ std::vector<EdgePairs::Interval> EdgePairs::intervals_along(const Vec3& d, std::
 /// tells them apart.
 void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
     constexpr std::size_t few = 8;  // most lines carry the two edges of a box's corner: not worth sorting
-    const auto pair = [&](std::uint32_t e, std::uint32_t f) {
-        if (material(edges_[e].face) == material(edges_[f].face)) pair_parts(e, f);
-    };
     if (group.size() <= few) {
         for (std::size_t i = 0; i < group.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j) pair(group[j], group[i]);
+            for (std::size_t j = 0; j < i; ++j) pair_parts(group[j], group[i]);
         return;
     }
     const Edge& first = edges_[group[0]];
@@ -208,11 +215,18 @@ void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
         }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });
-    std::vector<Interval> open;
+    std::array<std::array<std::vector<Interval>, 2>, 2> open;  // only those of one side run across from one another
     for (const Interval& i : intervals) {
-        std::erase_if(open, [&](const Interval& o) { return o.hi <= i.lo; });
-        for (const Interval& o : open) pair(o.edge, i.edge);
-        open.push_back(i);
+        const auto drop_ended = [&](std::vector<Interval>& some) {
+            std::erase_if(some, [&](const Interval& o) { return o.hi <= i.lo; });
+        };
+        std::vector<Interval>&own = open[i.behind][i.against], &across = open[i.behind][!i.against];
+        drop_ended(across);
+        std::size_t partners = 0;
+        for (std::size_t k = across.size(); k > 0 && partners < most_partners; --k)
+            partners += pair_parts(across[k - 1].edge, i.edge);
+        if (own.size() == most_open) drop_ended(own);
+        if (own.size() < most_open) own.push_back(i);
     }
 }
 

@@ -54,10 +54,11 @@ class EdgePairs {
     struct LineErrors {
         double direction, foot;
     };
-    /// How far an edge reaches along a direction.
+    /// How far an edge reaches along a direction; whether it runs against `forward`, whether its face looks so.
     struct Interval {
         double lo, hi;
         std::uint32_t edge;
+        bool against, behind;
     };
 
     const Point& point(std::uint32_t i) const { return mesh_.points[i]; }
@@ -75,7 +76,7 @@ class EdgePairs {
     static double meetings(const std::vector<Interval>& intervals);
     std::vector<Interval> intervals_along(const Vec3& d, std::span<const std::uint32_t> group) const;
     void pair_on_line(std::span<const std::uint32_t> group);
-    void pair_parts(std::uint32_t e, std::uint32_t f);
+    bool pair_parts(std::uint32_t e, std::uint32_t f);
     void split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length);
 
     const FaceMesh& mesh_;

@@ -1,7 +1,10 @@
 #include "exitance/scene/overlaps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "exitance/scene/cell_keys.hpp"
 #include "exitance/scene/common_area.hpp"
@@ -15,55 +18,48 @@ struct PlaneEntry {
     auto operator<=>(const PlaneEntry&) const = default;
 };
 
-/// Does the smaller region lie in the larger one's plane, facing the same way?
-bool share_plane(const Region* a, const Region* b, double tolerance) {
-    if (dot(a->plane.n, b->plane.n) <= 0) return false;
-    if (a->area < b->area) std::swap(a, b);
-    return std::all_of(b->loops.begin(), b->loops.end(), [&](const std::vector<Point>& loop) {
-        return std::all_of(loop.begin(), loop.end(),
-                           [&](const Point& p) { return std::abs(a->plane.signed_distance(p)) <= tolerance; });
-    });
-}
+/// An overlap, with the regions of its faces.
+struct Found {
+    std::array<RegionId, 2> regions;  ///< Of the first and the second face.
+    Overlap overlap;
+};
 
-/// The pair of faces of two regions that overlaps most, if any does.
-void compare(const Scene& scene, RegionId a, RegionId b, const Frame& frame, double tolerance,
-             std::vector<Overlap>& out) {
-    const auto box = [&](SurfaceId s) {
-        FlatBox flat;
-        for (const Point& p : scene.outline(s)) flat.add({dot(p, frame.u), dot(p, frame.v)});
-        return flat;
-    };
-    Overlap most{{}, {}, 0};
-    std::vector<std::pair<SurfaceId, FlatBox>> boxes;
-    for (SurfaceId s : scene.regions()[b].surfaces) boxes.push_back({s, box(s)});
-    for (SurfaceId s : scene.regions()[a].surfaces) {
-        const FlatBox own = box(s);
-        for (const auto& [t, other] : boxes) {
-            if (!own.overlaps(other, tolerance)) continue;
-            const double area = common_area(scene.outline(s), scene.outline(t), frame.n, tolerance);
-            if (area > most.area) most = {std::min(s, t), std::max(s, t), area};
-        }
-    }
-    if (most.area > 0) out.push_back(most);
-}
-
-/// Compares the regions of one cell of planes where their boxes overlap.
-void compare_all(const Scene& scene, std::span<const PlaneEntry> group, double tolerance, std::vector<Overlap>& out) {
+/// Compares the faces of regions of one cell of planes where their boxes overlap. Returns whether it gave up.
+bool compare_all(const Scene& scene, std::span<const PlaneEntry> group, double tolerance, std::vector<Found>& out) {
     const Frame frame(scene.regions()[RegionId(group[0].region)].plane.n);
-    std::vector<FlatBox> boxes(group.size());
-    for (std::size_t i = 0; i < group.size(); ++i)
-        for (const auto& loop : scene.regions()[RegionId(group[i].region)].loops)
-            for (const Point& p : loop) boxes[i].add({dot(p, frame.u), dot(p, frame.v)});
-    each_overlap(boxes, tolerance, [&](std::uint32_t i, std::uint32_t j) {
-        const RegionId a(group[i].region), b(group[j].region);
-        if (share_plane(&scene.regions()[a], &scene.regions()[b], tolerance))
-            compare(scene, a, b, frame, tolerance, out);
+    std::vector<SurfaceId> faces;
+    for (const PlaneEntry& entry : group) {
+        const auto& own = scene.regions()[RegionId(entry.region)].surfaces;
+        faces.insert(faces.end(), own.begin(), own.end());
+    }
+    const auto& surfaces = scene.surfaces();
+    // The larger ones first: a face is compared with those that are.
+    std::sort(faces.begin(), faces.end(), [&](SurfaceId a, SurfaceId b) {
+        return surfaces[a].area != surfaces[b].area ? surfaces[a].area > surfaces[b].area : a < b;
+    });
+    std::vector<FlatBox> boxes(faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        for (const Point& p : scene.outline(faces[i])) boxes[i].add({dot(p, frame.u), dot(p, frame.v)});
+    constexpr std::size_t enough = 4;
+    std::size_t told = 0;
+    std::uint32_t last = 0;
+    return each_overlap(boxes, tolerance, [&](std::uint32_t i, std::uint32_t j) {
+        if (i != std::exchange(last, i)) told = 0;
+        const SurfaceId s = std::min(faces[i], faces[j]), t = std::max(faces[i], faces[j]);
+        const std::array regions{surfaces[s].region, surfaces[t].region};
+        const Plane& plane = scene.regions()[surfaces[faces[j]].region].plane;
+        const auto in_plane = [&](const Point& p) { return std::abs(plane.signed_distance(p)) <= tolerance; };
+        if (regions[0] == regions[1] || dot(surfaces[s].normal, surfaces[t].normal) <= 0) return false;
+        if (!std::ranges::all_of(scene.outline(faces[i]), in_plane)) return false;
+        const double area = common_area(scene.outline(s), scene.outline(t), frame.n, tolerance);
+        if (area > 0) out.push_back({regions, {s, t, area}});
+        return area > 0 && ++told == enough;
     });
 }
 
 }  // namespace
 
-std::vector<Overlap> find_overlaps(const Scene& scene, double tolerance) {
+Overlaps find_overlaps(const Scene& scene, double tolerance) {
     std::vector<PlaneEntry> entries;
     const double size = scene.size(), tilt = 1e-6;
     for (RegionId id : scene.regions().ids()) {
@@ -78,15 +74,22 @@ std::vector<Overlap> find_overlaps(const Scene& scene, double tolerance) {
                          });
     }
     std::sort(entries.begin(), entries.end());
-    std::vector<Overlap> out;
+    Overlaps out;
+    std::vector<Found> found;
     for (std::size_t i = 0, j; i < entries.size(); i = j) {
         for (j = i + 1; j < entries.size() && entries[j].key == entries[i].key;) ++j;
-        if (j - i > 1) compare_all(scene, std::span(entries).subspan(i, j - i), tolerance, out);
+        if (j - i > 1) out.gave_up |= compare_all(scene, std::span(entries).subspan(i, j - i), tolerance, found);
     }
-    const auto ids = [](const Overlap& o) { return std::pair(o.first, o.second); };
-    std::sort(out.begin(), out.end(), [&](const Overlap& a, const Overlap& b) { return ids(a) < ids(b); });
-    out.erase(std::unique(out.begin(), out.end(), [&](const Overlap& a, const Overlap& b) { return ids(a) == ids(b); }),
-              out.end());
+    // Either region's face may have the smaller id.
+    for (Found& f : found) std::ranges::sort(f.regions);
+    std::ranges::sort(found, [](const Found& a, const Found& b) {
+        return std::tie(a.regions, b.overlap.area, a.overlap.first, a.overlap.second) <
+               std::tie(b.regions, a.overlap.area, b.overlap.first, b.overlap.second);
+    });
+    const auto alike = std::ranges::unique(found, {}, &Found::regions);
+    found.erase(alike.begin(), alike.end());
+    for (const Found& f : found) out.pairs.push_back(f.overlap);
+    std::ranges::sort(out.pairs, {}, [](const Overlap& o) { return std::pair(o.first, o.second); });
     return out;
 }
 

@@ -10,9 +10,14 @@ struct Overlap {
     double area;              ///< m^2
 };
 
+struct Overlaps {
+    std::vector<Overlap> pairs;  ///< One of each two regions, ordered by ids.
+    bool gave_up = false;        ///< So many faces lie over one another that not all were compared.
+};
+
 /// Finds faces of different regions that lie in one plane within `tolerance` (metres), look the same way and overlap by
-/// more than rounding. Each pair of regions is reported once, by the pair of faces that overlaps most; ordered by ids.
-/// Expected O(n log n) in regions when few share a plane and a place.
-std::vector<Overlap> find_overlaps(const Scene& scene, double tolerance);
+/// more than rounding. Of a face that covers more than four as large as itself, four are told; of two regions, the two
+/// faces that overlap most. Expected O(n log n) in faces.
+Overlaps find_overlaps(const Scene& scene, double tolerance);
 
 }  // namespace exitance

@@ -72,7 +72,7 @@ bool Joiner::is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector
     return hi - lo <= 2 * std::max(tol_.plane, tol_.place);
 }
 
-/// Faces of a set that cover a part of an earlier one, ascending.
+/// Faces of a set that cover a part of an earlier one, ascending; all but the first of a heap that is too deep to tell.
 std::vector<std::uint32_t> Joiner::covering_faces(std::span<const std::uint32_t> set, const Normal& n) const {
     const Frame frame(n);
     std::vector<FlatBox> boxes(set.size());
@@ -85,11 +85,12 @@ std::vector<std::uint32_t> Joiner::covering_faces(std::span<const std::uint32_t>
         for (std::uint32_t c : mesh_.outline(faces_[set[i]]))
             boxes[i].add({dot(point(c), frame.u), dot(point(c), frame.v)});
     std::vector<std::uint32_t> out;
-    each_overlap(boxes, tol_.place, [&](std::uint32_t i, std::uint32_t j) {
-        if (common_area(corners(i), corners(j), n, tol_.place) > 0) out.push_back(set[j]);
+    const bool gave_up = each_overlap(boxes, tol_.place, [&](std::uint32_t i, std::uint32_t j) {
+        const bool covers = common_area(corners(i), corners(j), n, tol_.place) > 0;
+        if (covers) out.push_back(set[i]);
+        return covers;
     });
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
+    if (gave_up) out.assign(set.begin() + 1, set.end());
     return out;
 }
 

@@ -360,7 +360,8 @@ void SceneBuilder::check_light() {
 /// Warns of faces that cover each other, in the order of the file.
 void SceneBuilder::check_overlaps(const Scene& scene) {
     // Rays that start this near a face cannot tell the two apart.
-    for (const Overlap& overlap : find_overlaps(scene, 100 * tol_.place)) {
+    const Overlaps overlaps = find_overlaps(scene, 100 * tol_.place);
+    for (const Overlap& overlap : overlaps.pairs) {
         const SceneDescription::Face &first = in_.faces[origin_[overlap.first.value]],
                                      &second = in_.faces[origin_[overlap.second.value]];
         find(Finding::Kind::warning, second, Mark::Kind::covering,
@@ -368,6 +369,9 @@ void SceneBuilder::check_overlaps(const Scene& scene) {
                          overlap.area, name_of(first)),
              "cut the one from the other, or move it a little off", "pairs of faces cover each other");
     }
+    if (overlaps.gave_up)
+        find(Finding::Kind::warning, 0, "so many faces lie over one another in one plane that not all were compared",
+             "look at those that are listed first");
 }
 
 /// An outline that comes back to a corner bounds one polygon with holes, not lobes of opposite sense.

@@ -308,6 +308,27 @@ TEST(Checks, AFaceThatCoversAnotherIsWarnedOfNamingBothLines) {
     EXPECT_NE(s.findings[0].message.find("1 m^2"), std::string::npos) << s.findings[0].message;
 }
 
+TEST(Checks, EveryFaceThatCoversOneLargerIsWarnedOf) {
+    Sketch sketch;
+    for (int i = 0; i < 9; ++i) sketch.rectangle(i, 0, i + 0.5, 1);  // all on the last
+    const auto s = sketch.light().rectangle(-1, -1, 10, 2, 2).make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(count(s, Finding::Kind::warning), 9);
+}
+
+TEST(Checks, AHeapOfFacesInOnePlaneIsNotComparedInFull) {
+    constexpr int faces = 3000;  // 4.5 million pairs, all of which overlap
+    Sketch sketch;
+    for (int i = 0; i < faces; ++i) sketch.rectangle(i, i, faces + i, faces + i, 2 * (i % 2));
+    const auto s = sketch.light().make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), faces + 1u);
+    std::size_t covering = 0;
+    for (const Mark& mark : s.marks) covering += mark.kind == Mark::Kind::covering;
+    EXPECT_GE(covering, faces - 1u);
+    EXPECT_LE(covering, 4u * faces);
+}
+
 TEST(Checks, FacesBackToBackBesideEachOtherOrInAHoleAreNoOverlap) {
     Sketch sketch =
         Sketch().rectangle(0, 0, 3, 1).rectangle(0, 2, 3, 3).rectangle(0, 1, 1, 2).rectangle(2, 1, 3, 2).light();

@@ -96,16 +96,19 @@ void Inspector::find_open_edges() {
     }
     const Bvh tree(boxes);
     const Vec3 around{tolerance_, tolerance_, tolerance_};
+    constexpr std::size_t most_near = 256;  // boxes around a point that are looked at: more only in heaps of faces
     /// Lone edges, other than the one asked for, that hold p inside.
     const auto holders = [&](const Point& p, std::uint32_t own, const auto& take) {
         Box box;
         box.add(p - around), box.add(p + around);
+        std::size_t near = 0;
         tree.visit_box(box, [&](std::uint32_t i) {
             const Point &a = points_[edges_[lone[i]].from], &b = points_[edges_[lone[i]].to];
             const double length = norm(b - a), along = dot(p - a, b - a) / length;
             if (lone[i] != own && along > tolerance_ && along < length - tolerance_ &&
                 norm(cross(p - a, b - a)) <= tolerance_ * length)
                 take(i);
+            return ++near == most_near;
         });
     };
     std::vector<bool> joined(lone.size());
