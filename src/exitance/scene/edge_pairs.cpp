@@ -168,19 +168,14 @@ bool EdgePairs::pair_parts(std::uint32_t e, std::uint32_t f) {
     return true;
 }
 
-/// How many pairs of these intervals meet. O(n log n).
-double EdgePairs::meetings(const std::vector<Interval>& intervals) {
-    std::vector<double> begins, ends;
-    for (const Interval& i : intervals) begins.push_back(i.lo), ends.push_back(i.hi);
-    std::sort(begins.begin(), begins.end());
-    std::sort(ends.begin(), ends.end());
-    double pairs = 0;
-    std::size_t ended = 0;
-    for (std::size_t begun = 0; begun < begins.size(); ++begun) {
-        while (ended < begun && ends[ended] <= begins[begun]) ++ended;
-        pairs += static_cast<double>(begun - ended);
+/// How many of these intervals cover a place, in the mean.
+double EdgePairs::crowding(const std::vector<Interval>& intervals) {
+    double lo = HUGE_VAL, hi = -HUGE_VAL, covered = 0;
+    for (const Interval& i : intervals) {
+        lo = std::min(lo, i.lo), hi = std::max(hi, i.hi);
+        covered += i.hi - i.lo;
     }
-    return pairs;
+    return covered / (hi - lo);
 }
 
 std::vector<EdgePairs::Interval> EdgePairs::intervals_along(const Vec3& d, std::span<const std::uint32_t> group) const {
@@ -207,11 +202,11 @@ void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
     }
     const Edge& first = edges_[group[0]];
     std::vector<Interval> intervals = intervals_along(normalized(point(first.to) - point(first.from)), group);
-    constexpr double crowded = 32;  // others that an interval meets
-    if (double least = meetings(intervals); least > crowded * static_cast<double>(group.size()))
+    constexpr double crowded = 32;
+    if (double least = crowding(intervals); least > crowded)
         for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
             std::vector<Interval> other = intervals_along(axis, group);
-            if (const double pairs = meetings(other); pairs < least) least = pairs, intervals = std::move(other);
+            if (const double here = crowding(other); here < least) least = here, intervals = std::move(other);
         }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });

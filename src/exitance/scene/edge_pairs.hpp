@@ -73,7 +73,7 @@ class EdgePairs {
     template <class Take>
     void each_line_key(std::uint32_t edge, unsigned grade, const Take& take) const;
     void add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t>& out) const;
-    static double meetings(const std::vector<Interval>& intervals);
+    static double crowding(const std::vector<Interval>& intervals);
     std::vector<Interval> intervals_along(const Vec3& d, std::span<const std::uint32_t> group) const;
     void pair_on_line(std::span<const std::uint32_t> group);
     bool pair_parts(std::uint32_t e, std::uint32_t f);
