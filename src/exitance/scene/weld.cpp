@@ -21,7 +21,7 @@ std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance)
     // Cells wider than the tolerance: few points lie so close to a wall that a neighbour has to be asked too; but not so
     // wide that many places that differ have room in one. They are numbered in doubles: where these have no digits left
     // for cells, neither have points for the tolerance.
-    const double width = std::max(32 * tolerance, 1e-300);
+    const double width = std::max(16 * tolerance, 1e-300);
 
     HashChains chains(points.size());
     std::vector<std::uint32_t> placed;  // entry of the chains -> point
