@@ -15,7 +15,7 @@ double perimeter(std::span<const Point> outline) {
 }
 
 std::vector<std::vector<Point>> convex_parts(std::span<const Point> outline, const Normal& n) {
-    if (is_convex(outline, n)) return {std::vector<Point>(outline.begin(), outline.end())};
+    if (outline.size() == 3 || is_convex(outline, n)) return {std::vector<Point>(outline.begin(), outline.end())};
     std::vector<std::vector<Point>> out;
     for (const auto& piece : convex_pieces(outline, n)) {
         out.emplace_back();

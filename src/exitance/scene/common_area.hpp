@@ -30,14 +30,14 @@ struct FlatBox {
 
 /// Calls meet(i, j) for boxes i and j < i that overlap by more than `tolerance` both ways, in a fixed order, until it
 /// returns true: then enough is known of i. Heaps of boxes of which most overlap most others are given up, which is
-/// what it returns: after about 32 calls or 256 steps a box. O(n log n).
+/// what it returns: after about eight calls or 256 steps a box. O(n log n).
 template <class Meet>
 bool each_overlap(std::span<const FlatBox> boxes, double tolerance, const Meet& meet) {
     std::vector<Box> solid(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
         solid[i].add(Point{boxes[i].lo.x, boxes[i].lo.y, 0}), solid[i].add(Point{boxes[i].hi.x, boxes[i].hi.y, 0});
     const Bvh tree(solid);
-    std::size_t calls = 32 * boxes.size() + 100'000, steps = 8 * calls;
+    std::size_t calls = 8 * boxes.size() + 100'000, steps = 32 * calls;
     for (std::uint32_t i = 0; i < boxes.size() && calls > 0 && steps > 0; ++i)
         tree.visit_box(solid[i], [&](std::uint32_t j) {
             if (--steps == 0) return true;
