@@ -68,12 +68,10 @@ class Hierarchy {
         if (wants_clusters(input_)) make_clusters();
         light_.delivers = delivers();
         project_direct();
-        // By the light that is reflected once, at first; then by all of it.
-        constexpr double links_in_a_sum = 300;
+        // By the light that is reflected once, at first; then by all of it, unless rays correct what links miss.
         const bool somewhere = !input_.options.importance.empty();  // else light is as good everywhere
-        const double coarse = somewhere ? 128 : 8;
         double demand = input_.knobs.link_error * light_norm();
-        const double first = coarse * demand / std::sqrt(links_in_a_sum);
+        const double first = (somewhere ? 16 : 1) * first_error(demand);
         LinkTolerance tolerance = tolerance_of(first);
         tolerance.oracle = input_.options.oracle;
         tolerance.hidden = hidden();
@@ -109,7 +107,9 @@ class Hierarchy {
             if (input_.stop.requested() || light_.limited_by_memory) break;
             const bool weighed = round > 0 || !somewhere;
             if (weighed && missed <= demand) break;
-            const double factor = std::clamp(0.8 * demand / missed, 0.1, 0.8);
+            // Errors fall with less than the tolerance, since there are more of them.
+            const double factor = std::clamp(std::pow(0.95 * demand / missed, 1.7), 0.03, 0.9);
+            if (!light_.delivers && !somewhere) b_ = first_;
             tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
         }
         if (light_.delivers)
@@ -150,6 +150,14 @@ class Hierarchy {
         light_.rays += rooms.rays;
         clusters_.emplace(light_.tree, rooms.of_root);
         far_.emplace(sites_, *clusters_);
+    }
+
+    /// That single links may have in the first round. The fewer there are in a sum, which is where higher orders are
+    /// asked for little, the larger.
+    double first_error(double demand) const {
+        constexpr double often = 0.46, fine = 0.00225;
+        const double few = basis_.order() == 1 ? 1 : std::clamp(std::sqrt(input_.knobs.link_error / fine), 1.0, 2.0);
+        return often * few * demand;
     }
 
     /// Where links are judged by their strength, what they may have in the first round; it falls with the error.
@@ -209,8 +217,9 @@ class Hierarchy {
         return (limit - std::min(limit, used)) / (others_share * LinkRefiner::bytes_a_link);
     }
 
-    /// An error that is alike all over the receivers comes back from every reflection.
+    /// An error that is alike all over the receivers comes back from every reflection, if rays do not correct it.
     double systematic() const {
+        if (!light_.delivers) return 1;
         constexpr double within_a_sum = 2;
         double reflected = 0;
         for (ElementId e : light_.tree.roots()) reflected += light_.tree.area(e) * mean(material(e).reflectance);

@@ -85,7 +85,7 @@ TEST(Importance, TheOtherRoomGetsFewLinksAndThePointsTheSameLight) {
         return std::sqrt(off / whole);
     };
     for (Method method : {Method::hierarchical, Method::wavelet}) {
-        const SolveOptions everywhere{.method = method, .epsilon = 0.01, .keep_links = true};
+        const SolveOptions everywhere{.method = method, .epsilon = 0.002, .keep_links = true};
         SolveOptions here = everywhere;
         here.importance = on_the_first_floor;
         const Solution all = solved(scene, everywhere), some = solved(scene, here);
