@@ -68,8 +68,9 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     }
     // What is gathered is refined, so that the method may be rough; but the certificate follows late reflections on its
     // elements, and through fewer of them sees too little. Light of so many reflections solves no equation to refine
-    // by.
-    out.refined = options.bounces < 0;
+    // by; and where much is allowed, the method by itself is below it.
+    constexpr double much = 0.03;
+    out.refined = options.bounces < 0 && error < much;
     constexpr double coarsest = 0.05;
     const double coarser = std::clamp(2.5 * error, error, std::max(error, coarsest));
     const Knobs coarse = knobs_for_error(coarser, pieces, options);
