@@ -155,9 +155,10 @@ class Hierarchy {
     /// That single links may have in the first round. The fewer there are in a sum, which is where higher orders are
     /// asked for little, the larger.
     double first_error(double demand) const {
-        constexpr double often = 0.46, fine = 0.00225;
+        constexpr double fine = 0.00225;
+        const double share = light_.delivers ? 0.46 : 1;
         const double few = basis_.order() == 1 ? 1 : std::clamp(std::sqrt(input_.knobs.link_error / fine), 1.0, 2.0);
-        return often * few * demand;
+        return share * few * demand;
     }
 
     /// Where links are judged by their strength, what they may have in the first round; it falls with the error.
@@ -199,12 +200,13 @@ class Hierarchy {
         return light_.delivers && basis_.order() == 2 ? by_bilinear : little;
     }
 
-    /// How much larger the links' error may be than what the method's is to be: light that is gathered once more may
-    /// have a fourfold error; where links deliver it, no gather takes a share of the error asked for.
+    /// How much larger the links' error may be than what the method's is to be: where rays correct the means of leaves,
+    /// only how light varies within them is the links', and is gathered once more; where links deliver it, no gather
+    /// takes a share of the error asked for.
     double share_of_links() const {
-        constexpr double gathers_forgive = 4, without_gather = 2;
+        constexpr double rays_correct = 8, without_gather = 2;
         if (light_.delivers) return input_.options.epsilon ? 1 : without_gather;
-        return input_.options.smoothing ? 1 : gathers_forgive;
+        return input_.options.smoothing ? 1 : rays_correct;
     }
     const Material& material(ElementId e) const { return input_.stage.scene.material(light_.tree.region(e)); }
 
@@ -362,42 +364,48 @@ class Hierarchy {
         input_.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(system_.scale()) - 1)));
     }
 
-    /// Defect correction: rays, which know no links, find what these miss of F b in the mean of every leaf, and b = rho
-    /// (E_dir + missed + F b) is solved once more. Coarse links are up to some percent too dark in all places together,
-    /// which no average over a hemisphere mends; two steps of this do.
+    /// b = rho (E_dir + F b) for the means of leaves by rays, which know no links, from the light that links give: those
+    /// are up to some percent too dark in all places together, which no average over a hemisphere mends and which comes
+    /// back from every reflection. How light varies within leaves they are left to tell.
     void correct_by_rays() {
         input_.progress.phase("correct");
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         const RayRows rows(input_.stage, light_.tree, light_.numbering, locator, input_.knobs.solve_rays,
                            input_.options.seed);
-        const std::vector<double> area = leaf_areas(light_.tree, light_.numbering);
+        light_.rays += rows.rays();
         light_.kept = rows.kept();
-        ConservingTransport conserving(rows, area, light_.kept);
+        const std::vector<double> area = leaf_areas(light_.tree, light_.numbering);
+        const std::vector<Spectrum> rho = leaf_reflectances(input_.stage.scene, light_.tree, light_.numbering);
         const std::vector<ElementId>& leaves = light_.numbering.leaves;
-        std::vector<Spectrum> b(leaves.size()), E(leaves.size());
+        std::vector<Spectrum> first(leaves.size()), b(leaves.size()), E(leaves.size());
+        NodalField F_b = gather();
+        parallel_for(leaves.size(), 64, [&](std::size_t i) {
+            const ElementId e = leaves[i];
+            first[i] = rho[i] * mean_over(sites_, projected_light(sites_, input_.direct, e), e);
+            b[i] = first[i] + rho[i] * mean_over(sites_, indirect_light(F_b, e), e);
+        });
+        ConservingTransport F(rows, area, light_.kept);
+        const std::size_t before = light_.report.iterations;
+        light_.report = solve_conserving(
+            {F, rho, first, area}, F, !light_.kept.empty(), Relaxation::gmres, b,
+            {.residual = input_.knobs.residual, .max_iterations = input_.knobs.max_iterations, .request = &input_.stop});
+        light_.report.iterations += before;
+        F.gather(b, E);
         missed_ = Field<ElementId, Spectrum>(light_.tree.size());
-        constexpr int steps = 2;
-        for (int step = 0; step < steps && !input_.stop.requested(); ++step) {
-            const NodalField F_b = gather();
-            parallel_for(leaves.size(), 64, [&](std::size_t i) {
-                const ElementId e = leaves[i];
-                const NodalValues E_dir = projected_light(sites_, input_.direct, e);
-                b[i] = material(e).reflectance *
-                       (mean_over(sites_, E_dir, e) + mean_over(sites_, indirect_light(F_b, e), e));
-            });
-            conserving.conserve(b);
-            conserving.gather(b, E);
+        const auto find_missed = [&] {
             parallel_for(leaves.size(), 64, [&](std::size_t i) {
                 missed_[leaves[i]] += E[i] - mean_over(sites_, indirect_light(F_b, leaves[i]), leaves[i]);
             });
-            const NodalField first = pulled([&](ElementId leaf) {
-                NodalValues out = projected_light(sites_, input_.direct, leaf);
-                for (Spectrum& value : out) value = material(leaf).reflectance * (value + missed_[leaf]);
-                return out;
-            });
-            solve_on_links(first, b_);
-        }
-        light_.rays += rows.rays();
+        };
+        find_missed();
+        b_ = pulled([&](ElementId leaf) {
+            NodalValues out = projected_light(sites_, input_.direct, leaf);
+            const NodalValues E_ind = indirect_light(F_b, leaf);
+            for (std::size_t k = 0; k < sites_.nodes(); ++k) out[k] = material(leaf).reflectance * (out[k] + E_ind[k]);
+            return out;
+        });
+        F_b = gather();
+        find_missed();
     }
 
     /// F b by the links.
