@@ -9,12 +9,12 @@
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/choice.hpp"
+#include "exitance/methods/constant_elements.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/linked_by_rays.hpp"
 #include "exitance/methods/linked_system.hpp"
 #include "exitance/methods/nodal_light.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
-#include "exitance/solve/conserving_transport.hpp"
 #include "exitance/transport/cluster_refiner.hpp"
 #include "exitance/transport/leaf_links.hpp"
 #include "exitance/transport/link_refiner.hpp"
@@ -364,37 +364,32 @@ class Hierarchy {
         input_.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(system_.scale()) - 1)));
     }
 
-    /// b = rho (E_dir + F b) for the means of leaves by rays, which know no links, from the light that links give: those
-    /// are up to some percent too dark in all places together, which no average over a hemisphere mends and which comes
-    /// back from every reflection. How light varies within leaves they are left to tell.
+    /// b = rho (E_dir + F b) for the means of leaves by rays, which know no links, from the light that links give:
+    /// those are up to some percent too dark in all places together, which no average over a hemisphere mends and which
+    /// comes back from every reflection. How light varies within leaves they are left to tell.
     void correct_by_rays() {
         input_.progress.phase("correct");
+        const std::vector<ElementId>& leaves = light_.numbering.leaves;
+        NodalField F_b = gather();
+        light_.direct.resize(leaves.size()), light_.reflected.resize(leaves.size());
+        parallel_for(leaves.size(), 64, [&](std::size_t i) {
+            const ElementId e = leaves[i];
+            light_.direct[i] = mean_over(sites_, projected_light(sites_, input_.direct, e), e);
+            light_.reflected[i] =
+                material(e).reflectance * (light_.direct[i] + mean_over(sites_, indirect_light(F_b, e), e));
+        });
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         const RayRows rows(input_.stage, light_.tree, light_.numbering, locator, input_.knobs.solve_rays,
                            input_.options.seed);
         light_.rays += rows.rays();
         light_.kept = rows.kept();
-        const std::vector<double> area = leaf_areas(light_.tree, light_.numbering);
-        const std::vector<Spectrum> rho = leaf_reflectances(input_.stage.scene, light_.tree, light_.numbering);
-        const std::vector<ElementId>& leaves = light_.numbering.leaves;
-        std::vector<Spectrum> first(leaves.size()), b(leaves.size()), E(leaves.size());
-        NodalField F_b = gather();
-        parallel_for(leaves.size(), 64, [&](std::size_t i) {
-            const ElementId e = leaves[i];
-            first[i] = rho[i] * mean_over(sites_, projected_light(sites_, input_.direct, e), e);
-            b[i] = first[i] + rho[i] * mean_over(sites_, indirect_light(F_b, e), e);
-        });
-        ConservingTransport F(rows, area, light_.kept);
         const std::size_t before = light_.report.iterations;
-        light_.report = solve_conserving(
-            {F, rho, first, area}, F, !light_.kept.empty(), Relaxation::gmres, b,
-            {.residual = input_.knobs.residual, .max_iterations = input_.knobs.max_iterations, .request = &input_.stop});
+        relax_constant_elements(input_, rows, light_);
         light_.report.iterations += before;
-        F.gather(b, E);
         missed_ = Field<ElementId, Spectrum>(light_.tree.size());
         const auto find_missed = [&] {
             parallel_for(leaves.size(), 64, [&](std::size_t i) {
-                missed_[leaves[i]] += E[i] - mean_over(sites_, indirect_light(F_b, leaves[i]), leaves[i]);
+                missed_[leaves[i]] += light_.indirect[i] - mean_over(sites_, indirect_light(F_b, leaves[i]), leaves[i]);
             });
         };
         find_missed();

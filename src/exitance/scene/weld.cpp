@@ -18,9 +18,9 @@ std::uint64_t cell_hash(double i, double j, double k) {
 }  // namespace
 
 std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance) {
-    // Cells wider than the tolerance: few points lie so close to a wall that a neighbour has to be asked too; but not so
-    // wide that many places that differ have room in one. They are numbered in doubles: where these have no digits left
-    // for cells, neither have points for the tolerance.
+    // Cells wider than the tolerance: few points lie so close to a wall that a neighbour has to be asked too; but not
+    // so wide that many places that differ have room in one. They are numbered in doubles: where these have no digits
+    // left for cells, neither have points for the tolerance.
     const double width = std::max(16 * tolerance, 1e-300);
 
     HashChains chains(points.size());
