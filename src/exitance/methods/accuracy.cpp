@@ -68,15 +68,16 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     }
     // What is gathered is refined, so that the method may be rough; but the certificate follows late reflections on its
     // elements, and through fewer of them sees too little. Light of so many reflections solves no equation to refine
-    // by; and where much is allowed, the method by itself is below it.
+    // by; and where much is allowed, the method is below it by itself, on more elements of fewer rays.
     constexpr double much = 0.03;
     out.refined = options.bounces < 0 && error < much;
     constexpr double coarsest = 0.05;
     const double coarser = std::clamp(2.5 * error, error, std::max(error, coarsest));
     const Knobs coarse = knobs_for_error(coarser, pieces, options);
     const auto fewer = [](int levels, int less) { return std::max(0, levels - less); };
-    out.solve_mesh = {std::sqrt(2.0) * coarse.solve_mesh.edge, fewer(coarse.gather_mesh.grading_levels, 2)};
-    out.solve_rays = coarse.solve_rays, out.solve_rays.average = 128;
+    const double larger = out.refined ? std::sqrt(2.0) : 1;
+    out.solve_mesh = {larger * coarse.solve_mesh.edge, fewer(coarse.gather_mesh.grading_levels, 2)};
+    out.solve_rays = coarse.solve_rays, out.solve_rays.average = out.refined ? 128 : 64;
     out.gather_mesh = {std::sqrt(2.0) * edge_for(coarser), fewer(knobs.gather_mesh.grading_levels, 1)};
     out.gather_tolerance = 0.4 * coarser, out.gather_element_share = 0.035 * coarser;
     apply_user_knobs(out, options);
