@@ -10,6 +10,7 @@ struct Overlap {
     double area;              ///< m^2
 };
 
+/// What was found of a scene.
 struct Overlaps {
     std::vector<Overlap> pairs;  ///< One of each two regions, ordered by ids.
     bool gave_up = false;        ///< So many faces lie over one another that not all were compared.
