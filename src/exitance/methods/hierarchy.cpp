@@ -107,7 +107,7 @@ class Hierarchy {
             if (input_.stop.requested() || light_.limited_by_memory) break;
             const bool weighed = round > 0 || !somewhere;
             if (weighed && missed <= demand) break;
-            // Errors fall with less than the tolerance, since there are more of them.
+            // A lower tolerance makes more links, so that their errors together fall more slowly than it.
             const double factor = std::clamp(std::pow(0.95 * demand / missed, 1.7), 0.03, 0.9);
             if (!light_.delivers && !somewhere) b_ = first_;
             tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
@@ -230,12 +230,11 @@ class Hierarchy {
 
     /// What rho E_dir, as projected on the leaves, comes to on an element.
     FromBelow reflected_once(ElementId e) const {
-        FromBelow out = pull_from_leaves(sites_, e, [&](ElementId leaf) {
+        return pull_from_leaves(sites_, e, [&](ElementId leaf) {
             NodalValues E = projected_light(sites_, input_.direct, leaf);
             for (Spectrum& value : E) value = material(leaf).reflectance * value;
             return E;
         });
-        return out;
     }
 
     void project_direct() {

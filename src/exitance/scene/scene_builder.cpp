@@ -371,7 +371,7 @@ void SceneBuilder::check_overlaps(const Scene& scene) {
     }
     if (overlaps.gave_up)
         find(Finding::Kind::warning, 0, "so many faces lie over one another in one plane that not all were compared",
-             "look at those that are listed first");
+             "leave out all but those that light is to meet");
 }
 
 /// An outline that comes back to a corner bounds one polygon with holes, not lobes of opposite sense.
