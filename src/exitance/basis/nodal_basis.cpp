@@ -125,10 +125,11 @@ NodalBasis::OfShape NodalBasis::make(Shape shape) const {
 
 void NodalBasis::from_monomials(Shape shape, std::span<const double> values, std::span<double> out) const {
     const std::size_t n = count(), m = monomial_count(shape);
-    const std::vector<double>& fit = of(shape).fit;
-    std::fill(out.begin(), out.end(), 0.0);
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t k = 0; k < n; ++k) out[k] += values[i] * fit[i * n + k];
+    const double* fit = of(shape).fit.data();
+    std::array<double, 9> sum{};  // in registers, which `out` is not
+    for (std::size_t i = 0; i < m; ++i, fit += n)
+        for (std::size_t k = 0; k < n; ++k) sum[k] += values[i] * fit[k];
+    std::copy_n(sum.begin(), n, out.begin());
 }
 
 void NodalBasis::interpolate(Shape shape, Vec2 uv, std::span<double> factors) const {

@@ -11,6 +11,7 @@
 #include "exitance/methods/choice.hpp"
 #include "exitance/methods/constant_elements.hpp"
 #include "exitance/methods/importance.hpp"
+#include "exitance/methods/light_below.hpp"
 #include "exitance/methods/linked_by_rays.hpp"
 #include "exitance/methods/linked_system.hpp"
 #include "exitance/methods/nodal_light.hpp"
@@ -24,11 +25,6 @@
 
 namespace exitance {
 namespace {
-
-/// Where so much light passes in the open, links give it as exactly as it is asked for. Elsewhere they only find what
-/// the elements reflect, and rays gather that: from a place that sees many things in part, rays over the hemisphere say
-/// more than as many between pairs.
-constexpr double mostly_open = 0.9;
 
 bool is_polynomial(HierarchyBasis kind) {
     return kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
@@ -56,6 +52,7 @@ class Hierarchy {
           basis_(kind),
           light_{.tree = input.direct.tree},
           sites_(input.stage, light_.tree, basis_, held),
+          once_(sites_, [this](ElementId leaf) { return reflected_once(leaf); }),
           first_(sites_),
           b_(sites_),
           refiner_(light_.tree, sites_,
@@ -70,13 +67,16 @@ class Hierarchy {
         project_direct();
         // By the light that is reflected once, at first; then by all of it, unless rays correct what links miss.
         const bool somewhere = !input_.options.importance.empty();  // else light is as good everywhere
+        if (!light_.delivers && !somewhere) refiner_.keep_light();
         double demand = input_.knobs.link_error * light_norm();
         const double first = (somewhere ? 16 : 1) * first_error(demand);
         LinkTolerance tolerance = tolerance_of(first);
         tolerance.oracle = input_.options.oracle;
         tolerance.hidden = hidden();
+        tolerance.constants = !light_.delivers;
         tolerance.strongest = first_strength(first);
         constexpr int most_rounds = 8;
+        constexpr double nearly = 1.15;  // of what rays correct: another round takes more time than it is worth
         int round = 0;
         const auto state = [&](auto& a) {
             a(round, tolerance, light_.tree, light_.report);
@@ -106,9 +106,11 @@ class Hierarchy {
             light_.limited_by_memory = refiner_.is_limited();
             if (input_.stop.requested() || light_.limited_by_memory) break;
             const bool weighed = round > 0 || !somewhere;
-            if (weighed && missed <= demand) break;
-            // A lower tolerance makes more links, so that their errors together fall more slowly than it.
-            const double factor = std::clamp(std::pow(0.95 * demand / missed, 1.7), 0.03, 0.9);
+            if (weighed && missed <= (light_.delivers ? 1 : nearly) * demand) break;
+            // A lower tolerance makes more links, so that their errors together fall more slowly than it; where they
+            // deliver light, what falls first is how much of it comes back from reflections.
+            const double law = light_.delivers ? 0.8 : 1.7;
+            const double factor = std::clamp(std::pow(0.95 * demand / missed, law), 0.03, 0.9);
             if (!light_.delivers && !somewhere) b_ = first_;
             tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
         }
@@ -152,13 +154,12 @@ class Hierarchy {
         far_.emplace(sites_, *clusters_);
     }
 
-    /// That single links may have in the first round. The fewer there are in a sum, which is where higher orders are
-    /// asked for little, the larger.
+    /// That single links may have in the first round. The fewer there are in a sum, which is where little is asked for
+    /// and where orders are high, the larger.
     double first_error(double demand) const {
-        constexpr double fine = 0.00225;
-        const double share = light_.delivers ? 0.46 : 1;
-        const double few = basis_.order() == 1 ? 1 : std::clamp(std::sqrt(input_.knobs.link_error / fine), 1.0, 2.0);
-        return share * few * demand;
+        constexpr double fine = 0.00225, delivering = 0.3, of_order_three = 1.4;
+        const double few = std::clamp(std::sqrt(input_.knobs.link_error / fine), 1.0, 2.0);
+        return (light_.delivers ? delivering : basis_.order() == 3 ? of_order_three : 1) * few * demand;
     }
 
     /// Where links are judged by their strength, what they may have in the first round; it falls with the error.
@@ -181,17 +182,18 @@ class Hierarchy {
     }
 
     /// Do polynomials give the light as exactly as it is asked for? That the scene decides, not how far its links are
-    /// refined: attempts of one solve do not take turns.
+    /// refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather) do as well as linear
+    /// functions, in less memory, and not as well as quadratic ones.
     bool delivers() const {
         if (!is_polynomial_) return false;
-        const bool sums = ElementGather::suits(input_.stage) && input_.options.error_target() > sums_reach;
-        if (sums && !input_.options.epsilon) return false;
+        const bool sums = basis_.order() == 2 && !input_.options.epsilon && ElementGather::suits(input_.stage) &&
+                          input_.options.error_target() > sums_reach;
+        if (sums) return false;
         const LeafNumbering numbering(light_.tree);
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         std::vector<Spectrum> light;
         for (ElementId e : numbering.leaves) light.push_back(material(e).reflectance * input_.direct.fit[e].mean);
-        return exitance::open_share(input_.stage, light_.tree, numbering, locator, light, input_.options.seed) >
-               mostly_open;
+        return is_mostly_open(input_.stage, light_.tree, numbering, locator, light, input_.options.seed);
     }
 
     /// Bilinear sources hide most from near receivers, all with one sign. Where rays correct it, that does not matter.
@@ -204,7 +206,8 @@ class Hierarchy {
     /// only how light varies within them is the links', and is gathered once more; where links deliver it, no gather
     /// takes a share of the error asked for.
     double share_of_links() const {
-        constexpr double rays_correct = 8, without_gather = 2;
+        constexpr double rays_correct = 8;
+        const double without_gather = basis_.order();
         if (light_.delivers) return input_.options.epsilon ? 1 : without_gather;
         return input_.options.smoothing ? 1 : rays_correct;
     }
@@ -228,23 +231,21 @@ class Hierarchy {
         return within_a_sum * std::min(10.0, 1 / (1 - reflected / input_.stage.area));
     }
 
-    /// What rho E_dir, as projected on the leaves, comes to on an element.
-    FromBelow reflected_once(ElementId e) const {
-        return pull_from_leaves(sites_, e, [&](ElementId leaf) {
-            NodalValues E = projected_light(sites_, input_.direct, leaf);
-            for (Spectrum& value : E) value = material(leaf).reflectance * value;
-            return E;
-        });
+    /// rho E_dir, as projected on a leaf.
+    NodalValues reflected_once(ElementId leaf) const {
+        NodalValues E = projected_light(sites_, input_.direct, leaf);
+        for (Spectrum& value : E) value = material(leaf).reflectance * value;
+        return E;
     }
 
     void project_direct() {
         const std::vector<ElementId> ends = sites_.ends();
         Field<ElementId, double> roughness(light_.tree.size(), 0.0);
-        parallel_for(ends.size(), 1, [&](std::size_t i) {
-            const FromBelow found = reflected_once(ends[i]);
-            first_.set(ends[i], found.values);
-            roughness[ends[i]] = std::sqrt(found.departure_squared);
-        });
+        const std::vector<FromBelow> found = once_.look_at(ends);
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            first_.set(ends[i], found[i].values);
+            roughness[ends[i]] = std::sqrt(found[i].departure_squared);
+        }
         first_.pull();
         b_ = first_;
         refiner_.set_roughness(std::move(roughness));
@@ -256,7 +257,7 @@ class Hierarchy {
         first_.resize(), b_.resize();
         parallel_for(parents.size(), 1, [&](std::size_t i) {
             for (ElementId child : light_.tree.children(parents[i])) {
-                const FromBelow found = reflected_once(child);
+                const FromBelow found = once_.at(child);
                 first_.set(child, found.values);
                 roughness[child] = std::sqrt(found.departure_squared);
                 const auto push = sites_.push(child);
@@ -264,7 +265,8 @@ class Hierarchy {
                 for (std::size_t k = 0; k < n; ++k) {
                     Spectrum b = found.values[k];
                     for (std::size_t j = 0; j < n; ++j)
-                        b += push[k * n + j] * (b_.node(parents[i], j) - first_.node(parents[i], j));
+                        b += static_cast<double>(push[k * n + j]) *
+                             (b_.node(parents[i], j) - first_.node(parents[i], j));
                     b_.set_node(child, k, b);
                 }
             }
@@ -436,7 +438,8 @@ class Hierarchy {
     void hand_over() {
         // The mesh below the elements that are held is that of direct light.
         const std::size_t element_bytes = light_.tree.memory_bytes() * sites_.size() / light_.tree.size() +
-                                          sites_.memory_bytes() + refiner_.field_bytes() + 2 * b_.memory_bytes();
+                                          sites_.memory_bytes() + once_.memory_bytes() + refiner_.field_bytes() +
+                                          2 * b_.memory_bytes();
         const NodalField F_b = gather();
         const NodalLight E = [&](ElementId e) { return indirect_light(F_b, e); };
         if (basis_.order() > 2 && (light_.delivers || input_.options.smoothing)) cut_for_delivery(E);
@@ -455,6 +458,7 @@ class Hierarchy {
     NodalBasis basis_;
     GlobalLight light_;
     LinkSites sites_;
+    LightBelow once_;       ///< rho E_dir.
     NodalField first_, b_;  ///< rho E_dir, and all reflected light.
     LinkRefiner refiner_;
     LinkedSystem system_;
@@ -476,10 +480,9 @@ bool asks_for_judged_links(const SolveOptions& o) {
 }  // namespace
 
 GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind) {
-    if (!asks_for_judged_links(input.options)) {
-        const std::optional<double> delivering = is_polynomial(kind) ? std::optional(mostly_open) : std::nullopt;
-        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, delivering)) return std::move(*light);
-    }
+    if (!asks_for_judged_links(input.options))
+        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, is_polynomial(kind)))
+            return std::move(*light);
     return Hierarchy(input, kind, held_by(input, kind)).solve();
 }
 

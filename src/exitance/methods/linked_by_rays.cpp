@@ -49,7 +49,7 @@ double allowed_error(const MethodInput& input, const GlobalLight& light, std::si
 
 }  // namespace
 
-std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, std::optional<double> mostly) {
+std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool unless_open) {
     const Stage& stage = input.stage;
     input.progress.phase("link");
     GlobalLight light{.tree = input.direct.tree, .numbering = LeafNumbering(input.direct.tree)};
@@ -58,12 +58,8 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, std::o
     light.on_projection = true;
     const ElementLocator locator(light.tree, stage.scene.regions().size());
     light.reflected = reflect_once(stage.scene, light);
-    if (mostly) {
-        const double open =
-            open_share(stage, light.tree, light.numbering, locator, light.reflected, input.options.seed);
-        input.progress.note(fmt::format("{:.0f}% of the light passes in the open between whole pieces", 100 * open));
-        if (open > *mostly) return std::nullopt;
-    }
+    if (unless_open && is_mostly_open(stage, light.tree, light.numbering, locator, light.reflected, input.options.seed))
+        return std::nullopt;
     const RayRows rows(stage, light.tree, light.numbering, locator, dealt_out(input.knobs.solve_rays),
                        input.options.seed, Dealing::by_piece);
     light.rays = rows.rays();

@@ -26,7 +26,7 @@ VectorPower power_of(const LinkSites& sites, ElementId e, const NodalField& b) {
     VectorPower out{};
     for (std::size_t k = 0; k < sites.nodes(); ++k)
         for (std::size_t band = 0; band < bands; ++band)
-            out[band] += (sites.tree().area(e) * sites.weight(e, k) * b.at(e, band)[k]) * sites.normal(e);
+            out[band] += (sites.tree().area(e) * sites.weight(e, k) * b.node(e, k)[band]) * sites.normal(e);
     return out;
 }
 
@@ -118,6 +118,7 @@ void ClusterLinks::add_to(NodalField& E, const NodalField& b) const {
     parallel_for(first_.size() - 1, 16,
                  [&](std::size_t row) {
                      const Body receiver = links_[first_[row]].receiver;
+                     NodalValues arrived{};
                      for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
                          if (receiver.is_cluster()) {
                              const Arrival light = sender.at(clusters.centre(receiver.cluster()), links_[i]);
@@ -132,22 +133,24 @@ void ClusterLinks::add_to(NodalField& E, const NodalField& b) const {
                          for (std::size_t k = 0; k < sites.nodes(); ++k) {
                              const Arrival light = sender.at(sites.node(p, k), links_[i]);
                              const double cosine = -dot(sites.normal(p), light.w);
-                             if (cosine <= 0) continue;
-                             for (std::size_t band = 0; band < bands; ++band)
-                                 E.at(p, band)[k] += cosine * light.E[band];
+                             if (cosine > 0) arrived[k] += cosine * light.E;
                          }
                      }
+                     if (!receiver.is_cluster()) E.add(receiver.element(), arrived);
                      note_touched("links", first_[row + 1] - first_[row]);
                  },
                  {"gather cluster links",
                   [&](std::size_t row) { return bodies_.region(links_[first_[row]].receiver).value; }, true});
     for (std::size_t i = 1; i < clusters.size(); ++i)
         for (FacingId f : clusters.facings(ClusterId(i))) add(received[f], received[clusters.facing(f).above]);
-    for (ElementId piece : bodies_.elements().roots())
-        for (std::size_t band = 0; band < bands; ++band) {
-            const double light = -dot(sites.normal(piece), received[clusters.facing_of(piece)][band]);
-            for (std::size_t k = 0; k < sites.nodes(); ++k) E.at(piece, band)[k] += light;
-        }
+    for (ElementId piece : bodies_.elements().roots()) {
+        Spectrum light;
+        for (std::size_t band = 0; band < bands; ++band)
+            light[band] = -dot(sites.normal(piece), received[clusters.facing_of(piece)][band]);
+        NodalValues alike;
+        alike.fill(light);
+        E.add(piece, alike);
+    }
 }
 
 }  // namespace exitance

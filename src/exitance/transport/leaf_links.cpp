@@ -125,7 +125,7 @@ LeafLinks link_leaves(const LinkSites& sites, const NodalField& b, const LinkTol
     for (Block& block : found) {
         std::size_t near = blocks.size();
         for (Link& link : block.links) {
-            if (sites.nodes() > 1 && !Link::is_far(link.block)) link.block += static_cast<std::uint32_t>(near);
+            if (sites.nodes() > 1 && link.has_block()) link.block += static_cast<std::uint32_t>(near);
             links.push_back(link);
         }
         blocks.insert(blocks.end(), block.blocks.begin(), block.blocks.end());

@@ -86,7 +86,7 @@ void fill(SourceRecord<n>& out, const LinkSites& sites, const NodalField& b, Ele
     for (std::size_t l = 0; l < n; ++l) {
         const double share = area * sites.weight(e, l);
         for (std::size_t band = 0; band < bands; ++band)
-            out.light[band][l] = static_cast<float>(share * b.at(e, band)[l]);
+            out.light[band][l] = static_cast<float>(share) * b.at(e, band)[l];
     }
 }
 
@@ -143,31 +143,29 @@ class ReceivedLight {
     /// By a block that was integrated.
     void add(const float* block, const NodalField& b, ElementId q) {
         for (std::size_t band = 0; band < bands; ++band) {
-            const double* const light = b.at(q, band);
+            const float* const light = b.at(q, band);
             Lanes arrived{};
-            for (std::size_t l = 0; l < n; ++l)
-                arrived += load<lanes>(block + l * lanes) * static_cast<float>(light[l]);
+            for (std::size_t l = 0; l < n; ++l) arrived += load<lanes>(block + l * lanes) * light[l];
             sum_[band] += arrived;
             if constexpr (Layout::has_rest)
-                for (std::size_t l = 0; l < n; ++l)
-                    rest_sum_[band] += block[lanes * n + l] * static_cast<float>(light[l]);
+                for (std::size_t l = 0; l < n; ++l) rest_sum_[band] += block[lanes * n + l] * light[l];
         }
     }
 
-    /// Hands on what some links have brought, before a float has too much in it to take more.
-    void flush(NodalField& E, ElementId p) {
+    /// Puts by what some links have brought, before a float has too much in it to take more.
+    void put_by() {
         for (std::size_t band = 0; band < bands; ++band) {
-            double* const out = E.at(p, band);
-            for (std::size_t k = 0; k < lanes; ++k) out[k] += static_cast<double>(sum_[band][k]);
+            for (std::size_t k = 0; k < lanes; ++k) total_[k][band] += static_cast<double>(sum_[band][k]);
             sum_[band] = Lanes{};
             if constexpr (Layout::has_rest) {
                 double sum = static_cast<double>(rest_sum_[band]);
                 for (std::size_t l = 0; l < lanes; ++l) sum += static_cast<double>(rest_lanes_[band][l]);
-                out[lanes] += sum;
+                total_[lanes][band] += sum;
                 rest_lanes_[band] = Lanes{}, rest_sum_[band] = 0;
             }
         }
     }
+    const NodalValues& total() const { return total_; }
 
   private:
     static Lanes mask(const std::uint32_t* visible, std::size_t group) {
@@ -227,6 +225,7 @@ class ReceivedLight {
     float rest_[3]{};
     Lanes sum_[bands]{}, rest_lanes_[bands]{};
     float rest_sum_[bands]{};
+    NodalValues total_{};  ///< What was put by.
 };
 
 /// Light of constant elements, in whole registers.
@@ -236,23 +235,34 @@ struct PaddedSpectrum {
 
 }  // namespace
 
+template <class Row>
+void Links::Rows::for_each(const ElementTree& tree, const Row& gather_row) const {
+    parallel_for(receiver.size(), grain,
+                 [&](std::size_t row) {
+                     gather_row(row);
+                     note_touched("links", first[row + 1] - first[row]);
+                 },
+                 {"gather links", [&](std::size_t row) { return tree.region(receiver[row]).value; }, true});
+}
+
 /// Several sums side by side, since one alone would wait for itself at every step; in single precision for some links,
 /// then in double.
 void Links::gather_constants(const NodalField& b, NodalField& E) const {
     constexpr std::size_t ways = 8, at_a_time = 256, ahead = 512;
-    std::vector<PaddedSpectrum> light(sources_.size());
+    const auto& [receiver, first, sources, source] = constants_;
+    std::vector<PaddedSpectrum> light(sources.size());
     parallel_for(light.size(), 4096, [&](std::size_t i) {
-        for (std::size_t band = 0; band < bands; ++band)
-            light[i].of[band] = static_cast<float>(*b.at(sources_[i], band));
+        const Spectrum mean = b.mean(sources[i]);
+        for (std::size_t band = 0; band < bands; ++band) light[i].of[band] = static_cast<float>(mean[band]);
     });
-    for_rows([&](std::size_t row) {
-        double total[bands]{};
-        const auto term = [&](std::size_t i) { return factor_[i] * light[source_[i]].of; };
-        for (std::size_t i = first_[row]; i < first_[row + 1];) {
-            const std::size_t end = std::min(i + at_a_time, first_[row + 1]);
+    constants_.for_each(sites_->tree(), [&](std::size_t row) {
+        Spectrum total;
+        const auto term = [&](std::size_t i) { return factor_[i] * light[source[i]].of; };
+        for (std::size_t i = first[row]; i < first[row + 1];) {
+            const std::size_t end = std::min(i + at_a_time, first[row + 1]);
             decltype(PaddedSpectrum::of) sum[ways]{};
             for (; i + ways <= end; i += ways) {
-                __builtin_prefetch(&source_[i] + ahead);
+                __builtin_prefetch(&source[i] + ahead);
                 __builtin_prefetch(&factor_[i] + ahead);
                 for (std::size_t way = 0; way < ways; ++way) sum[way] += term(i + way);
             }
@@ -260,7 +270,10 @@ void Links::gather_constants(const NodalField& b, NodalField& E) const {
             const auto all = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
             for (std::size_t band = 0; band < bands; ++band) total[band] += static_cast<double>(all[band]);
         }
-        for (std::size_t band = 0; band < bands; ++band) *E.at(receiver_[row], band) += total[band];
+        NodalValues alike{};
+        for (std::size_t k = 0; k < sites_->nodes(); ++k)
+            if (sites_->weight(receiver[row], k) > 0) alike[k] = total;
+        E.add(receiver[row], alike);
     });
 }
 
@@ -268,30 +281,23 @@ template <class Layout>
 void Links::gather_kernels(const NodalField& b, NodalField& E) const {
     constexpr std::size_t at_a_time = 16, ahead = 3;  // links: in single precision, to fetch
     const double scale = 1 / std::sqrt(sites_->stage().area);
+    const auto& [receiver, first, sources, source] = kernels_;
     // Memory that is new is first touched where it is filled, on all threads.
-    const auto sources = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sources_.size());
-    parallel_for(sources_.size(), 256, [&](std::size_t i) { fill(sources[i], *sites_, b, sources_[i], scale); });
-    for_rows([&](std::size_t row) {
-        ReceivedLight<Layout> receiver(*sites_, receiver_[row], scale);
-        for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
-            prefetch(sources[source_[std::min(i + ahead, source_.size() - 1)]]);
+    const auto records = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sources.size());
+    parallel_for(sources.size(), 256, [&](std::size_t i) { fill(records[i], *sites_, b, sources[i], scale); });
+    kernels_.for_each(sites_->tree(), [&](std::size_t row) {
+        ReceivedLight<Layout> light(*sites_, receiver[row], scale);
+        for (std::size_t i = first[row]; i < first[row + 1]; ++i) {
+            prefetch(records[source[std::min(i + ahead, source.size() - 1)]]);
             if (Link::is_far(block_[i]))
-                receiver.add(sources[source_[i]], Link::scale(block_[i]), &visible_[i * words_]);
+                light.add(records[source[i]], Link::scale(block_[i]), &visible_[i * words_]);
             else
-                receiver.add(&blocks_[block_[i]], b, sources_[source_[i]]);
-            if (i % at_a_time == 0 || i + 1 == first_[row + 1]) receiver.flush(E, receiver_[row]);
+                light.add(&blocks_[block_[i]], b, sources[source[i]]);
+            if (i % at_a_time == 0) light.put_by();
         }
+        light.put_by();
+        E.add(receiver[row], light.total());
     });
-}
-
-template <class Row>
-void Links::for_rows(const Row& gather_row) const {
-    parallel_for(receiver_.size(), grain,
-                 [&](std::size_t row) {
-                     gather_row(row);
-                     note_touched("links", first_[row + 1] - first_[row]);
-                 },
-                 {"gather links", [&](std::size_t row) { return sites_->tree().region(receiver_[row]).value; }, true});
 }
 
 void Links::gather(const NodalField& b, NodalField& E) const {
@@ -300,12 +306,9 @@ void Links::gather(const NodalField& b, NodalField& E) const {
 }
 
 void Links::add_to(NodalField& E, const NodalField& b) const {
-    if (sites_->nodes() == 1)
-        gather_constants(b, E);
-    else if (sites_->nodes() == 4)
-        gather_kernels<LinkLayout2>(b, E);
-    else
-        gather_kernels<LinkLayout3>(b, E);
+    gather_constants(b, E);
+    if (sites_->nodes() == 4) gather_kernels<LinkLayout2>(b, E);
+    if (sites_->nodes() == 9) gather_kernels<LinkLayout3>(b, E);
 }
 
 }  // namespace exitance

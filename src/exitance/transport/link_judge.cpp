@@ -8,6 +8,17 @@
 #include "exitance/transport/form_factor.hpp"
 
 namespace exitance {
+namespace {
+
+/// The rule's error relative to what it gives is rule_constant (size / distance)^(2 M).
+constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1;
+
+/// Does so much light count so little that what may stand in between is hardly worth a look?
+bool is_tiny(double light, double allowed) {
+    return light < 0.3 * allowed;
+}
+
+}  // namespace
 
 LinkJudge::LinkJudge(const LinkSites& sites, const NodalField& b, const Field<ElementId, double>& roughness,
                      const LinkTolerance& tolerance)
@@ -100,17 +111,20 @@ LinkJudge::Row LinkJudge::mean_row(const Patch& receiver, const Normal& n, Depar
     return out;
 }
 
+/// Size of the source to its distance.
+double LinkJudge::ratio_of(ElementId p, ElementId q) const {
+    const double gap = norm(sites_.centre(q) - sites_.centre(p)) - sites_.radius(p);
+    return sites_.radius(q) / std::max(gap, 1e-3 * sites_.radius(q));
+}
+
 double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& departure) {
     const Normal& n = sites_.normal(p);
     const Patch frame = sites_.frame(p);
     const Checks& checks = this->checks(frame.shape);
-    const double gap = norm(sites_.centre(q) - sites_.centre(p)) - sites_.radius(p);
-    const double ratio = sites_.radius(q) / std::max(gap, 1e-3 * sites_.radius(q));
+    const double ratio = ratio_of(p, q);
     const int M = sites_.basis().order();
     ratio_ = ratio;
-
-    // The rule's error relative to what it gives falls like (size / distance)^(2 M).
-    constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1, hardly = 0.2;  // of what is allowed
+    constexpr double hardly = 0.2;  // of what is allowed
     const double rule_error = tolerance_.systematic * rule_constant * std::pow(ratio, 2 * M);
     near_ = keeps_block_ = false;
     block_.clear();
@@ -187,6 +201,88 @@ void LinkJudge::triage(LinkPair& pair, std::span<const PieceId> pool) {
     pair.view = pair.triaged ? shaft_.classify(pool.subspan(pair.first, pair.count), candidates_)
                              : shaft_.classify(candidates_);
     pair.triaged = true;
+}
+
+void LinkJudge::look_between(LinkPair& pair, std::span<const PieceId> pool, bool tiny) {
+    if (pair.view != View::mixed || looked_between_) return;
+    if (tolerance_.triage && !tiny) {
+        looked_between_ = true;
+        triage(pair, pool);
+    } else if (pair.triaged) {
+        const auto inherited = pool.subspan(pair.first, pair.count);
+        candidates_.assign(inherited.begin(), inherited.end());
+    }
+}
+
+LinkJudge::Even LinkJudge::send_evenly(ElementId p, ElementId q, double b, double allowed) {
+    constexpr double hardly = 0.2;  // of what is allowed
+    const Normal& n = sites_.normal(p);
+    const Patch frame = sites_.frame(p);
+    const Checks& checks = this->checks(frame.shape);
+    const Point middle = sites_.centre(q);
+    const auto kernel = [&](const Point& x) {
+        const Vec3 d = middle - x;
+        const double here = dot(n, d), there = -dot(source_normal_, d), rr = squared_norm(d);
+        return here > 0 && there > 0 ? source_area_ * here * there / (rr * rr) : 0;
+    };
+    Even out;
+    const double ratio = ratio_of(p, q), relative = tolerance_.systematic * rule_constant * ratio * ratio;
+    out.rule_error = relative * std::abs(b) * kernel(frame.centre());
+    const bool is_near = ratio > surely_near || (ratio > surely_far && out.rule_error > hardly * allowed);
+    if (is_near) {
+        outline_ = sites_.tree().outline(q);
+        out.rule_error = 0;
+        ++form_factors_;
+    }
+    const std::size_t count = checks.at.size();
+    std::array<double, 5> F{};
+    for (std::size_t i = 0; i < count; ++i) {
+        const Point x = frame.at(checks.at[i]);
+        F[i] = is_near ? std::max(0.0, point_to_polygon(x, n, outline_)) : kernel(x);
+        if (i > 0) out.form_factor += F[i] / static_cast<double>(count - 1);  // nearly Gauss's rule of as many points
+    }
+    for (std::size_t i = 0; i < count; ++i) out.departure[i] = (F[i] - out.form_factor) * b;
+    return out;
+}
+
+/// What little an element sends to another arrives alike all over it, wherever on the source it comes from: then one
+/// number does, whatever the basis. Is that so here? Then `out` holds the link, if there is one.
+bool LinkJudge::judge_as_constant(LinkPair& pair, std::span<const PieceId> pool, double allowed, Result& out) {
+    constexpr double hardly = 0.2;  // of what is allowed: departures of many links add up
+    const auto [p, q] = std::pair{pair.receiver, pair.source};
+    double b = 0, variation = source_roughness_ * source_roughness_;
+    for (std::size_t l = 0; l < n_; ++l) b += source_weight_[l] * source_light_[l];
+    for (std::size_t l = 0; l < n_; ++l) variation += source_weight_[l] * std::pow(source_light_[l] - b, 2);
+    const Even even = send_evenly(p, q, b, allowed);
+    const double unevenness =
+        tolerance_.hidden * std::min(1.0, ratio_of(p, q)) * even.form_factor * std::sqrt(variation);
+    const double rule = even.rule_error + tolerance_.systematic * unevenness;
+    if (rule > allowed) return false;
+    for (double d : even.departure)
+        if (std::abs(d) > hardly * allowed) return false;
+
+    const double light = std::abs(even.form_factor * b);
+    const bool tiny = is_tiny(light, allowed);
+    look_between(pair, pool, tiny);
+    if (pair.view == View::none) return true;
+    visible_[0] = 1;
+    double visibility = 0;
+    if (pair.view == View::mixed) {
+        constexpr unsigned few = 4, many = 16;
+        constexpr double half_hidden = 0.5, too_large = 2;
+        if (half_hidden * light / std::sqrt(static_cast<double>(many)) > too_large * allowed) return false;
+        node_light_[0] = light;
+        visibility = cast_one(p, q, tiny ? few : many);
+        if (visibility > allowed) return false;
+    }
+    out.link.receiver = p, out.link.source = q;
+    out.link.set_constant(even.form_factor * visible_[0]);
+    for (std::size_t i = 0; i < even.departure.size(); ++i) out.departure[i] = even.departure[i] * visible_[0];
+    const double area = sites_.tree().area(p);
+    out.light = area * light;
+    out.squared_error = area * tolerance_.weight(p) * (rule * rule + visibility * visibility);
+    out.verdict = Verdict::accept;
+    return true;
 }
 
 /// Rays from anywhere on the receiver to anywhere on the source; their share is one number.
@@ -298,22 +394,19 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     const auto [p, q] = std::pair{pair.receiver, pair.source};
     Result out;
     candidates_.clear();
+    looked_between_ = false;
     if (!may_see(p, q)) return out;
     const Material& material = sites_.stage().scene.material(sites_.tree().region(p));
     set_source(q, light_weight(material));
     const double area = sites_.tree().area(p), weight = tolerance_.weight(p),
                  allowed = tolerance_.error / std::sqrt(area * weight);
+    if (n_ > 1 && tolerance_.constants && judge_as_constant(pair, pool, allowed, out)) return out;
     const double rule = send(p, q, allowed, out.departure);
     double light = 0;
     for (std::size_t k = 0; k < n_; ++k) light = std::max(light, std::abs(node_light_[k]));
-    const bool by_error = tolerance_.oracle == LinkOracle::transport, tiny = by_error && light < 0.3 * allowed;
-    if (tolerance_.triage && !tiny && pair.view == View::mixed) {
-        triage(pair, pool);
-        if (pair.view == View::none) return out;
-    } else if (pair.triaged && pair.view == View::mixed) {
-        const auto inherited = pool.subspan(pair.first, pair.count);
-        candidates_.assign(inherited.begin(), inherited.end());
-    }
+    const bool by_error = tolerance_.oracle == LinkOracle::transport, tiny = by_error && is_tiny(light, allowed);
+    look_between(pair, pool, tiny);
+    if (pair.view == View::none) return out;
     out.link.receiver = p, out.link.source = q;
     const bool leaf = sites_.tree().is_leaf(q);
     double visibility = 0;

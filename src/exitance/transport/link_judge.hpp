@@ -26,6 +26,7 @@ struct LinkTolerance {
     double least_area = 0;    ///< No element is cut below this, m^2.
     bool fractional = false;  ///< The share of rays that get through, for all nodes of a link; else each its own.
     bool quadrature = false;  ///< One ray from each node to each node, yes or no.
+    bool constants = false;   ///< Links that carry little may be constants, whatever the basis.
     /// How much errors count on a receiver, squared, by element; null: alike everywhere.
     const Field<ElementId, double>* importance = nullptr;
     bool triage = true;  ///< Look for certain visibility before rays are cast.
@@ -95,6 +96,17 @@ class LinkJudge {
     double light(const Row& row) const;
     /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
     double send(ElementId p, ElementId q, double allowed, Departure& departure);
+    double ratio_of(ElementId p, ElementId q) const;
+    /// What one number sends: the mean form factor over the receiver, the error of the rule, and how light departs from
+    /// the mean.
+    struct Even {
+        double form_factor = 0, rule_error = 0;
+        Departure departure{};
+    };
+    Even send_evenly(ElementId p, ElementId q, double b, double allowed);
+    bool judge_as_constant(LinkPair& pair, std::span<const PieceId> pool, double allowed, Result& out);
+    /// Finds what may stand in between, once for each pair that is judged; of a pair that hardly counts, what is known.
+    void look_between(LinkPair& pair, std::span<const PieceId> pool, bool tiny);
     void triage(LinkPair& pair, std::span<const PieceId> pool);
     /// Rays between the two, a few or more if the error is not to be above `allowed`; returns the standard error of the
     /// light that arrives.
@@ -128,6 +140,7 @@ class LinkJudge {
     Shaft shaft_;
     std::vector<PieceId> candidates_;
     std::vector<float> block_;
+    std::vector<Point> outline_;
     NearRow near_row_;
     std::vector<Point> from_, to_;
     std::vector<std::size_t> pair_of_ray_;
@@ -140,11 +153,12 @@ class LinkJudge {
     std::array<double, 81> visible_{};  ///< Share of the rays from a receiver's node to a source's that get through.
     std::array<double, 9> variance_{};  ///< Of the light at the receiver's nodes.
     std::array<Row, 9> rows_;           ///< From the receiver's nodes.
-    bool near_ = false;                 ///< Are rows those of NearRow?
-    bool keeps_block_ = false;          ///< Are they handed over?
-    double kernel_scale_ = 1;           ///< Of near rows that are not.
-    double ratio_ = 0;                  ///< Size of the source to its distance.
-    double form_factor_ = 0;            ///< From the receiver's first node.
+    bool looked_between_ = false;
+    bool near_ = false;         ///< Are rows those of NearRow?
+    bool keeps_block_ = false;  ///< Are they handed over?
+    double kernel_scale_ = 1;   ///< Of near rows that are not.
+    double ratio_ = 0;          ///< Size of the source to its distance.
+    double form_factor_ = 0;    ///< From the receiver's first node.
     std::size_t rays_ = 0, form_factors_ = 0;
 };
 

@@ -54,7 +54,7 @@ void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalFie
     const std::size_t n = sites.nodes();
     for (std::size_t band = 0; band < bands; ++band)
         for (std::size_t k = 0; k < n; ++k) {
-            double sum = 0;
+            float sum = 0;
             for (std::size_t j = 0; j < n; ++j) sum += push[k * n + j] * field.at(parent, band)[j];
             field.at(child, band)[k] = sum;
         }
@@ -108,6 +108,7 @@ void LinkRefiner::judge_all_pieces(const NodalField& b, const LinkTolerance& tol
 }
 
 double LinkRefiner::growth(const NodalField& b, ElementId source) const {
+    if (light_stays_) return 1;
     double now = 0, then = 0;
     const std::size_t n = sites_.nodes();
     for (std::size_t k = 0; k < n; ++k)
@@ -220,7 +221,7 @@ LinkRefiner::Block LinkRefiner::judge_block(std::span<const LinkPair> pairs, Lin
             out.blocks.insert(out.blocks.end(), judge.block().begin(), judge.block().end());
         }
         out.links.push_back({result, pair.view == View::open, tree_.is_leaf(pair.source)});
-        if (pair.view == View::open || sites_.nodes() == 1) continue;
+        if (pair.view == View::open || sites_.nodes() == 1 || result.link.is_constant()) continue;
         out.links.back().shadow = static_cast<std::uint32_t>(out.shadows.size());
         for (const auto& at_nodes : {result.shadowed, result.variance})
             out.shadows.insert(out.shadows.end(), at_nodes.begin(),
@@ -333,8 +334,10 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
         const ElementId p = found.link.receiver;
         if (!too_much[p]) return untouched;
         if (tolerance.oracle != LinkOracle::transport) return found.too_strong ? handed_on : left;
-        const double error = weight(p) * tree_.area(p) * mean_square(found.departure);
-        return found.open && error < negligible * negligible ? left : handed_on;
+        // Of light that meets something on its way, half may be missing in places.
+        const double light = static_cast<double>(found.light) / tree_.area(p), hidden = found.open ? 0 : 0.5 * light;
+        const double error = weight(p) * tree_.area(p) * (mean_square(found.departure) + hidden * hidden);
+        return error < negligible * negligible ? left : handed_on;
     };
     // Receivers that are cut have mostly been linked of late: long stretches of links stay where they are.
     constexpr std::size_t stretch = 1024;
@@ -380,7 +383,7 @@ void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const
     else
         judge_all_pieces(b, tolerance, stop);
     cut_until_good(b, also, tolerance, progress, stop);
-    judged_ = b;
+    if (!light_stays_) judged_ = b;
 }
 
 void LinkRefiner::refine(const std::vector<LinkPair>& fresh, NodalField& b, std::span<NodalField* const> also,
@@ -389,7 +392,7 @@ void LinkRefiner::refine(const std::vector<LinkPair>& fresh, NodalField& b, std:
     judge_again(b, tolerance, stop);
     judge(fresh, b, tolerance, stop);
     cut_until_good(b, also, tolerance, progress, stop);
-    judged_ = b;
+    if (!light_stays_) judged_ = b;
 }
 
 void LinkRefiner::cut_until_good(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,

@@ -36,6 +36,9 @@ class LinkRefiner {
     /// on; parts take it from their wholes. Empty: alike everywhere.
     void set_importance(Field<ElementId, double> importance) { importance_ = std::move(importance); }
 
+    /// From now on links are judged by the same light whenever they are: what they were judged by is not kept.
+    void keep_light() { light_stays_ = true; }
+
     /// Of elements whose children are not held; of others it is found by itself.
     void set_roughness(Field<ElementId, double> roughness) { roughness_ = std::move(roughness); }
 
@@ -118,11 +121,11 @@ class LinkRefiner {
     Field<ElementId, double> importance_;
     std::vector<Found> links_;
     std::vector<float> blocks_, shadows_;
-    NodalField judged_;         ///< The light that links were judged by last.
+    NodalField judged_;         ///< The light that links were judged by last, unless it stays.
     double interpolation_ = 0;  ///< Squared, as in error().
     double error_ = 0, light_ = 0, open_light_ = 0;
     std::size_t rays_ = 0, form_factors_ = 0;
-    bool begun_ = false, limited_ = false;
+    bool begun_ = false, limited_ = false, light_stays_ = false;
 };
 
 }  // namespace exitance

@@ -70,15 +70,15 @@ bool LinkSites::is_regular(ElementId parent) const {
 LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
     ChildMatrices out;
     const Patch outer = frame(parent);
+    const std::size_t children = tree_->children(parent).size();
     if (is_regular(parent)) {
-        for (std::size_t i = 0; i < tree_->children(parent).size(); ++i) {
-            const auto push = basis_->push(outer.shape, tree_->way(parent), i),
-                       pull = basis_->pull(outer.shape, tree_->way(parent), i);
-            out.push.insert(out.push.end(), push.begin(), push.end());
-            out.pull.insert(out.pull.end(), pull.begin(), pull.end());
+        for (std::size_t i = 0; i < children; ++i) {
+            out.push.push_back(basis_->push(outer.shape, tree_->way(parent), i));
+            out.pull.push_back(basis_->pull(outer.shape, tree_->way(parent), i));
         }
         return out;
     }
+    out.own.resize(2 * children * n_ * n_);
     const auto nodes = basis_->nodes(outer.shape);
     std::vector<double> gram(n_ * n_, 0.0);
     for (std::size_t j = 0; j < n_; ++j)
@@ -87,10 +87,9 @@ LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
     for (ElementId child : tree_->children(parent)) {
         const Patch inner = frame(child);
         for (std::size_t k = 0; k < n_; ++k) places[k] = outer.coordinates(node(inner, k));
-        const std::size_t first = out.push.size();
-        out.push.resize(first + n_ * n_), out.pull.resize(first + n_ * n_);
-        double* const push = &out.push[first];
-        double* const pull = &out.pull[first];
+        double* const push = &out.own[2 * out.push.size() * n_ * n_];
+        double* const pull = push + n_ * n_;
+        out.push.emplace_back(push, n_ * n_), out.pull.emplace_back(pull, n_ * n_);
         basis_->push_to(outer.shape, places, {push, n_ * n_});
         const double share = tree_->area(child) / tree_->area(parent);
         const auto own = basis_->nodes(inner.shape);
@@ -101,11 +100,7 @@ LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
             }
     }
     for (std::size_t j = 0; j < n_; ++j) gram[j * n_ + j] *= 1 + 1e-12;  // slivers say little of some functions
-    for (std::size_t first = 0; first < out.pull.size(); first += n_ * n_) {
-        std::vector<double> matrix = gram, pull(&out.pull[first], &out.pull[first] + n_ * n_);
-        solve_in_place(matrix, pull, n_, n_);
-        std::copy(pull.begin(), pull.end(), &out.pull[first]);
-    }
+    out.gram = std::move(gram);
     return out;
 }
 
@@ -122,7 +117,7 @@ void LinkSites::add(ElementId e) {
     for (int i = 0; i < patch.corner_count(); ++i) radius = std::max(radius, norm(patch.corner(i) - middle));
     radius_.push_back(radius);
     depth_.push_back(parent.is_none() ? 0 : depth_[place_[parent]] + 1);
-    own_matrix_.push_back(none);
+    matrix_.push_back(none);
     if (parent.is_none() || e != tree_->children(parent).front()) return;
     if (inner_.size() < depth_.back()) inner_.resize(depth_.back());
     inner_[depth_.back() - 1].push_back(parent);
@@ -136,18 +131,38 @@ void LinkSites::hold(std::span<const ElementId> elements) {
     // Matrices when all children are there.
     for (std::size_t i = before; i < held_.size(); ++i) {
         const ElementId parent = tree_->parent(held_[i]);
-        if (parent.is_none() || held_[i] != tree_->children(parent).front() || is_regular(parent)) continue;
-        const ChildMatrices own = matrices(parent);
-        for (std::size_t c = 0; c < tree_->children(parent).size(); ++c)
-            own_matrix_[place_[tree_->children(parent)[c]]] = static_cast<std::uint32_t>(push_.size() + c * n_ * n_);
-        push_.insert(push_.end(), own.push.begin(), own.push.end());
-        pull_.insert(pull_.end(), own.pull.begin(), own.pull.end());
+        if (parent.is_none() || held_[i] != tree_->children(parent).front()) continue;
+        std::uint32_t at = matrices_below(parent);
+        for (ElementId child : tree_->children(parent)) {
+            matrix_[place_[child]] = at;
+            at += static_cast<std::uint32_t>(n_ * n_);
+        }
     }
+}
+
+std::uint32_t LinkSites::matrices_below(ElementId parent) {
+    if (!is_regular(parent)) return add_matrices(parent);
+    const auto [at, is_new] = regular_.try_emplace({tree_->patch(parent).shape, tree_->way(parent)}, 0);
+    if (is_new) at->second = add_matrices(parent);
+    return at->second;
+}
+
+std::uint32_t LinkSites::add_matrices(ElementId parent) {
+    const auto at = static_cast<std::uint32_t>(push_.size());
+    const ChildMatrices of = matrices(parent);
+    for (std::span<const double> push : of.push)
+        for (double v : push) push_.push_back(static_cast<float>(v));
+    for (std::span<const double> pull : of.pull) {
+        std::vector<double> gram = of.gram, solved(pull.begin(), pull.end());
+        if (!gram.empty()) solve_in_place(gram, solved, n_, n_);
+        for (double v : solved) pull_.push_back(static_cast<float>(v));
+    }
+    return at;
 }
 
 void LinkSites::hold_anew(std::span<const ElementId> elements) {
     place_ = {};
-    held_.clear(), radius_.clear(), own_matrix_.clear(), push_.clear(), pull_.clear();
+    held_.clear(), radius_.clear(), matrix_.clear(), push_.clear(), pull_.clear(), regular_.clear();
     inner_.clear(), depth_.clear(), cell_frame_.clear(), cell_frames_.clear();
     hold(elements);
 }
@@ -178,15 +193,6 @@ ElementPart LinkSites::part_with(Field<ElementId, std::uint8_t> marked) const {
     return part;
 }
 
-std::span<const double> LinkSites::matrix(const std::vector<double>& own, ElementId child, bool pull) const {
-    const std::uint32_t at = own_matrix_[place_[child]];
-    if (at != none) return std::span(own).subspan(at, n_ * n_);
-    const ElementId parent = tree_->parent(child);
-    const std::size_t i = child.value - tree_->children(parent).front().value;
-    const Patch::Shape shape = tree_->patch(parent).shape;
-    return pull ? basis_->pull(shape, tree_->way(parent), i) : basis_->push(shape, tree_->way(parent), i);
-}
-
 std::vector<std::size_t> LinkSites::count_by_level() const {
     std::vector<std::size_t> count;
     for (std::uint32_t depth : depth_) {
@@ -197,22 +203,32 @@ std::vector<std::size_t> LinkSites::count_by_level() const {
 }
 
 std::size_t LinkSites::memory_bytes() const {
-    return 4 * place_.size() + held_.size() * (4 + 8 + 4 + 4 + 4 + 4) + 8 * (push_.size() + pull_.size()) +
+    return 4 * place_.size() + held_.size() * (4 + 8 + 4 + 4 + 4 + 4) + sizeof(float) * (push_.size() + pull_.size()) +
            cell_frames_.size() * sizeof(Patch);
 }
 
 Spectrum NodalField::node(ElementId e, std::size_t k) const {
     Spectrum out;
-    for (std::size_t band = 0; band < bands; ++band) out[band] = at(e, band)[k];
+    for (std::size_t band = 0; band < bands; ++band) out[band] = static_cast<double>(at(e, band)[k]);
+    return out;
+}
+
+Spectrum NodalField::mean(ElementId e) const {
+    Spectrum out;
+    for (std::size_t k = 0; k < sites_->nodes(); ++k) out += sites_->weight(e, k) * node(e, k);
     return out;
 }
 
 void NodalField::set_node(ElementId e, std::size_t k, const Spectrum& value) {
-    for (std::size_t band = 0; band < bands; ++band) at(e, band)[k] = value[band];
+    for (std::size_t band = 0; band < bands; ++band) at(e, band)[k] = static_cast<float>(value[band]);
 }
 
 void NodalField::set(ElementId e, const NodalValues& values) {
     for (std::size_t k = 0; k < sites_->nodes(); ++k) set_node(e, k, values[k]);
+}
+
+void NodalField::add(ElementId e, const NodalValues& values) {
+    for (std::size_t k = 0; k < sites_->nodes(); ++k) set_node(e, k, node(e, k) + values[k]);
 }
 
 NodalValues NodalField::values(ElementId e) const {
@@ -233,6 +249,36 @@ NodalValues NodalField::values(ElementId e) const {
     return out;
 }
 
+FromBelow pull_from_parts(const LinkSites& sites, ElementId e, std::span<const FromBelow> parts) {
+    const ElementTree& tree = sites.tree();
+    const std::size_t n = sites.nodes();
+    LinkSites::ChildMatrices matrices = sites.matrices(e);
+    std::vector<double> sum(n * bands, 0.0);
+    std::array<double, 9> means;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        for (std::size_t j = 0; j < n; ++j)
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t band = 0; band < bands; ++band)
+                    sum[j * bands + band] += matrices.pull[i][j * n + k] * parts[i].values[k][band];
+    if (!matrices.gram.empty()) solve_in_place(matrices.gram, sum, n, bands);
+    FromBelow out;
+    for (std::size_t j = 0; j < n; ++j) {
+        for (std::size_t band = 0; band < bands; ++band) out.values[j][band] = sum[j * bands + band];
+        means[j] = mean(out.values[j]);
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const ElementId child = tree.children(e)[i];
+        double departure_squared = parts[i].departure_squared;
+        for (std::size_t k = 0; k < n; ++k) {
+            double departure = mean(parts[i].values[k]);
+            for (std::size_t j = 0; j < n; ++j) departure -= matrices.push[i][k * n + j] * means[j];
+            departure_squared += sites.weight(child, k) * departure * departure;
+        }
+        out.departure_squared += tree.area(child) / tree.area(e) * departure_squared;
+    }
+    return out;
+}
+
 namespace {
 
 /// Elements a task, that have so many nodes each and four children.
@@ -241,9 +287,9 @@ std::size_t grain(std::size_t nodes) {
 }
 
 /// out += matrix in, n numbers of every band.
-void add_product(std::span<const double> matrix, std::size_t n, const double* in, double* out) {
+void add_product(std::span<const float> matrix, std::size_t n, const float* in, float* out) {
     for (std::size_t i = 0; i < n; ++i) {
-        double sum = 0;
+        float sum = 0;
         for (std::size_t j = 0; j < n; ++j) sum += matrix[i * n + j] * in[j];
         out[i] += sum;
     }
@@ -254,13 +300,13 @@ void add_product(std::span<const double> matrix, std::size_t n, const double* in
 void NodalField::clear() {
     parallel_ranges(values_.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
         std::fill(values_.begin() + static_cast<std::ptrdiff_t>(begin),
-                  values_.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+                  values_.begin() + static_cast<std::ptrdiff_t>(end), 0.0f);
     });
 }
 
 void NodalField::clear(const ElementPart& part) {
     const std::size_t size = bands * sites_->nodes();
-    const auto clear_one = [&](ElementId e) { std::fill_n(at(e, 0), size, 0.0); };
+    const auto clear_one = [&](ElementId e) { std::fill_n(at(e, 0), size, 0.0f); };
     for (const std::vector<ElementId>& level : part.inner)
         for (ElementId e : level) clear_one(e);
     parallel_for(part.ends.size(), 4096, [&](std::size_t i) { clear_one(part.ends[i]); });
@@ -273,7 +319,7 @@ void NodalField::pull(const Levels& inner) {
         const std::vector<ElementId>& elements = inner[level];
         parallel_for(elements.size(), grain(n), [&](std::size_t i) {
             const ElementId e = elements[i];
-            for (std::size_t band = 0; band < bands; ++band) std::fill_n(at(e, band), n, 0.0);
+            for (std::size_t band = 0; band < bands; ++band) std::fill_n(at(e, band), n, 0.0f);
             for (ElementId child : tree.children(e)) {
                 const auto matrix = sites_->pull(child);
                 for (std::size_t band = 0; band < bands; ++band) add_product(matrix, n, at(child, band), at(e, band));
@@ -296,8 +342,9 @@ Field<ElementId, double> NodalField::roughness(const Field<ElementId, double>& o
                 const auto matrix = sites_->push(child);
                 double sum = squared[child];
                 for (std::size_t k = 0; k < n; ++k) {
-                    double departure = mean(node(child, k));
-                    for (std::size_t j = 0; j < n; ++j) departure -= matrix[k * n + j] * mean(node(e, j));
+                    double departure = exitance::mean(node(child, k));
+                    for (std::size_t j = 0; j < n; ++j)
+                        departure -= static_cast<double>(matrix[k * n + j]) * exitance::mean(node(e, j));
                     sum += sites_->weight(child, k) * departure * departure;
                 }
                 squared[e] += tree.area(child) / tree.area(e) * sum;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -57,11 +58,13 @@ class LinkSites {
     double weight(ElementId e, std::size_t k) const { return basis_->nodes(tree_->patch(e).shape)[k].weight; }
 
     /// child[k] = sum_j push[k n + j] parent[j], and what pull adds to the parent: pull[j n + k] child[k]. Held.
-    std::span<const double> push(ElementId child) const { return matrix(push_, child, false); }
-    std::span<const double> pull(ElementId child) const { return matrix(pull_, child, true); }
-    /// Those of all children of an element, held or not, one after the other.
+    std::span<const float> push(ElementId child) const { return {&push_[matrix_[place_[child]]], n_ * n_}; }
+    std::span<const float> pull(ElementId child) const { return {&pull_[matrix_[place_[child]]], n_ * n_}; }
+    /// Those of all children of an element, held or not; where `gram` is not empty, nodes()^2 entries, what pull adds
+    /// up is gram times the parent.
     struct ChildMatrices {
-        std::vector<double> push, pull;
+        std::vector<std::span<const double>> push, pull;
+        std::vector<double> gram, own;  ///< `own`: what spans refer to that the basis does not have.
     };
     ChildMatrices matrices(ElementId parent) const;
 
@@ -86,7 +89,8 @@ class LinkSites {
     void hold_anew(std::span<const ElementId> elements);
     void add(ElementId e);
     bool is_regular(ElementId parent) const;
-    std::span<const double> matrix(const std::vector<double>& own, ElementId child, bool pull) const;
+    std::uint32_t add_matrices(ElementId parent);
+    std::uint32_t matrices_below(ElementId parent);
     Patch inertia_parallelogram(ElementId e) const;
 
     const Stage* stage_;
@@ -96,8 +100,9 @@ class LinkSites {
     Field<ElementId, std::uint32_t> place_;  ///< Of all elements.
     std::vector<ElementId> held_;            ///< By place, as all below.
     std::vector<double> radius_;
-    std::vector<std::uint32_t> own_matrix_;  ///< Of children that lie like no other: where their matrices stand.
-    std::vector<double> push_, pull_;
+    std::vector<std::uint32_t> matrix_;                              ///< Where the push and the pull of a child stand:
+    std::vector<float> push_, pull_;                                 ///< what regular cuts have alike, once.
+    std::map<std::pair<Patch::Shape, Cut>, std::uint32_t> regular_;  ///< Where those of the first child stand.
     std::vector<std::vector<ElementId>> inner_;
     std::vector<std::uint32_t> depth_;
     std::vector<std::uint32_t> cell_frame_;  ///< Of a cell: where its frame stands in `cell_frames_`.
@@ -107,13 +112,13 @@ class LinkSites {
 /// The numbers of one element, node by node.
 using NodalValues = std::array<Spectrum, 9>;
 
-/// Numbers of all elements that are held, band by band: of element e, band and node k at (place bands + band) nodes +
-/// k.
+/// Numbers of all elements that are held, in single precision as links bring them, band by band: of element e, band and
+/// node k at (place bands + band) nodes + k.
 class NodalField {
   public:
     explicit NodalField(const LinkSites& sites) : sites_(&sites) { resize(); }
-    void resize() { values_.resize(sites_->size() * bands * sites_->nodes(), 0.0); }
-    std::size_t memory_bytes() const { return 8 * values_.size(); }
+    void resize() { values_.resize(sites_->size() * bands * sites_->nodes(), 0.0f); }
+    std::size_t memory_bytes() const { return sizeof(float) * values_.size(); }
     template <class Archive>
     void archive_state(Archive& a) {
         a(values_);
@@ -121,13 +126,15 @@ class NodalField {
     void clear();
     void clear(const ElementPart& part);
 
-    double* at(ElementId e, std::size_t band) { return &values_[(sites_->place(e) * bands + band) * sites_->nodes()]; }
-    const double* at(ElementId e, std::size_t band) const {
+    float* at(ElementId e, std::size_t band) { return &values_[(sites_->place(e) * bands + band) * sites_->nodes()]; }
+    const float* at(ElementId e, std::size_t band) const {
         return &values_[(sites_->place(e) * bands + band) * sites_->nodes()];
     }
     Spectrum node(ElementId e, std::size_t k) const;
+    Spectrum mean(ElementId e) const;  ///< Over the element.
     void set_node(ElementId e, std::size_t k, const Spectrum& value);
     void set(ElementId e, const NodalValues& values);
+    void add(ElementId e, const NodalValues& values);
     /// Of any element: below those that are held, of the function of the nearest one.
     NodalValues values(ElementId e) const;
 
@@ -147,7 +154,7 @@ class NodalField {
     void push(const Levels& inner);
 
     const LinkSites* sites_;
-    std::vector<double> values_;
+    std::vector<float> values_;
 };
 
 /// A function below an element, as the element sees it: the nearest numbers, and the mean square by which the mean over
@@ -157,33 +164,16 @@ struct FromBelow {
     double departure_squared = 0;
 };
 
+/// What an element comes to, of which its children, held or not, come to `parts`.
+FromBelow pull_from_parts(const LinkSites& sites, ElementId e, std::span<const FromBelow> parts);
+
 /// Pulls what leaves hold up to an element, held or not. `of_leaf(e)`: the values of a leaf. O(elements below).
 template <class OfLeaf>
 FromBelow pull_from_leaves(const LinkSites& sites, ElementId e, const OfLeaf& of_leaf) {
-    const ElementTree& tree = sites.tree();
-    if (tree.is_leaf(e)) return {of_leaf(e)};
-    const std::size_t n = sites.nodes();
-    const LinkSites::ChildMatrices matrices = sites.matrices(e);
-    FromBelow out;
+    if (sites.tree().is_leaf(e)) return {of_leaf(e)};
     std::vector<FromBelow> parts;
-    for (ElementId child : tree.children(e)) {
-        const double* const pull = &matrices.pull[parts.size() * n * n];
-        const FromBelow& part = parts.emplace_back(pull_from_leaves(sites, child, of_leaf));
-        for (std::size_t j = 0; j < n; ++j)
-            for (std::size_t k = 0; k < n; ++k) out.values[j] += pull[j * n + k] * part.values[k];
-    }
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const ElementId child = tree.children(e)[i];
-        const double* const push = &matrices.push[i * n * n];
-        double sum = parts[i].departure_squared;
-        for (std::size_t k = 0; k < n; ++k) {
-            double departure = mean(parts[i].values[k]);
-            for (std::size_t j = 0; j < n; ++j) departure -= push[k * n + j] * mean(out.values[j]);
-            sum += sites.weight(child, k) * departure * departure;
-        }
-        out.departure_squared += tree.area(child) / tree.area(e) * sum;
-    }
-    return out;
+    for (ElementId child : sites.tree().children(e)) parts.push_back(pull_from_leaves(sites, child, of_leaf));
+    return pull_from_parts(sites, e, parts);
 }
 
 }  // namespace exitance

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-constexpr double rounding = 1e-12;
+constexpr double rounding = 1e-12, single = 1e-6;  // fields are held in single precision
 
 /// A floor whose second element is cut into cells along slanted lines.
 ElementTree tree_with_cells(const Stage& stage) {
@@ -67,9 +67,9 @@ TEST(NodalField, PullAndPushKeepLinearFunctionsOnRegularElementsAndCells) {
         for (ElementId e : tree.ids())
             for (std::size_t k = 0; k < sites.nodes(); ++k)
                 if (sites.weight(e, k) > 0) {
-                    EXPECT_NEAR(field.node(e, k)[0], f(sites.node(e, k)), 1e-10);
+                    EXPECT_NEAR(field.node(e, k)[0], f(sites.node(e, k)), 10 * single);
                 }
-        for (double r : field.roughness()) EXPECT_NEAR(r, 0, 1e-7);
+        for (double r : field.roughness()) EXPECT_NEAR(r, 0, 10 * single);
     }
 }
 
@@ -96,9 +96,9 @@ TEST(LinkSites, OpenedStepByStepHoldWhatAllOfThemDo) {
             opened = false;
             for (ElementId end : some.ends()) {
                 const FromBelow found = pull_from_leaves(some, end, f);
-                EXPECT_NEAR(std::sqrt(found.departure_squared), roughness[end], rounding);
+                EXPECT_NEAR(std::sqrt(found.departure_squared), roughness[end], single);
                 for (std::size_t k = 0; k < all.nodes(); ++k)
-                    EXPECT_NEAR(found.values[k][0], whole.node(end, k)[0], 1e-10);
+                    EXPECT_NEAR(found.values[k][0], whole.node(end, k)[0], 2 * single * std::exp(1.0));
                 if (tree.is_leaf(end)) continue;
                 EXPECT_EQ(some.held_above(tree.children(end).front()), end);
                 some.open(std::vector{end});
@@ -126,7 +126,7 @@ TEST(NodalField, BelowWhatIsHeldIsTheFunctionOfTheNearestElement) {
         for (std::size_t k = 0; k < sites.nodes(); ++k) field.set_node(e, k, Spectrum(f(sites.node(e, k))));
     for (ElementId e : tree.leaves()) {
         const NodalValues values = field.values(e);
-        for (std::size_t k = 0; k < sites.nodes(); ++k) EXPECT_NEAR(values[k][0], f(sites.node(e, k)), 1e-10);
+        for (std::size_t k = 0; k < sites.nodes(); ++k) EXPECT_NEAR(values[k][0], f(sites.node(e, k)), 10 * single);
     }
 }
 

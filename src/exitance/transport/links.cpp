@@ -1,6 +1,8 @@
 #include "exitance/transport/links.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/transport/link_kernel.hpp"
@@ -39,31 +41,52 @@ std::vector<std::size_t> sort_by_receiver(std::vector<Link>& links, std::size_t 
 
 }  // namespace
 
-Links::Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks)
-    : sites_(&sites), blocks_(std::move(blocks)) {
-    const std::size_t elements = sites.tree().size(), n = sites.nodes();
+Links::Rows::Rows(std::vector<Link>& links, std::size_t elements) {
     const std::vector<std::size_t> end = sort_by_receiver(links, elements);
     Field<ElementId, std::uint32_t> place(elements, 0);  // among the sources
     for (const Link& link : links) place[link.source] = 1;
     for (ElementId e : place.ids()) {
-        const std::size_t first = e.value == 0 ? 0 : end[e.value - 1];
-        if (first < end[e.value]) receiver_.push_back(e), first_.push_back(first);
+        const std::size_t begin = e.value == 0 ? 0 : end[e.value - 1];
+        if (begin < end[e.value]) receiver.push_back(e), first.push_back(begin);
         if (place[e] == 0) continue;
-        place[e] = static_cast<std::uint32_t>(sources_.size());
-        sources_.push_back(e);
+        place[e] = static_cast<std::uint32_t>(sources.size());
+        sources.push_back(e);
     }
-    first_.push_back(links.size());
-    words_ = n == 1 ? 0 : (n * n + 31) / 32;
-    source_.resize(links.size());
-    (n == 1 ? factor_.resize(links.size()) : block_.resize(links.size()));
-    visible_.resize(words_ * links.size(), 0);
-    parallel_for(links.size(), 4096, [&](std::size_t i) {
-        source_[i] = place[links[i].source];
-        if (n == 1)
-            factor_[i] = links[i].factor;
-        else
-            lay_out(links[i], i);
-    });
+    first.push_back(links.size());
+    source.resize(links.size());
+    parallel_for(links.size(), 4096, [&](std::size_t i) { source[i] = place[links[i].source]; });
+}
+
+void Links::Rows::mark(Field<ElementId, std::uint8_t>& marked) const {
+    for (ElementId e : receiver) marked[e] = 1;
+    for (ElementId e : sources) marked[e] = 1;
+}
+
+Links::Kinds Links::by_kind(std::vector<Link> links, std::size_t nodes) {
+    if (nodes == 1) return {std::move(links), {}};
+    const auto kernels =
+        std::stable_partition(links.begin(), links.end(), [](const Link& l) { return l.is_constant(); });
+    Kinds out;
+    out.kernels.assign(kernels, links.end());
+    links.erase(kernels, links.end());
+    out.constants = std::move(links);
+    return out;
+}
+
+Links::Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks)
+    : Links(sites, by_kind(std::move(links), sites.nodes()), std::move(blocks)) {}
+
+Links::Links(const LinkSites& sites, Kinds links, std::vector<float> blocks)
+    : sites_(&sites),
+      constants_(links.constants, sites.tree().size()),
+      kernels_(links.kernels, sites.tree().size()),
+      factor_(links.constants.size()),
+      block_(links.kernels.size()),
+      blocks_(std::move(blocks)),
+      words_((sites.nodes() * sites.nodes() + 31) / 32) {
+    parallel_for(factor_.size(), 4096, [&](std::size_t i) { factor_[i] = links.constants[i].factor; });
+    visible_.resize(words_ * block_.size(), 0);
+    parallel_for(block_.size(), 4096, [&](std::size_t i) { lay_out(links.kernels[i], i); });
 }
 
 void Links::lay_out(const Link& link, std::size_t i) {
@@ -80,15 +103,15 @@ void Links::lay_out(const Link& link, std::size_t i) {
 }
 
 std::size_t Links::memory_bytes() const {
-    return 4 * (source_.size() + sources_.size() + factor_.size() + visible_.size() + block_.size() + blocks_.size()) +
-           12 * receiver_.size();
+    return constants_.memory_bytes() + kernels_.memory_bytes() +
+           4 * (factor_.size() + visible_.size() + block_.size() + blocks_.size());
 }
 
 template <std::size_t groups>
 double Links::mean_form_factor(std::size_t row, std::size_t link) const {
-    const ElementId p = receiver_[row];
+    const ElementId p = kernels_.receiver[row];
     const std::size_t n = sites_->nodes();
-    const SourceNodes<groups> source(*sites_, sources_[source_[link]]);
+    const SourceNodes<groups> source(*sites_, kernels_.source_of(link));
     double sum = 0;
     const bool far = Link::is_far(block_[link]);
     const double scale = far ? static_cast<double>(Link::scale(block_[link])) : 1;
@@ -108,19 +131,24 @@ double Links::mean_form_factor(std::size_t row, std::size_t link) const {
 std::vector<KeptLink> Links::list() const {
     std::vector<KeptLink> out;
     out.reserve(size());
-    for (std::size_t row = 0; row < receiver_.size(); ++row)
-        for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
-            const double factor = sites_->nodes() == 1   ? static_cast<double>(factor_[i])
-                                  : sites_->nodes() == 4 ? mean_form_factor<1>(row, i)
-                                                         : mean_form_factor<3>(row, i);
-            out.push_back({receiver_[row], sources_[source_[i]], static_cast<float>(factor)});
-        }
+    const auto add = [&](const Rows& rows, const auto& factor) {
+        for (std::size_t row = 0; row < rows.receiver.size(); ++row)
+            for (std::size_t i = rows.first[row]; i < rows.first[row + 1]; ++i)
+                out.push_back({rows.receiver[row], rows.source_of(i), static_cast<float>(factor(row, i))});
+    };
+    add(constants_, [&](std::size_t, std::size_t i) { return factor_[i]; });
+    add(kernels_, [&](std::size_t row, std::size_t i) {
+        return sites_->nodes() == 4 ? mean_form_factor<1>(row, i) : mean_form_factor<3>(row, i);
+    });
+    std::sort(out.begin(), out.end(), [](const KeptLink& a, const KeptLink& b) {
+        return std::pair(a.receiver, a.source) < std::pair(b.receiver, b.source);
+    });
     return out;
 }
 
 void Links::mark(Field<ElementId, std::uint8_t>& marked) const {
-    for (ElementId e : receiver_) marked[e] = 1;
-    for (ElementId e : sources_) marked[e] = 1;
+    constants_.mark(marked);
+    kernels_.mark(marked);
 }
 
 ElementPart linked_part(const LinkSites& sites, const Links& links, const ClusterLinks* far) {

@@ -17,18 +17,22 @@ namespace exitance {
 /// anew whenever light passes; what is kept is what is dear.
 struct Link {
     ElementId receiver, source;
-    /// Bit k n + l: is node l of the source visible from node k of the receiver? Of order 1: unused.
+    /// Bit k n + l: is node l of the source visible from node k of the receiver? The last bit marks a constant: of
+    /// order 1, whatever the basis, from the mean of the source to all of the receiver.
     std::array<std::uint32_t, 3> visible{};
-    /// Of order 1: form factor times visible share. Else where the link's block stands (Links::blocks_), or, far, the
+    /// A constant: form factor times visible share. Else where the link's block stands (Links::blocks_), or, far, the
     /// number by which its kernel is scaled, with the sign set.
     union {
         float factor;
         std::uint32_t block;
     };
-    static constexpr std::uint32_t far = 0x80000000u;
+    static constexpr std::uint32_t far = 0x80000000u, mark = 0x80000000u;
     static bool is_far(std::uint32_t block) { return block & far; }
     static float scale(std::uint32_t block) { return std::bit_cast<float>(block & ~far); }
     void set_far(float scale) { block = far | std::bit_cast<std::uint32_t>(scale); }
+    void set_constant(double form_factor) { visible = {0, 0, mark}, factor = static_cast<float>(form_factor); }
+    bool is_constant() const { return visible[2] & mark; }
+    bool has_block() const { return !is_constant() && !is_far(block); }
 
     bool sees(std::size_t bit) const { return visible[bit / 32] >> (bit % 32) & 1u; }
     void set(std::size_t bit) { visible[bit / 32] |= 1u << (bit % 32); }
@@ -36,7 +40,8 @@ struct Link {
 
 /// All links of a hierarchy, sorted by receiver, then by source.
 ///
-/// Order 1: E = F V b with F from the receiver's middle, exactly. Higher orders: at each node x_k of the receiver
+/// Constants, which are all of order 1 and those of higher orders that carry little: E = F V b with F the mean over the
+/// receiver, and b that over the source. The others: at each node x_k of the receiver
 ///
 ///     E_k = sum_l K_kl V_kl b_l,    K_kl = w_l A cos cos / (pi r^2) between x_k and y_l
 ///
@@ -50,7 +55,7 @@ class Links {
     /// `links` in any order; `blocks` holds nodes()^2 numbers for each link that is near.
     Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks);
 
-    std::size_t size() const { return source_.size(); }
+    std::size_t size() const { return constants_.size() + kernels_.size(); }
     std::size_t memory_bytes() const;
 
     /// E of every element that links lead to, at its nodes; of the others: zero. O(links). Kernels are made, and added
@@ -66,23 +71,42 @@ class Links {
     std::vector<KeptLink> list() const;
 
   private:
+    /// Links of one kind, one after the other.
+    struct Rows {
+        std::vector<ElementId> receiver;    ///< Of each row.
+        std::vector<std::size_t> first;     ///< Row i stands in [first[i], first[i + 1]).
+        std::vector<ElementId> sources;     ///< All of them, once, in order of their ids;
+        std::vector<std::uint32_t> source;  ///< of a link: its place among them.
+
+        /// Sorts the links.
+        Rows(std::vector<Link>& links, std::size_t elements);
+        std::size_t size() const { return source.size(); }
+        ElementId source_of(std::size_t link) const { return sources[source[link]]; }
+        std::size_t memory_bytes() const { return 4 * (source.size() + sources.size()) + 12 * receiver.size(); }
+        void mark(Field<ElementId, std::uint8_t>& marked) const;
+        /// Calls gather_row(row) for all of them on all threads.
+        template <class Row>
+        void for_each(const ElementTree& tree, const Row& gather_row) const;
+    };
+
+    struct Kinds {
+        std::vector<Link> constants, kernels;
+    };
+    /// All are constants where the basis is.
+    static Kinds by_kind(std::vector<Link> links, std::size_t nodes);
+    Links(const LinkSites& sites, Kinds links, std::vector<float> blocks);
     template <std::size_t groups>
     double mean_form_factor(std::size_t row, std::size_t link) const;
     void lay_out(const Link& link, std::size_t i);
     void gather_constants(const NodalField& b, NodalField& E) const;
     template <class Layout>
     void gather_kernels(const NodalField& b, NodalField& E) const;
-    template <class Row>
-    void for_rows(const Row& gather_row) const;
 
     const LinkSites* sites_;
-    std::vector<ElementId> receiver_;     ///< Of each row.
-    std::vector<std::size_t> first_;      ///< Row i stands in [first_[i], first_[i + 1]).
-    std::vector<ElementId> sources_;      ///< All of them, once, in order of their ids;
-    std::vector<std::uint32_t> source_;   ///< of a link: its place among them.
-    std::vector<float> factor_;           ///< Order 1.
-    std::vector<std::uint32_t> visible_;  ///< Higher orders: `words_` a link, bits as LinkLayout has them.
-    std::vector<std::uint32_t> block_;    ///< Higher orders.
+    Rows constants_, kernels_;
+    std::vector<float> factor_;           ///< Of constants.
+    std::vector<std::uint32_t> visible_;  ///< Of kernels: `words_` a link, bits as LinkLayout has them.
+    std::vector<std::uint32_t> block_;    ///< Of kernels.
     std::vector<float> blocks_;
     std::size_t words_ = 0;
 };

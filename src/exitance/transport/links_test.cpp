@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/mesh/element_locator.hpp"
 #include "exitance/transport/form_factor.hpp"
 #include "exitance/transport/link_refiner.hpp"
 #include "support/built_scene.hpp"
@@ -19,11 +20,13 @@ struct Linked : LitElements {
     LinkRefiner refiner;
 
     template <class Light>
-    Linked(const Scene& scene, HierarchyBasis kind, double tolerance, const Light& light)
+    Linked(const Scene& scene, HierarchyBasis kind, double tolerance, const Light& light, bool constants = false)
         : LitElements(scene, kind, light), refiner(tree, sites) {
         Progress silent;
         StopRequest never;
-        refiner.refine(b, {}, {.error = tolerance, .interpolation = tolerance, .least_area = 1e-6}, silent, never);
+        refiner.refine(b, {},
+                       {.error = tolerance, .interpolation = tolerance, .least_area = 1e-6, .constants = constants},
+                       silent, never);
     }
 
     NodalField gathered() const {
@@ -99,7 +102,8 @@ TEST(Links, HigherOrdersNeedFewerOfThem) {
 TEST(Links, BringInSinglePrecisionWhatTheyAreListedWith) {
     const Scene scene = built_scene("cornell");
     for (const HierarchyBasis kind : all_kinds) {
-        const Linked linked(scene, kind, 0.003, [](const Point&) { return 1.0; });
+        const Linked linked(
+            scene, kind, 0.003, [](const Point&) { return 1.0; }, true);
         const Links links = linked.refiner.make_links();
         NodalField E(linked.sites);
         links.gather(linked.b, E);
@@ -130,6 +134,31 @@ TEST(Links, BringEvenLightExactlyInTheMeanOverTheirReceiver) {
             // Links are scaled where they can be off by 1e-5; blocks and scales are floats.
             EXPECT_NEAR(link.form_factor, exact, 2e-5 * exact + 1e-9) << static_cast<int>(kind);
         }
+    }
+}
+
+/// Those that carry little are constants, of higher orders too: less is kept, and looked at, for the same light.
+TEST(Links, OfHigherOrdersMayBeConstants) {
+    const Scene scene = built_scene("cornell");
+    const auto light = [](const Point& x) { return 1 + std::sin(3 * x.x); };
+    for (const HierarchyBasis kind : {HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3}) {
+        const Linked pure(scene, kind, 0.03, light), mixed(scene, kind, 0.03, light, true);
+        const Links links = mixed.refiner.make_links();
+        EXPECT_LT(links.memory_bytes(), pure.refiner.make_links().memory_bytes()) << static_cast<int>(kind);
+        EXPECT_LT(3 * mixed.refiner.form_factors(), 2 * pure.refiner.form_factors()) << static_cast<int>(kind);
+        const NodalField E = pure.gathered();
+        // Elements need not be cut alike: E of one is read where the other has its nodes.
+        const ElementLocator locator(pure.tree, pure.stage.scene.regions().size());
+        const double apart = mixed.error([&](ElementId e, const Point& x) {
+            const ElementTree::Place at = locator.find(pure.tree.region(e), x);
+            std::array<double, 9> factors{};
+            pure.basis.interpolate(pure.tree.patch(at.element).shape, at.uv, factors);
+            double value = 0;
+            for (std::size_t k = 0; k < pure.sites.nodes(); ++k) value += factors[k] * E.node(at.element, k)[0];
+            return value;
+        });
+        EXPECT_LT(apart, 1.5 * std::hypot(pure.estimate(0.75), mixed.estimate(0.75))) << static_cast<int>(kind);
+        EXPECT_GT(apart, 0);
     }
 }
 

@@ -44,8 +44,12 @@ std::vector<ElementId> leaves_in_strata(const LeafNumbering& numbering, std::spa
 
 }  // namespace
 
+namespace {
+
+/// By one in `every` of the strata.
 double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                  const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
+                  const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed,
+                  std::size_t every) {
     struct Light {
         double open = 0, all = 0;
         Light& operator+=(const Light& o) {
@@ -54,7 +58,8 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
         }
     };
     const std::vector<ElementId> leaves = leaves_in_strata(numbering, leaf_areas(tree, numbering));
-    const Light sum = parallel_sum<Light>(leaves.size(), [&](std::size_t k) {
+    const Light sum = parallel_sum<Light>(leaves.size() / every, [&](std::size_t i) {
+        const std::size_t k = i * every;
         ElementRays rays(stage, tree, locator);
         std::uint32_t hit = 0;
         // Points of one sequence: the leaves together look everywhere.
@@ -67,6 +72,21 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
         return Light{is_certainly_open(stage, tree, p, q) ? light : 0, light};
     });
     return sum.all > 0 ? sum.open / sum.all : 1;
+}
+
+}  // namespace
+
+double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                  const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
+    return open_share(stage, tree, numbering, locator, radiosity, seed, 1);
+}
+
+bool is_mostly_open(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                    const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
+    constexpr std::size_t some = 8;
+    constexpr double far_below = 0.2;  // three standard errors of 64 strata
+    return open_share(stage, tree, numbering, locator, radiosity, seed, some) > mostly_open - far_below &&
+           open_share(stage, tree, numbering, locator, radiosity, seed, 1) > mostly_open;
 }
 
 bool is_closed(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
