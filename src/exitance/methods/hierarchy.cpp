@@ -182,13 +182,12 @@ class Hierarchy {
     }
 
     /// Do polynomials give the light as exactly as it is asked for? That the scene decides, not how far its links are
-    /// refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather) do as well as linear
-    /// functions, in less memory, and not as well as quadratic ones.
+    /// refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather) are surer where surfaces
+    /// meet, unless very little error is asked for.
     bool delivers() const {
         if (!is_polynomial_) return false;
-        const bool sums = basis_.order() == 2 && !input_.options.epsilon && ElementGather::suits(input_.stage) &&
-                          input_.options.error_target() > sums_reach;
-        if (sums) return false;
+        const bool sums = ElementGather::suits(input_.stage) && input_.options.error_target() > sums_reach;
+        if (sums && !input_.options.epsilon) return false;
         const LeafNumbering numbering(light_.tree);
         const ElementLocator locator(light_.tree, input_.stage.scene.regions().size());
         std::vector<Spectrum> light;
@@ -206,8 +205,7 @@ class Hierarchy {
     /// only how light varies within them is the links', and is gathered once more; where links deliver it, no gather
     /// takes a share of the error asked for.
     double share_of_links() const {
-        constexpr double rays_correct = 8;
-        const double without_gather = basis_.order();
+        constexpr double rays_correct = 8, without_gather = 2;
         if (light_.delivers) return input_.options.epsilon ? 1 : without_gather;
         return input_.options.smoothing ? 1 : rays_correct;
     }

@@ -40,7 +40,7 @@ void NearRow::add(const Point& x, const Normal& n, const Box& box, int depth) {
         return Vec2{box.origin.x + s * box.size.x, box.origin.y + t * box.size.y};
     };
     const double area = norm(cross(a, b)) * (triangle ? 0.5 : 1.0);
-    constexpr double small = 0.15;
+    constexpr double small = 0.3;
     if (squared_radius < small * squared_distance) {
         const auto rule = triangle ? triangle_rule(2) : square_rule(2);
         for (const PlanarNode& node : rule) {
