@@ -137,15 +137,19 @@ std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId
 ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassReport& report) const {
     ElementFunction out;
     out.tree = tree_;
+    constexpr double small = 0.3;  // of the error that there is anyway
+    const std::vector<StraightLeaf> straight = add_straight(
+        out, tree_.leaves(), [&](ElementId e) -> const SampledElement& { return sampled_[e]; },
+        [&](ElementId e) { return stage_.scene.material(tree_.region(e)).reflectance; },
+        [&](ElementId e) { return small * allowed_misfit(e, sampled_[e].light, demand); });
+    report.leaves.resize(out.tree.size());
+    for (const auto [leaf, of] : straight) {
+        const SampledElement& s = sampled_[of];
+        report.leaves[leaf] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
+    }
     double noise = 0, interpolation = 0;
     for (ElementId e : tree_.leaves()) {
         const SampledElement& s = sampled_[e];
-        const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
-        constexpr double small = 0.3;  // of the error that there is anyway
-        for (ElementId leaf : add_straight(out, e, s, rho, small * allowed_misfit(e, s.light, demand))) {
-            report.leaves.resize(out.tree.size());
-            report.leaves[leaf] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
-        }
         noise += tree_.area(e) * s.noise_squared;
         interpolation += tree_.area(e) * (s.misfit_squared - s.noise_in_misfit);
     }

@@ -1,6 +1,7 @@
 #include "exitance/reconstruct/sampled_element.hpp"
 
 #include "exitance/basis/element_fit.hpp"
+#include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -66,38 +67,67 @@ Spectrum SampledFunction::at(Vec2 uv) const {
     return sum;
 }
 
-std::vector<ElementId> add_straight(ElementFunction& out, ElementId leaf, const SampledElement& sampled,
-                                    const Spectrum& rho, double tolerance) {
-    constexpr int most_cuts = 4;
-    const Patch patch = out.tree.patch(leaf);
-    const SampledFunction polynomial(out.tree, leaf, sampled);
-    std::vector<ElementId> leaves;
-    const auto add = [&](ElementId e, const auto& value_at_corner) {
-        out.first_value.resize(out.tree.size());
-        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
-        for (int i = 0; i < out.tree.patch(e).corner_count(); ++i) out.add_value(value_at_corner(i));
-        leaves.push_back(e);
-    };
+namespace {
+
+/// A straight element: its values at the corners, and the mean square of rho E that it leaves over of what it stands
+/// for.
+struct StraightFit {
+    std::array<Spectrum, 4> corner;
+    double rest_squared = 0;
+};
+
+/// Nearest to `part` of an element that holds `sampled`.
+StraightFit straighten(const ElementTree& tree, ElementId part, ElementId whole, const SampledElement& sampled,
+                       const Spectrum& rho) {
+    const SampledFunction polynomial(tree, whole, sampled);
+    const Patch& patch = tree.patch(part);
+    StraightFit out;
     if (!sampled.curved) {
-        add(leaf, [&](int i) { return polynomial.at(patch.corner_uv(i)); });
-        return leaves;
+        for (int i = 0; i < patch.corner_count(); ++i)
+            out.corner[static_cast<std::size_t>(i)] = polynomial.at(patch.corner_uv(i));
+        return out;
     }
-    std::vector<std::pair<ElementId, int>> open = {{leaf, 0}};
-    while (!open.empty()) {
-        const auto [e, cuts] = open.back();
-        open.pop_back();
-        const std::vector<WeightedPlace> rule = element_rule(out.tree, e, RuleOrder::fine);
-        std::vector<Spectrum> values;
-        for (const WeightedPlace& place : rule)
-            values.push_back(polynomial.at(patch.coordinates(out.tree.patch(e).at(place.uv))));
-        const ElementFit fit(out.tree, e, rule, values);
-        double rest = 0;
-        for (std::size_t i = 0; i < rule.size(); ++i)
-            rest += rule[i].weight * mean_square(rho * (values[i] - fit.at(rule[i].uv)));
-        if (cuts == most_cuts || rest <= tolerance * tolerance)
-            add(e, [&](int i) { return fit.corner(i); });
-        else
-            for (ElementId child : refine_element(out.tree, e)) open.emplace_back(child, cuts + 1);
+    const std::vector<WeightedPlace> rule = element_rule(tree, part, RuleOrder::fine);
+    std::vector<Spectrum> values;
+    for (const WeightedPlace& place : rule)
+        values.push_back(polynomial.at(tree.patch(whole).coordinates(patch.at(place.uv))));
+    const ElementFit fit(tree, part, rule, values);
+    for (std::size_t i = 0; i < rule.size(); ++i)
+        out.rest_squared += rule[i].weight * mean_square(rho * (values[i] - fit.at(rule[i].uv)));
+    for (int i = 0; i < patch.corner_count(); ++i) out.corner[static_cast<std::size_t>(i)] = fit.corner(i);
+    return out;
+}
+
+}  // namespace
+
+std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const ElementId> fitted,
+                                       const std::function<const SampledElement&(ElementId)>& sampled,
+                                       const std::function<Spectrum(ElementId)>& rho,
+                                       const std::function<double(ElementId)>& tolerance) {
+    constexpr int most_cuts = 4;
+    std::vector<StraightLeaf> leaves, parts;
+    for (ElementId e : fitted) parts.push_back({e, e});
+    for (int cuts = 0; !parts.empty(); ++cuts) {
+        std::vector<StraightFit> fit(parts.size());
+        parallel_for(parts.size(), 64, [&](std::size_t i) {
+            const auto [part, whole] = parts[i];
+            fit[i] = straighten(out.tree, part, whole, sampled(whole), rho(whole));
+        });
+        std::vector<StraightLeaf> smaller;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const auto [part, whole] = parts[i];
+            const double allowed = tolerance(whole);
+            if (cuts < most_cuts && fit[i].rest_squared > allowed * allowed) {
+                for (ElementId child : refine_element(out.tree, part)) smaller.push_back({child, whole});
+                continue;
+            }
+            out.first_value.resize(out.tree.size());
+            out.first_value[part] = static_cast<std::uint32_t>(out.values.size());
+            for (int c = 0; c < out.tree.patch(part).corner_count(); ++c)
+                out.add_value(fit[i].corner[static_cast<std::size_t>(c)]);
+            leaves.push_back(parts[i]);
+        }
+        parts = std::move(smaller);
     }
     return leaves;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "exitance/basis/element_polynomials.hpp"
 #include "exitance/reconstruct/gather.hpp"
 #include "exitance/reconstruct/solution.hpp"
@@ -43,9 +45,17 @@ class SampledFunction {
     const SampledElement& sampled_;
 };
 
-/// Adds a fitted element to a function, as straight elements: where it is curved, its leaf is cut until what they leave
-/// over is at most `tolerance` (RMS of rho E, W/m^2). Returns the leaves.
-std::vector<ElementId> add_straight(ElementFunction& out, ElementId leaf, const SampledElement& sampled,
-                                    const Spectrum& rho, double tolerance);
+/// A leaf of a function, and the fitted element that it is, or is a part of.
+struct StraightLeaf {
+    ElementId leaf, of;
+};
+
+/// Adds fitted elements, which are leaves of the function's tree, to it, as straight elements: where one is curved, it
+/// is cut until what they leave over is at most `tolerance(e)` (RMS of rho E, W/m^2). `sampled(e)`, `rho(e)`: its
+/// polynomial and reflectance; on any thread.
+std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const ElementId> fitted,
+                                       const std::function<const SampledElement&(ElementId)>& sampled,
+                                       const std::function<Spectrum(ElementId)>& rho,
+                                       const std::function<double(ElementId)>& tolerance);
 
 }  // namespace exitance

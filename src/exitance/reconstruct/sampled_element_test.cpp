@@ -67,11 +67,14 @@ TEST(SampledElement, IsDeliveredAsStraightElementsThatHoldIt) {
         out.tree = exact.tree;
         const SampledElement s = exact.fit();
         constexpr double tolerance = 0.002;  // cuts four times: a quarter of the misfit each
-        const std::vector<ElementId> leaves = add_straight(out, ElementId(0), s, Spectrum(0.5), tolerance);
+        const std::vector<StraightLeaf> leaves = add_straight(
+            out, out.tree.leaves(), [&](ElementId) -> const SampledElement& { return s; },
+            [](ElementId) { return Spectrum(0.5); }, [](ElementId) { return tolerance; });
         EXPECT_EQ(leaves.size(), out.tree.leaves().size());
         EXPECT_GT(leaves.size(), 3u);
         double square = 0;
-        for (ElementId e : leaves) {
+        for (const auto [e, whole] : leaves) {
+            EXPECT_EQ(whole, ElementId(0));
             for (const WeightedPlace& p : element_rule(out.tree, e, RuleOrder::finer)) {
                 const Vec2 uv = exact.tree.patch(ElementId(0)).coordinates(out.tree.patch(e).at(p.uv));
                 square += out.tree.area(e) * p.weight * std::pow(0.5 * (out.at({e, p.uv})[0] - parabola(uv)), 2);
