@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/random.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/form_factor.hpp"
 
@@ -29,7 +28,8 @@ LinkJudge::LinkJudge(const LinkSites& sites, const NodalField& b, const Field<El
       n_(sites.nodes()),
       square_(make_checks(Patch::Shape::parallelogram)),
       triangle_(make_checks(Patch::Shape::triangle)),
-      near_row_(sites) {}
+      near_row_(sites),
+      visible_(sites, tolerance.quadrature, tolerance.seed) {}
 
 /// Points between the nodes, the middle first, at which a polynomial of the basis and one of a degree more differ by
 /// about as much as in the mean; of constants, Gauss's points.
@@ -265,19 +265,18 @@ bool LinkJudge::judge_as_constant(LinkPair& pair, std::span<const PieceId> pool,
     const bool tiny = is_tiny(light, allowed);
     look_between(pair, pool, tiny);
     if (pair.view == View::none) return true;
-    visible_[0] = 1;
+    visible_.set_all(1);
     double visibility = 0;
     if (pair.view == View::mixed) {
         constexpr unsigned few = 4, many = 16;
         constexpr double half_hidden = 0.5, too_large = 2;
         if (half_hidden * light / std::sqrt(static_cast<double>(many)) > too_large * allowed) return false;
-        node_light_[0] = light;
-        visibility = cast_one(p, q, tiny ? few : many);
+        visibility = light * visible_.look(p, q, tiny ? few : many);
         if (visibility > allowed) return false;
     }
     out.link.receiver = p, out.link.source = q;
-    out.link.set_constant(even.form_factor * visible_[0]);
-    for (std::size_t i = 0; i < even.departure.size(); ++i) out.departure[i] = even.departure[i] * visible_[0];
+    out.link.set_constant(even.form_factor * visible_.share(0));
+    for (std::size_t i = 0; i < even.departure.size(); ++i) out.departure[i] = even.departure[i] * visible_.share(0);
     const double area = sites_.tree().area(p);
     out.light = area * light;
     out.squared_error = area * tolerance_.weight(p) * (rule * rule + visibility * visibility);
@@ -285,92 +284,23 @@ bool LinkJudge::judge_as_constant(LinkPair& pair, std::span<const PieceId> pool,
     return true;
 }
 
-/// Rays from anywhere on the receiver to anywhere on the source; their share is one number.
-double LinkJudge::cast_one(ElementId p, ElementId q, unsigned count) {
-    const ScrambledSobol points(
-        hash(tolerance_.seed, static_cast<std::uint64_t>(Stream::visibility), p.value, q.value));
-    const Patch &receiver = sites_.tree().patch(p), &source = sites_.tree().patch(q);
-    from_.clear(), to_.clear();
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Point x = tolerance_.quadrature ? sites_.node(p, 0)
-                                              : receiver.at(sites_.tree().uniform(p, points(i, 0), points(i, 1)));
-        const Point y =
-            tolerance_.quadrature ? sites_.node(q, 0) : source.at(sites_.tree().uniform(q, points(i, 2), points(i, 3)));
-        if (dot(sites_.normal(p), y - x) <= 0 || dot(source_normal_, x - y) <= 0) continue;
-        from_.push_back(x), to_.push_back(y);
+double LinkJudge::cast_once(ElementId p, ElementId q, unsigned times, bool few) {
+    constexpr unsigned one_link = 16, few_of_one = 4;
+    if (n_ == 1) {
+        const unsigned rays = tolerance_.quadrature ? 1 : few ? few_of_one : one_link * times;
+        return std::abs(node_light_[0]) * visible_.look(p, q, rays);
     }
-    visible_[0] = 1;
-    if (from_.empty()) return 0;
-    rays_ += sites_.stage().tracer.occluded(from_, to_, sites_.tree().region(p), sites_.tree().region(q),
-                                            std::span(blocked_).first(from_.size()));
-    const auto open = std::count(blocked_.begin(), blocked_.begin() + static_cast<long>(from_.size()), false);
-    const double rays = static_cast<double>(from_.size());
-    visible_[0] = static_cast<double>(open) / rays;
-    // As many open as closed ones are half a ray short of certainty.
-    const double v = (static_cast<double>(open) + 0.5) / (rays + 1);
-    return std::abs(node_light_[0]) * std::sqrt(v * (1 - v) / rays);
-}
-
-/// `each` rays join a place near a receiver's node with one near a source's node: copies of the elements, so much
-/// smaller, stand around the nodes. Or one a receiver's node, to anywhere on the source.
-double LinkJudge::cast_many(ElementId p, ElementId q, unsigned each, bool few) {
-    const double size = tolerance_.quadrature ? 0 : n_ == 4 ? 0.42 : 0.22;
-    RandomStream random(tolerance_.seed, Stream::visibility, p.value, q.value);
-    const Patch receiver = sites_.frame(p), source = sites_.frame(q);
-    const auto around = [&](const Patch& frame, const Point& node) {
-        const double s = random.uniform(), t = random.uniform();
-        return node + size * (frame.at(uniform_in_shape(frame.shape, s, t)) - frame.centre());
-    };
-    from_.clear(), to_.clear(), pair_of_ray_.clear();
-    for (std::size_t k = 0; k < n_; ++k) {
-        if (sites_.weight(p, k) == 0) continue;
-        const std::size_t chosen = few ? static_cast<std::size_t>(random.uniform() * static_cast<double>(n_)) : n_;
-        for (std::size_t l = 0; l < n_; ++l) {
-            if (few && l != chosen) continue;
-            for (unsigned ray = 0; ray < each; ++ray) {
-                const Point x = around(receiver, sites_.node(p, k)), y = around(source, source_node_[l]);
-                if (dot(sites_.normal(p), y - x) <= 0 || dot(source_normal_, x - y) <= 0) continue;
-                from_.push_back(x), to_.push_back(y);
-                pair_of_ray_.push_back(k * n_ + l);
-            }
-        }
-    }
-    visible_.fill(1);
-    variance_.fill(0);
-    if (from_.empty()) return 0;
-    rays_ += sites_.stage().tracer.occluded(from_, to_, sites_.tree().region(p), sites_.tree().region(q),
-                                            std::span(blocked_).first(from_.size()));
-    std::array<double, 81> open{}, cast{};
-    for (std::size_t i = 0; i < from_.size(); ++i) {
-        cast[pair_of_ray_[i]] += 1;
-        if (!blocked_[i]) open[pair_of_ray_[i]] += 1;
-    }
+    visible_.look_by_node(p, q, times, few && !tolerance_.quadrature);
     double variance = 0;
-    for (std::size_t k = 0; k < n_; ++k) {
-        double through = 0, all = 0;
-        for (std::size_t i = k * n_; i < (k + 1) * n_; ++i) {
-            through += open[i], all += cast[i];
-            if (cast[i] > 0) visible_[i] = open[i] / cast[i];
-        }
-        if (all == 0) continue;
-        if (few)
-            for (std::size_t i = k * n_; i < (k + 1) * n_; ++i) visible_[i] = through / all;
-        const double v = (through + 0.5) / (all + 1);
-        variance_[k] = node_light_[k] * node_light_[k] * v * (1 - v) / all;
-        variance += sites_.weight(p, k) * variance_[k];
-    }
+    for (std::size_t k = 0; k < n_; ++k)
+        variance += sites_.weight(p, k) * std::pow(node_light_[k], 2) * visible_.variance(k);
     return std::sqrt(variance);
 }
 
 double LinkJudge::cast(ElementId p, ElementId q, bool few, double allowed) {
-    constexpr unsigned one_link = 16;
-    if (tolerance_.quadrature) return n_ == 1 ? cast_one(p, q, 1) : cast_many(p, q, 1, false);
-    const auto once = [&](unsigned times) {
-        return n_ == 1 ? cast_one(p, q, few ? 4 : one_link * times) : cast_many(p, q, times, few);
-    };
-    const double error = once(1);
-    if (few || error <= allowed) return error;
-    return once(static_cast<unsigned>(std::clamp(std::ceil(std::pow(error / allowed, 2)), 2.0, 16.0)));
+    const double error = cast_once(p, q, 1, few);
+    if (few || tolerance_.quadrature || error <= allowed) return error;
+    return cast_once(p, q, static_cast<unsigned>(std::clamp(std::ceil(std::pow(error / allowed, 2)), 2.0, 16.0)), few);
 }
 
 /// By strength: the larger of the two, as long as the link is too strong. A source that is a leaf stays as it is; as a
@@ -456,7 +386,7 @@ double LinkJudge::scale_of_rule(ElementId p, ElementId q) {
 /// What the rays have shown becomes bits where it is yes or no, and part of the block where it is in between.
 void LinkJudge::hand_over(bool open, Result& out) {
     if (n_ == 1) {
-        const double share = open ? 1 : visible_[0];
+        const double share = open ? 1 : visible_.share(0);
         out.link.factor = static_cast<float>(form_factor_ * share);
         for (double& d : out.departure) d *= share;
         return;
@@ -466,11 +396,11 @@ void LinkJudge::hand_over(bool open, Result& out) {
         share = 0;
         bool partial = false;
         for (std::size_t i = 0; i < n_ * n_; ++i) {
-            partial |= visible_[i] > 0 && visible_[i] < 1;
-            share += visible_[i] / static_cast<double>(n_ * n_);
+            partial |= visible_.share(i) > 0 && visible_.share(i) < 1;
+            share += visible_.share(i) / static_cast<double>(n_ * n_);
         }
         if (tolerance_.fractional) {
-            visible_.fill(share);
+            visible_.set_all(share);
             partial = share > 0 && share < 1;
         }
         if (partial && !keeps_block_) {
@@ -481,19 +411,19 @@ void LinkJudge::hand_over(bool open, Result& out) {
             keeps_block_ = true;
         }
         if (keeps_block_)
-            for (std::size_t i = 0; i < n_ * n_; ++i) block_[i] *= static_cast<float>(visible_[i]);
+            for (std::size_t i = 0; i < n_ * n_; ++i) block_[i] *= static_cast<float>(visible_.share(i));
     }
     for (double& d : out.departure) d *= share;
     if (!open) {
-        out.variance = variance_;
+        for (std::size_t k = 0; k < n_; ++k) out.variance[k] = std::pow(node_light_[k], 2) * visible_.variance(k);
         for (std::size_t k = 0; k < n_; ++k)
             for (std::size_t l = 0; l < n_; ++l)
-                out.shadowed[k] += rows_[k][l] * visible_[k * n_ + l] * source_light_[l];
+                out.shadowed[k] += rows_[k][l] * visible_.share(k * n_ + l) * source_light_[l];
     }
     out.near = keeps_block_;
     if (!keeps_block_) out.link.set_far(static_cast<float>(scale_of_rule(out.link.receiver, out.link.source)));
     for (std::size_t i = 0; i < n_ * n_; ++i)
-        if (open || keeps_block_ || visible_[i] > 0) out.link.set(i);
+        if (open || keeps_block_ || visible_.share(i) > 0) out.link.set(i);
 }
 
 }  // namespace exitance

@@ -7,6 +7,7 @@
 #include "exitance/transport/link_oracle.hpp"
 #include "exitance/transport/links.hpp"
 #include "exitance/transport/near_row.hpp"
+#include "exitance/transport/pair_visibility.hpp"
 #include "exitance/transport/shaft.hpp"
 
 namespace exitance {
@@ -82,7 +83,7 @@ class LinkJudge {
 
     std::span<const float> block() const { return block_; }  ///< nodes() x nodes(), receiver first.
     std::span<const PieceId> candidates() const { return candidates_; }
-    std::size_t rays() const { return rays_; }
+    std::size_t rays() const { return visible_.rays(); }
     std::size_t form_factors() const { return form_factors_; }
 
   private:
@@ -111,8 +112,7 @@ class LinkJudge {
     /// Rays between the two, a few or more if the error is not to be above `allowed`; returns the standard error of the
     /// light that arrives.
     double cast(ElementId p, ElementId q, bool few, double allowed);
-    double cast_one(ElementId p, ElementId q, unsigned count);
-    double cast_many(ElementId p, ElementId q, unsigned each, bool few);
+    double cast_once(ElementId p, ElementId q, unsigned times, bool few);
     enum class Cut { nothing, source, receiver };
     Cut what_to_cut(ElementId p, ElementId q, bool mixed) const;
     /// By how much the kernel of orders 2 and 3 is to be scaled, so that even light arrives exactly in the mean over
@@ -142,24 +142,20 @@ class LinkJudge {
     std::vector<float> block_;
     std::vector<Point> outline_;
     NearRow near_row_;
-    std::vector<Point> from_, to_;
-    std::vector<std::size_t> pair_of_ray_;
+    PairVisibility visible_;
     Normal source_normal_;
     double source_area_ = 0, source_roughness_ = 0;
     std::array<double, 9> source_light_{}, source_weight_{};
     std::array<Point, 9> source_node_;
     std::array<double, 9> node_light_{};  ///< Light in the open at the receiver's nodes.
-    std::array<bool, 81 * 16> blocked_;
-    std::array<double, 81> visible_{};  ///< Share of the rays from a receiver's node to a source's that get through.
-    std::array<double, 9> variance_{};  ///< Of the light at the receiver's nodes.
-    std::array<Row, 9> rows_;           ///< From the receiver's nodes.
+    std::array<Row, 9> rows_;             ///< From the receiver's nodes.
     bool looked_between_ = false;
     bool near_ = false;         ///< Are rows those of NearRow?
     bool keeps_block_ = false;  ///< Are they handed over?
     double kernel_scale_ = 1;   ///< Of near rows that are not.
     double ratio_ = 0;          ///< Size of the source to its distance.
     double form_factor_ = 0;    ///< From the receiver's first node.
-    std::size_t rays_ = 0, form_factors_ = 0;
+    std::size_t form_factors_ = 0;
 };
 
 }  // namespace exitance
