@@ -12,6 +12,8 @@ namespace {
 /// The rule's error relative to what it gives is rule_constant (size / distance)^(2 M).
 constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1;
 
+constexpr double hardly = 0.2;  ///< Of what is allowed: errors and departures of many links add up.
+
 /// Does so much light count so little that what may stand in between is hardly worth a look?
 bool is_tiny(double light, double allowed) {
     return light < 0.3 * allowed;
@@ -124,7 +126,6 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     const double ratio = ratio_of(p, q);
     const int M = sites_.basis().order();
     ratio_ = ratio;
-    constexpr double hardly = 0.2;  // of what is allowed
     const double rule_error = tolerance_.systematic * rule_constant * std::pow(ratio, 2 * M);
     near_ = keeps_block_ = false;
     block_.clear();
@@ -215,7 +216,6 @@ void LinkJudge::look_between(LinkPair& pair, std::span<const PieceId> pool, bool
 }
 
 LinkJudge::Even LinkJudge::send_evenly(ElementId p, ElementId q, double b, double allowed) {
-    constexpr double hardly = 0.2;  // of what is allowed
     const Normal& n = sites_.normal(p);
     const Patch frame = sites_.frame(p);
     const Checks& checks = this->checks(frame.shape);
@@ -248,7 +248,6 @@ LinkJudge::Even LinkJudge::send_evenly(ElementId p, ElementId q, double b, doubl
 /// What little an element sends to another arrives alike all over it, wherever on the source it comes from: then one
 /// number does, whatever the basis. Is that so here? Then `out` holds the link, if there is one.
 bool LinkJudge::judge_as_constant(LinkPair& pair, std::span<const PieceId> pool, double allowed, Result& out) {
-    constexpr double hardly = 0.2;  // of what is allowed: departures of many links add up
     const auto [p, q] = std::pair{pair.receiver, pair.source};
     double b = 0, variation = source_roughness_ * source_roughness_;
     for (std::size_t l = 0; l < n_; ++l) b += source_weight_[l] * source_light_[l];
