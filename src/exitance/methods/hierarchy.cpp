@@ -217,7 +217,9 @@ class Hierarchy {
         const std::size_t used = peak_memory_bytes(),
                           limit = input_.options.memory_limit_bytes.value_or(used + unasked);
         constexpr std::size_t others_share = 2;  // meshes, gathers, files
-        return (limit - std::min(limit, used)) / (others_share * LinkRefiner::bytes_a_link);
+        constexpr std::size_t fields = 7;        // of light, and of what is solved for
+        const std::size_t taken = used + fields * b_.memory_bytes();
+        return (limit - std::min(limit, taken)) / (others_share * LinkRefiner::bytes_a_link);
     }
 
     /// An error that is alike all over the receivers comes back from every reflection, if rays do not correct it.
