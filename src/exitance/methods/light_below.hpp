@@ -19,7 +19,7 @@ class LightBelow {
 
     /// What some elements come to, none of them part of another. Keeps what is large below them. O(elements below).
     std::vector<FromBelow> look_at(std::span<const ElementId> elements);
-    /// The same of any element; O(1) below those.
+    /// The same of any element: below those, some 64 leaves are read at most for each of its children.
     FromBelow at(ElementId e) const { return pull(e, nullptr).found; }
 
     std::size_t memory_bytes() const { return known_.size() * sizeof(Known); }

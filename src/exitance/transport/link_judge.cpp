@@ -9,6 +9,13 @@
 namespace exitance {
 namespace {
 
+/// cos cos / r^2 between two points of two surfaces, m^-2; 0 where either looks away from the other.
+double point_kernel(const Point& x, const Normal& n, const Point& y, const Normal& m) {
+    const Vec3 d = y - x;
+    const double here = dot(n, d), there = -dot(m, d), rr = squared_norm(d);
+    return here > 0 && there > 0 ? here * there / (rr * rr) : 0;
+}
+
 /// The rule's error relative to what it gives is rule_constant (size / distance)^(2 M).
 constexpr double rule_constant = 0.3, surely_near = 0.7, surely_far = 0.1;
 
@@ -86,11 +93,8 @@ LinkJudge::Row LinkJudge::row(const Point& x, const Normal& n) {
 
 LinkJudge::Row LinkJudge::kernel_row(const Point& x, const Normal& n) const {
     Row out{};
-    for (std::size_t l = 0; l < n_; ++l) {
-        const Vec3 d = source_node_[l] - x;
-        const double here = dot(n, d), there = -dot(source_normal_, d), rr = squared_norm(d);
-        if (here > 0 && there > 0) out[l] = source_weight_[l] * source_area_ * here * there / (rr * rr);
-    }
+    for (std::size_t l = 0; l < n_; ++l)
+        out[l] = source_weight_[l] * source_area_ * point_kernel(x, n, source_node_[l], source_normal_);
     return out;
 }
 
@@ -220,11 +224,7 @@ LinkJudge::Even LinkJudge::send_evenly(ElementId p, ElementId q, double b, doubl
     const Patch frame = sites_.frame(p);
     const Checks& checks = this->checks(frame.shape);
     const Point middle = sites_.centre(q);
-    const auto kernel = [&](const Point& x) {
-        const Vec3 d = middle - x;
-        const double here = dot(n, d), there = -dot(source_normal_, d), rr = squared_norm(d);
-        return here > 0 && there > 0 ? source_area_ * here * there / (rr * rr) : 0;
-    };
+    const auto kernel = [&](const Point& x) { return source_area_ * point_kernel(x, n, middle, source_normal_); };
     Even out;
     const double ratio = ratio_of(p, q), relative = tolerance_.systematic * rule_constant * ratio * ratio;
     out.rule_error = relative * std::abs(b) * kernel(frame.centre());

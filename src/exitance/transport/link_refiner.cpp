@@ -383,7 +383,6 @@ void LinkRefiner::refine(NodalField& b, std::span<NodalField* const> also, const
     else
         judge_all_pieces(b, tolerance, stop);
     cut_until_good(b, also, tolerance, progress, stop);
-    if (!light_stays_) judged_ = b;
 }
 
 void LinkRefiner::refine(const std::vector<LinkPair>& fresh, NodalField& b, std::span<NodalField* const> also,
@@ -392,7 +391,6 @@ void LinkRefiner::refine(const std::vector<LinkPair>& fresh, NodalField& b, std:
     judge_again(b, tolerance, stop);
     judge(fresh, b, tolerance, stop);
     cut_until_good(b, also, tolerance, progress, stop);
-    if (!light_stays_) judged_ = b;
 }
 
 void LinkRefiner::cut_until_good(NodalField& b, std::span<NodalField* const> also, const LinkTolerance& tolerance,
@@ -407,6 +405,7 @@ void LinkRefiner::cut_until_good(NodalField& b, std::span<NodalField* const> als
     interpolation_ = 0;
     for (double error : receivers.error) interpolation_ += error;
     sum_up();
+    if (!light_stays_) judged_ = b;
 }
 
 void LinkRefiner::sum_up() {

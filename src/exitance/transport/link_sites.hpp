@@ -65,6 +65,9 @@ class LinkSites {
     struct ChildMatrices {
         std::vector<std::span<const double>> push, pull;
         std::vector<double> gram, own;  ///< `own`: what spans refer to that the basis does not have.
+
+        ChildMatrices() = default;
+        ChildMatrices(ChildMatrices&&) = default;  // and no copies, whose spans would lead elsewhere
     };
     ChildMatrices matrices(ElementId parent) const;
 
@@ -89,8 +92,10 @@ class LinkSites {
     void hold_anew(std::span<const ElementId> elements);
     void add(ElementId e);
     bool is_regular(ElementId parent) const;
-    std::uint32_t add_matrices(ElementId parent);
+    /// Where the push and the pull of its first child stand; the others' follow. Adds them, unless others have the
+    /// same.
     std::uint32_t matrices_below(ElementId parent);
+    std::uint32_t add_matrices(ElementId parent);
     Patch inertia_parallelogram(ElementId e) const;
 
     const Stage* stage_;

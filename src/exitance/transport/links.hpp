@@ -26,12 +26,12 @@ struct Link {
         float factor;
         std::uint32_t block;
     };
-    static constexpr std::uint32_t far = 0x80000000u, mark = 0x80000000u;
+    static constexpr std::uint32_t far = 0x80000000u, constant_bit = 0x80000000u;
     static bool is_far(std::uint32_t block) { return block & far; }
     static float scale(std::uint32_t block) { return std::bit_cast<float>(block & ~far); }
     void set_far(float scale) { block = far | std::bit_cast<std::uint32_t>(scale); }
-    void set_constant(double form_factor) { visible = {0, 0, mark}, factor = static_cast<float>(form_factor); }
-    bool is_constant() const { return visible[2] & mark; }
+    void set_constant(double form_factor) { visible = {0, 0, constant_bit}, factor = static_cast<float>(form_factor); }
+    bool is_constant() const { return visible[2] & constant_bit; }
     bool has_block() const { return !is_constant() && !is_far(block); }
 
     bool sees(std::size_t bit) const { return visible[bit / 32] >> (bit % 32) & 1u; }

@@ -104,6 +104,13 @@ TEST(OpenShare, IsAllWhereNothingStandsInBetweenAndLittleInARoomWithBoxes) {
         return open_share(r.stage, r.tree, r.numbering, r.locator, even, 1);
     };
     EXPECT_EQ(share(box_scene(1, 2, 3, 0.5, 1)), 1);
+    const auto mostly = [](Scene scene) {
+        const Rows r(std::move(scene), [](const Point&) { return 1.0; });
+        const std::vector<Spectrum> even(r.numbering.leaves.size(), Spectrum(1.0));
+        return is_mostly_open(r.stage, r.tree, r.numbering, r.locator, even, 1);
+    };
+    EXPECT_TRUE(mostly(box_scene(1, 2, 3, 0.5, 1)));
+    EXPECT_FALSE(mostly(built_scene("cornell")));
     const double cornell = share(built_scene("cornell"));
     EXPECT_GT(cornell, 0.1) << "ceiling and walls see each other over the boxes";
     EXPECT_LT(cornell, 0.6) << "the floor sees nothing whole";
