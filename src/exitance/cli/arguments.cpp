@@ -236,7 +236,8 @@ void declare_method(CLI::App& app, SolveArguments& arguments) {
         ->type_name("auto|on|off")
         ->group("Method");
     add_switch(app, "--smoothing", o.smoothing,
-               "Deliver the method's elements, smoothed or as they are, in place of gathering their light")
+               "Deliver the method's elements in place of gathering their light: smoothed, or (off) as they are, of "
+               "hierarchies as links alone have them")
         ->group("Method");
     app.add_option("--importance", arguments.importance,
                    "Refine links for the light at these points (.csv or .pts, as of probe)")

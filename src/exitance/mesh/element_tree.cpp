@@ -182,6 +182,18 @@ Vec2 ElementTree::centre(ElementId e) const {
     return p[0] + (1 / polygon_area(p)) * moment;
 }
 
+double ElementTree::reach(ElementId e, Vec2 uv) const {
+    const Vec2 c = centre(e);
+    const std::vector<Vec2> p = domain(e);
+    double reach = 1;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const Vec2 a = p[i], side = p[(i + 1) % p.size()] - a;
+        const double here = cross(side, c - a), there = cross(side, uv - a);
+        if (there < 0) reach = std::min(reach, here / (here - there));
+    }
+    return std::max(0.0, reach);
+}
+
 Vec2 ElementTree::uniform(ElementId e, double s, double t) const {
     if (!is_cell(e)) return uniform_in_shape(patch(e).shape, s, t);
     // A triangle of the fan around the first corner, chosen by its area with the first number, which is then stretched.

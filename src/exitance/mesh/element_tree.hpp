@@ -103,6 +103,8 @@ class ElementTree {
     std::vector<Point> outline(ElementId e) const;
     /// Mean place of the domain.
     Vec2 centre(ElementId e) const;
+    /// How much of the way from the centre to a place lies within the domain; at most 1.
+    double reach(ElementId e, Vec2 uv) const;
     /// A place of the domain with uniform density, from two numbers in [0, 1).
     Vec2 uniform(ElementId e, double s, double t) const;
     std::vector<ElementId> leaves() const;  ///< In order of their ids.

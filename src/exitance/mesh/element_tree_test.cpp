@@ -73,5 +73,28 @@ TEST(ElementTree, ALineThatMissesAnElementCutsNothing) {
     EXPECT_TRUE(tree.is_leaf(ElementId(0)));
 }
 
+TEST_P(EveryShape, DomainsEndWhereTheyAreReached) {
+    const ElementTree tree = well_cut_tree(GetParam());
+    for (ElementId e : tree.leaves()) {
+        const std::vector<Vec2> domain = tree.domain(e);
+        const auto depth = [&](Vec2 uv) {  // within the edge that is nearest, as twice an area
+            double least = HUGE_VAL;
+            for (std::size_t i = 0; i < domain.size(); ++i)
+                least = std::min(least, cross(domain[(i + 1) % domain.size()] - domain[i], uv - domain[i]));
+            return least;
+        };
+        const Vec2 c = tree.centre(e);
+        for (const Vec2 uv : {Vec2{0.9, 0.9}, Vec2{-0.5, 0.2}, Vec2{0.3, 1.5}, c}) {
+            const double reach = tree.reach(e, uv);
+            if (depth(uv) >= 0) {
+                EXPECT_EQ(reach, 1);
+            } else {
+                EXPECT_LT(reach, 1);
+                EXPECT_NEAR(depth(c + reach * (uv - c)), 0, 1e-12);
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace exitance

@@ -85,8 +85,9 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
 }
 
 Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options) {
-    // The method may have half of the target. Its light is smoothed by the gather, and much finer is soon much dearer.
-    constexpr double methods_share = 0.5;
+    // The method may have half of the target, or all of it where nothing is gathered. Its light is smoothed by the
+    // gather, and much finer is soon much dearer.
+    const double methods_share = parts.noise > 0 || parts.interpolation > 0 ? 0.5 : 1;
     constexpr double least = 0.2, most = 0.9;  // of a factor: no step too large to be foreseen or too small to help
     Tightened out{knobs};
     double method = parts.method;

@@ -15,6 +15,7 @@
 #include "exitance/methods/linked_by_rays.hpp"
 #include "exitance/methods/linked_system.hpp"
 #include "exitance/methods/nodal_light.hpp"
+#include "exitance/methods/tolerance_law.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/transport/cluster_refiner.hpp"
 #include "exitance/transport/leaf_links.hpp"
@@ -77,9 +78,13 @@ class Hierarchy {
         tolerance.strongest = first_strength(first);
         constexpr int most_rounds = 8;
         constexpr double nearly = 1.15;  // of what rays correct: another round takes more time than it is worth
+        // Where links deliver light, what falls first is how much of it comes back from reflections.
+        const double guess = light_.delivers ? 0.8 : 1.7;
+        ToleranceLaw of_links(guess), of_receivers(guess);
         int round = 0;
         const auto state = [&](auto& a) {
             a(round, tolerance, light_.tree, light_.report);
+            of_links.archive_state(a), of_receivers.archive_state(a);
             sites_.archive_state(a);
             for (NodalField* field : {&first_, &b_}) field->archive_state(a);
             refiner_.archive_state(a);
@@ -95,7 +100,9 @@ class Hierarchy {
             relax();
             // What links miss grows with the light, of which the first round knows but one reflection. Where rays
             // correct it, that does not matter.
-            const double missed = light_.delivers ? error() * light_norm() / judged_by : error();
+            const double growth = light_.delivers ? light_norm() / judged_by : 1;
+            const double by_link = growth * link_error(), by_receiver = growth * refiner_.interpolation_error(),
+                         missed = std::hypot(by_link, by_receiver);
             demand = input_.knobs.link_error * share_of_links() * light_norm();
             input_.progress.note(
                 fmt::format("{} links, {} of clusters ({:.0f}% of their light in the open), {} elements, {} rays; "
@@ -107,12 +114,15 @@ class Hierarchy {
             if (input_.stop.requested() || light_.limited_by_memory) break;
             const bool weighed = round > 0 || !somewhere;
             if (weighed && missed <= (light_.delivers ? 1 : nearly) * demand) break;
-            // A lower tolerance makes more links, so that their errors together fall more slowly than it; where they
-            // deliver light, what falls first is how much of it comes back from reflections.
-            const double law = light_.delivers ? 0.8 : 1.7;
-            const double factor = std::clamp(std::pow(0.95 * demand / missed, law), 0.03, 0.9);
+            // Each of the two may have half of what is allowed, squared, and what the other leaves.
+            const auto beside = [&](double other) {
+                return std::sqrt(demand * demand - std::min(other * other, 0.5 * demand * demand));
+            };
+            const double links = of_links.factor(by_link, beside(by_receiver)),
+                         receivers = of_receivers.factor(by_receiver, beside(by_link));
+            tolerance.error *= links, tolerance.interpolation *= receivers;
+            tolerance.strongest *= std::min(links, receivers);
             if (!light_.delivers && !somewhere) b_ = first_;
-            tolerance.error *= factor, tolerance.interpolation *= factor, tolerance.strongest *= factor;
         }
         if (light_.delivers)
             conserve();
@@ -181,10 +191,11 @@ class Hierarchy {
                 .seed = input_.options.seed};
     }
 
-    /// Do polynomials give the light as exactly as it is asked for? That the scene decides, not how far its links are
-    /// refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather) are surer where surfaces
-    /// meet, unless very little error is asked for.
+    /// Are links alone asked for, or do polynomials give the light as exactly as it has to be? That the scene decides,
+    /// not how far its links are refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather)
+    /// are surer where surfaces meet, unless very little error is asked for.
     bool delivers() const {
+        if (input_.options.smoothing == false) return true;
         if (!is_polynomial_) return false;
         const bool sums = ElementGather::suits(input_.stage) && input_.options.error_target() > sums_reach;
         if (sums && !input_.options.epsilon) return false;
@@ -291,7 +302,7 @@ class Hierarchy {
     }
 
     /// Of links of elements and of clusters.
-    double error() const { return std::hypot(refiner_.error(), far_ ? far_->error() : 0); }
+    double link_error() const { return std::hypot(refiner_.link_error(), far_ ? far_->error() : 0); }
     std::size_t rays() const { return refiner_.rays() + (far_ ? far_->rays() : 0); }
     /// How much of the light that links carry meets nothing on its way, certainly.
     double open_share() const {

@@ -160,12 +160,43 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
         if (keeps_block_) set_block(), kernel_error = 0;
     }
     form_factor_ = rows_[0][0];
+    brightest_ = most;
     for (std::size_t i = 0; i < checks.at.size(); ++i) {
         if (n_ > 1) departure[i] = light(row(frame.at(checks.at[i]), n));
+        brightest_ = std::max(brightest_, std::abs(departure[i]));
         for (std::size_t k = 0; k < n_; ++k) departure[i] -= checks.factors[i * n_ + k] * node_light_[k];
     }
     const double unevenness = tolerance_.hidden * std::min(1.0, std::pow(ratio, M)) * unit * source_roughness_;
     return (near_ ? kernel_error : most * rule_error) + tolerance_.systematic * unevenness;
+}
+
+/// What a source sends to where none of the points are that are looked at: it is small and near, they all lie behind
+/// it, or the two meet in a tip. RMS over the receiver, W/m^2. After send(), for the same pair.
+double LinkJudge::missed_peak(ElementId p, ElementId q) {
+    if (!near_) return 0;
+    constexpr double in_front = 0.5, at_border = 0.02, off_border = 0.1;
+    const Patch receiver = sites_.frame(p), source = sites_.frame(q);
+    const auto nearest = [](const Patch& patch, const Point& x) {
+        return patch.at(into_shape(patch.coordinates(x), patch.shape));
+    };
+    Point close = receiver.centre();
+    for (int i = 0; i < 4; ++i) close = nearest(receiver, nearest(source, close));
+    const Point before = nearest(receiver, source.centre() + in_front * sites_.radius(q) * source_normal_);
+    return std::max(missed_at(before + at_border * (receiver.centre() - before), p, q),
+                    missed_at(close + off_border * (receiver.centre() - close), p, q));
+}
+
+double LinkJudge::missed_at(const Point& x, ElementId p, ElementId q) {
+    // Where it is less bright, departures tell, which cancel where light is even.
+    const double plainly = n_ == 1 ? 8 : 1.3;
+    double missed = light(row(x, sites_.normal(p)));
+    if (std::abs(missed) < plainly * brightest_) return 0;
+    const Patch frame = sites_.frame(p);
+    std::array<double, 9> factors{};
+    sites_.basis().interpolate(frame.shape, frame.coordinates(x), std::span(factors).first(n_));
+    for (std::size_t k = 0; k < n_; ++k) missed -= factors[k] * node_light_[k];
+    const double width = sites_.radius(q) + norm(sites_.centre(q) - x);  // of the peak
+    return std::abs(missed) * std::sqrt(std::min(1.0, width / sites_.radius(p)));
 }
 
 /// How much light the kernel, made anew and scaled to send what near rows do in the mean, misplaces at the node where
@@ -342,8 +373,8 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     if (!by_error) {
         const Cut cut = what_to_cut(p, q, pair.view == View::mixed);
         if (cut == Cut::source && allowed < HUGE_VAL) return out.verdict = Verdict::cut_source, out;
-        out.too_strong = cut == Cut::receiver;
-        if (pair.view == View::mixed) visibility = cast(p, q, out.too_strong, HUGE_VAL);
+        out.cuts_receiver = cut == Cut::receiver;
+        if (pair.view == View::mixed) visibility = cast(p, q, out.cuts_receiver, HUGE_VAL);
     } else if (!leaf && rule > allowed) {
         return out.verdict = Verdict::cut_source, out;
     } else if (pair.view == View::mixed) {
@@ -354,6 +385,10 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
             return out.verdict = Verdict::cut_source, out;
         visibility = cast(p, q, tiny, leaf ? allowed : HUGE_VAL);
         if (!leaf && visibility > allowed) return out.verdict = Verdict::cut_source, out;
+    }
+    if (by_error) {
+        out.missed = std::sqrt(area * weight) * missed_peak(p, q);
+        out.cuts_receiver = out.missed > tolerance_.error;
     }
     hand_over(pair.view == View::open, out);
     for (std::size_t k = 0; k < n_; ++k) out.light += area * sites_.weight(p, k) * std::abs(node_light_[k]);

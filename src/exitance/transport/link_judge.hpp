@@ -66,9 +66,11 @@ class LinkJudge {
     struct Result {
         Verdict verdict = Verdict::drop;
         Link link;
-        bool near = false;         ///< The kernel stands in block().
-        bool too_strong = false;   ///< By an oracle of strength: the receiver is to be cut.
+        bool near = false;  ///< The kernel stands in block().
+        /// The receiver is to be cut whatever other links bring: by an oracle of strength, or for a peak between nodes.
+        bool cuts_receiver = false;
         double squared_error = 0;  ///< Of rule and visibility: area times squared error, of an accepted link.
+        double missed = 0;         ///< Between the points that were looked at, in the units of a tolerance.
         double light = 0;          ///< Of all of the receiver, in the open.
         Departure departure{};
         /// Where something stands in between: the light at the receiver's nodes, and the variance that rays leave.
@@ -98,6 +100,8 @@ class LinkJudge {
     /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
     double send(ElementId p, ElementId q, double allowed, Departure& departure);
     double ratio_of(ElementId p, ElementId q) const;
+    double missed_peak(ElementId p, ElementId q);
+    double missed_at(const Point& x, ElementId p, ElementId q);
     /// What one number sends: the mean form factor over the receiver, the error of the rule, and how light departs from
     /// the mean.
     struct Even {
@@ -148,6 +152,7 @@ class LinkJudge {
     std::array<double, 9> source_light_{}, source_weight_{};
     std::array<Point, 9> source_node_;
     std::array<double, 9> node_light_{};  ///< Light in the open at the receiver's nodes.
+    double brightest_ = 0;                ///< Of light in the open, wherever it is looked at.
     std::array<Row, 9> rows_;             ///< From the receiver's nodes.
     bool looked_between_ = false;
     bool near_ = false;         ///< Are rows those of NearRow?

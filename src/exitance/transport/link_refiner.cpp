@@ -13,9 +13,10 @@ LinkRefiner::Found::Found(const LinkJudge::Result& result, bool is_open, bool is
     : link(result.link),
       squared_error(static_cast<float>(result.squared_error)),
       light(static_cast<float>(result.light)),
+      missed(static_cast<float>(result.missed)),
       near(result.near),
       open(is_open),
-      too_strong(result.too_strong),
+      cuts_receiver(result.cuts_receiver),
       from_leaf(is_from_leaf) {
     for (std::size_t c = 0; c < departure.size(); ++c) departure[c] = static_cast<float>(result.departure[c]);
 }
@@ -143,12 +144,13 @@ std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const L
     for (const Found& found : links_) {
         const float growth = growth_of[found.link.source];
         const bool same = growth >= 0 && found.from_leaf == tree_.is_leaf(found.link.source);
-        if (!same || static_cast<double>(growth * growth * found.squared_error) > allowed) {
+        if (!same || static_cast<double>(growth * growth * found.squared_error) > allowed ||
+            static_cast<double>(growth * found.missed) > tolerance.error) {
             stale.push_back(pair_of(found));
             continue;
         }
         Found& still = links_[kept++] = found;
-        still.light *= growth, still.squared_error *= growth * growth;
+        still.light *= growth, still.missed *= growth, still.squared_error *= growth * growth;
         for (float& d : still.departure) d *= growth;
         if (still.near) {
             const auto block = blocks_.begin() + found.link.block;
@@ -293,7 +295,7 @@ struct LinkRefiner::Receivers {
 Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers, const LinkTolerance& tolerance,
                                                             std::vector<ElementId>& leaves) {
     receivers.light.resize(tree_.size()), receivers.error.resize(tree_.size(), 0.0);
-    enum : std::uint8_t { nothing, links, too_strong_ones };
+    enum : std::uint8_t { nothing, links, cutting_ones };
     Field<ElementId, std::uint8_t> too_much(tree_.size(), 0), gained(tree_.size(), nothing);
     std::vector<ElementId> gaining;
     for (; receivers.known < links_.size(); ++receivers.known) {
@@ -301,15 +303,14 @@ Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers
         receivers.light[found.link.receiver].add(found, shadow_of(found), sites_.nodes());
         std::uint8_t& here = gained[found.link.receiver];
         if (here == nothing) gaining.push_back(found.link.receiver);
-        here = std::max<std::uint8_t>(here, found.too_strong ? too_strong_ones : links);
+        here = std::max<std::uint8_t>(here, found.cuts_receiver ? cutting_ones : links);
     }
     std::sort(gaining.begin(), gaining.end());
     for (ElementId e : gaining) {
         receivers.error[e] = weight(e) * tree_.area(e) * receivers.light[e].squared_error(sites_, e);
-        const bool is_good = tolerance.oracle == LinkOracle::transport
-                                 ? receivers.error[e] <= tolerance.interpolation * tolerance.interpolation
-                                 : gained[e] != too_strong_ones;
-        if (is_good) continue;
+        const bool departs = tolerance.oracle == LinkOracle::transport &&
+                             receivers.error[e] > tolerance.interpolation * tolerance.interpolation;
+        if (!departs && gained[e] != cutting_ones) continue;
         if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
         too_much[e] = 1;
         receivers.light[e] = {};  // of the links that will be left
@@ -333,7 +334,8 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     const auto fate_of = [&](const Found& found) -> std::uint8_t {
         const ElementId p = found.link.receiver;
         if (!too_much[p]) return untouched;
-        if (tolerance.oracle != LinkOracle::transport) return found.too_strong ? handed_on : left;
+        if (found.cuts_receiver) return handed_on;
+        if (tolerance.oracle != LinkOracle::transport) return left;
         // Of light that meets something on its way, half may be missing in places.
         const double light = static_cast<double>(found.light) / tree_.area(p), hidden = found.open ? 0 : 0.5 * light;
         const double error = weight(p) * tree_.area(p) * (mean_square(found.departure) + hidden * hidden);
@@ -421,7 +423,7 @@ void LinkRefiner::sum_up() {
         const double light = static_cast<double>(found.light);
         return Sums{static_cast<double>(found.squared_error), light, found.open ? light : 0};
     });
-    error_ = std::sqrt(interpolation_ + sums.squared_error);
+    link_error_ = std::sqrt(sums.squared_error);
     light_ = sums.light, open_light_ = sums.open;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -45,8 +46,10 @@ class LinkRefiner {
     /// Cuts leaves; their parts take their functions, of `b` and of each of `also`.
     void cut_elements(const std::vector<ElementId>& elements, NodalField& b, std::span<NodalField* const> also);
 
-    /// Root of areas times squared errors, of rules and visibility by link and of interpolation by receiver, W/m^2 m.
-    double error() const { return error_; }
+    /// Root of areas times squared errors, W/m^2 m: of rules and visibility, by link; of interpolation, by receiver.
+    double link_error() const { return link_error_; }
+    double interpolation_error() const { return std::sqrt(interpolation_); }
+    double error() const { return std::hypot(link_error(), interpolation_error()); }
     /// Did the number of links end the refinement?
     bool is_limited() const { return limited_; }
     /// Bytes that a link takes while links are refined, with its block.
@@ -76,11 +79,11 @@ class LinkRefiner {
 
         Link link;
         std::array<float, 5> departure{};
-        float squared_error = 0, light = 0;
+        float squared_error = 0, light = 0, missed = 0;
         std::uint32_t shadow = none;  ///< Where shadowed light and its variance at the nodes stand in shadows_.
         bool near = false;            ///< Has it a block?
         bool open = false;            ///< Is its view certain?
-        bool too_strong = false;      ///< For its receiver, in the eyes of an oracle of strength.
+        bool cuts_receiver = false;   ///< Whatever its other links bring.
         bool from_leaf = false;       ///< Was its source a leaf when it was judged?
     };
     static constexpr std::uint32_t none = 0xffffffffu;
@@ -122,8 +125,8 @@ class LinkRefiner {
     std::vector<Found> links_;
     std::vector<float> blocks_, shadows_;
     NodalField judged_;         ///< The light that links were judged by last, unless it stays.
-    double interpolation_ = 0;  ///< Squared, as in error().
-    double error_ = 0, light_ = 0, open_light_ = 0;
+    double interpolation_ = 0;  ///< Squared.
+    double link_error_ = 0, light_ = 0, open_light_ = 0;
     std::size_t rays_ = 0, form_factors_ = 0;
     bool begun_ = false, limited_ = false, light_stays_ = false;
 };

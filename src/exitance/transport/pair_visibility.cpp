@@ -23,6 +23,16 @@ bool PairVisibility::add_ray(ElementId p, ElementId q, const Point& x, const Poi
     return true;
 }
 
+/// A point near a cell, drawn into it: beyond its border may be the inside of a box.
+Point PairVisibility::within(ElementId cell, const Point& x) const {
+    constexpr double inside = 0.999;
+    const ElementTree& tree = sites_.tree();
+    const double reach = tree.reach(cell, tree.patch(cell).coordinates(x));
+    if (reach == 1) return x;
+    const Point centre = sites_.centre(cell);
+    return centre + inside * reach * (x - centre);
+}
+
 void PairVisibility::cast(ElementId p, ElementId q) {
     rays_ += sites_.stage().tracer.occluded(from_, to_, sites_.tree().region(p), sites_.tree().region(q),
                                             std::span(blocked_).first(from_.size()));
@@ -49,9 +59,11 @@ void PairVisibility::look_by_node(ElementId p, ElementId q, unsigned each, bool 
     const double size = at_nodes_ ? 0 : n_ == 4 ? 0.42 : 0.22;
     RandomStream random(seed_, Stream::visibility, p.value, q.value);
     const Patch receiver = sites_.frame(p), source = sites_.frame(q);
-    const auto around = [&](const Patch& frame, std::size_t node) {
+    const auto around = [&](ElementId e, const Patch& frame, std::size_t node) {
         const double s = random.uniform(), t = random.uniform();
-        return sites_.node(frame, node) + size * (frame.at(uniform_in_shape(frame.shape, s, t)) - frame.centre());
+        const Point x =
+            sites_.node(frame, node) + size * (frame.at(uniform_in_shape(frame.shape, s, t)) - frame.centre());
+        return sites_.tree().is_cell(e) ? within(e, x) : x;
     };
     from_.clear(), to_.clear(), pair_of_ray_.clear();
     for (std::size_t k = 0; k < n_; ++k) {
@@ -60,7 +72,7 @@ void PairVisibility::look_by_node(ElementId p, ElementId q, unsigned each, bool 
         for (std::size_t l = 0; l < n_; ++l) {
             if (few && l != chosen) continue;
             for (unsigned ray = 0; ray < each; ++ray) {
-                const Point x = around(receiver, k), y = around(source, l);
+                const Point x = around(p, receiver, k), y = around(q, source, l);
                 if (add_ray(p, q, x, y)) pair_of_ray_.push_back(k * n_ + l);
             }
         }

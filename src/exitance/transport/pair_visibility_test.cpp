@@ -48,5 +48,25 @@ TEST(PairVisibility, ByNodeTellsWhichPairsSeeEachOther) {
         }
 }
 
+/// A floor that is cut along a line, one side of which lies under a lid, and a ceiling: the other side sees all of it.
+TEST(PairVisibility, OfACellBeginsWithinIt) {
+    const Scene scene = test::make({{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
+                                    {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}},
+                                    {{{0.75, 0, 1e-9}, {1, 0, 1e-9}, {1, 1, 1e-9}, {0, 1, 1e-9}, {0, 0.5625, 1e-9}}}});
+    const Stage stage(scene);
+    ElementTree tree;
+    const ElementId floor = tree.add_root(RegionId(0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}),
+                    ceiling = tree.add_root(RegionId(1), {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}),
+                    cell = tree.split_by_line(floor, {{0.6, 0.8}, 0.45});
+    ASSERT_TRUE(tree.is_cell(cell));
+    for (const HierarchyBasis kind : {HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3}) {
+        const NodalBasis basis(kind);
+        const LinkSites sites(stage, tree, basis);
+        PairVisibility visible(sites, false, 1);
+        visible.look_by_node(cell, ceiling, 16, false);
+        for (std::size_t i = 0; i < sites.nodes() * sites.nodes(); ++i) EXPECT_EQ(visible.share(i), 1) << i;
+    }
+}
+
 }  // namespace
 }  // namespace exitance
