@@ -104,10 +104,9 @@ class ReceivedLight {
 
   public:
     ReceivedLight(const LinkSites& sites, ElementId p, double scale) : centre_(sites.centre(p)), scale_(scale) {
-        const Patch frame = sites.frame(p);
         for (std::size_t axis = 0; axis < 3; ++axis) normal_[axis] = static_cast<float>(sites.normal(p)[axis]);
         for (std::size_t k = 0; k < n; ++k) {
-            const Vec3 at = scale * (sites.node(frame, k) - centre_);
+            const Vec3 at = scale * (sites.receiving_node(p, k) - centre_);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const auto x = static_cast<float>(at[axis]);
                 if (k < lanes)

@@ -138,7 +138,7 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
         unit = most = 0;
         departure.fill(0);
         for (std::size_t k = 0; k < n_; ++k) {
-            rows_[k] = n_ == 1 ? mean_row(frame, n, departure) : row(sites_.node(frame, k), n);
+            rows_[k] = n_ == 1 ? mean_row(frame, n, departure) : row(sites_.receiving_node(p, k), n);
             node_light_[k] = light(rows_[k]);
             most = std::max(most, std::abs(node_light_[k]));
             for (std::size_t l = 0; l < n_; ++l) unit += sites_.weight(p, k) * rows_[k][l];
@@ -208,7 +208,7 @@ double LinkJudge::error_of_kernel(ElementId p, ElementId q) {
     std::array<Row, 9> kernel;
     double exact = 0, rule = 0;
     for (std::size_t k = 0; k < n_; ++k) {
-        const Point x = sites_.node(p, k);
+        const Point x = sites_.receiving_node(p, k);
         kernel[k] = kernel_row(x, sites_.normal(p));
         for (std::size_t l = 0; l < n_; ++l) {
             exact += sites_.weight(p, k) * rows_[k][l], rule += sites_.weight(p, k) * kernel[k][l];
@@ -410,7 +410,7 @@ double LinkJudge::scale_of_rule(ElementId p, ElementId q) {
     const std::vector<Point> outline = sites_.tree().outline(q);
     double exact = 0, rule = 0;
     for (std::size_t k = 0; k < n_; ++k) {
-        exact += sites_.weight(p, k) * point_to_polygon(sites_.node(p, k), n, outline);
+        exact += sites_.weight(p, k) * point_to_polygon(sites_.receiving_node(p, k), n, outline);
         for (std::size_t l = 0; l < n_; ++l) rule += sites_.weight(p, k) * rows_[k][l];
     }
     ++form_factors_;

@@ -46,6 +46,15 @@ Patch LinkSites::frame(ElementId e) const {
     return holds(e) ? cell_frames_[cell_frame_[place_[e]]] : inertia_parallelogram(e);
 }
 
+Point LinkSites::within(ElementId e, const Point& x) const {
+    constexpr double inside = 0.999;
+    if (!tree_->is_cell(e)) return x;
+    const double reach = tree_->reach(e, tree_->patch(e).coordinates(x));
+    if (reach == 1) return x;
+    const Point middle = centre(e);
+    return middle + inside * reach * (x - middle);
+}
+
 ElementId LinkSites::held_above(ElementId e) const {
     while (!holds(e)) e = tree_->parent(e);
     return e;

@@ -55,6 +55,10 @@ class LinkSites {
     Patch frame(ElementId e) const;
     Point node(ElementId e, std::size_t k) const { return node(frame(e), k); }
     Point node(const Patch& frame, std::size_t k) const { return frame.at(basis_->nodes(frame.shape)[k].at); }
+    /// A point near a cell, drawn into it: beyond its border may be the inside of a box. Of other elements the point.
+    Point within(ElementId e, const Point& x) const;
+    /// Where light is looked at for a node of a receiver.
+    Point receiving_node(ElementId e, std::size_t k) const { return within(e, node(e, k)); }
     double weight(ElementId e, std::size_t k) const { return basis_->nodes(tree_->patch(e).shape)[k].weight; }
 
     /// child[k] = sum_j push[k n + j] parent[j], and what pull adds to the parent: pull[j n + k] child[k]. Held.

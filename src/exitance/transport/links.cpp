@@ -117,7 +117,7 @@ double Links::mean_form_factor(std::size_t row, std::size_t link) const {
     const double scale = far ? static_cast<double>(Link::scale(block_[link])) : 1;
     for (std::size_t k = 0; k < n; ++k) {
         four::Real K[groups]{};
-        if (far) source.kernel(sites_->node(p, k), sites_->normal(p), K);
+        if (far) source.kernel(sites_->receiving_node(p, k), sites_->normal(p), K);
         for (std::size_t l = 0; l < n; ++l) {
             const std::size_t at = position(n, k, l);
             if (!(visible_[link * words_ + at / 32] >> (at % 32) & 1u)) continue;

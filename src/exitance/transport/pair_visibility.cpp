@@ -23,16 +23,6 @@ bool PairVisibility::add_ray(ElementId p, ElementId q, const Point& x, const Poi
     return true;
 }
 
-/// A point near a cell, drawn into it: beyond its border may be the inside of a box.
-Point PairVisibility::within(ElementId cell, const Point& x) const {
-    constexpr double inside = 0.999;
-    const ElementTree& tree = sites_.tree();
-    const double reach = tree.reach(cell, tree.patch(cell).coordinates(x));
-    if (reach == 1) return x;
-    const Point centre = sites_.centre(cell);
-    return centre + inside * reach * (x - centre);
-}
-
 void PairVisibility::cast(ElementId p, ElementId q) {
     rays_ += sites_.stage().tracer.occluded(from_, to_, sites_.tree().region(p), sites_.tree().region(q),
                                             std::span(blocked_).first(from_.size()));
@@ -63,7 +53,7 @@ void PairVisibility::look_by_node(ElementId p, ElementId q, unsigned each, bool 
         const double s = random.uniform(), t = random.uniform();
         const Point x =
             sites_.node(frame, node) + size * (frame.at(uniform_in_shape(frame.shape, s, t)) - frame.centre());
-        return sites_.tree().is_cell(e) ? within(e, x) : x;
+        return sites_.within(e, x);
     };
     from_.clear(), to_.clear(), pair_of_ray_.clear();
     for (std::size_t k = 0; k < n_; ++k) {

@@ -34,7 +34,6 @@ class PairVisibility {
   private:
     void cast(ElementId p, ElementId q);
     bool add_ray(ElementId p, ElementId q, const Point& x, const Point& y);
-    Point within(ElementId cell, const Point& x) const;
 
     const LinkSites& sites_;
     std::size_t n_;
