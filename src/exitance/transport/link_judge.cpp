@@ -172,7 +172,7 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
 
 /// What a source sends to where none of the points are that are looked at: it is small and near, they all lie behind
 /// it, or the two meet in a tip. RMS over the receiver, W/m^2. After send(), for the same pair.
-double LinkJudge::missed_peak(ElementId p, ElementId q) {
+double LinkJudge::missed_peak(ElementId p, ElementId q, bool open) {
     if (!near_) return 0;
     constexpr double in_front = 0.5, at_border = 0.02, off_border = 0.1;
     const Patch receiver = sites_.frame(p), source = sites_.frame(q);
@@ -181,16 +181,23 @@ double LinkJudge::missed_peak(ElementId p, ElementId q) {
     };
     Point close = receiver.centre();
     for (int i = 0; i < 4; ++i) close = nearest(receiver, nearest(source, close));
+    outline_ = sites_.tree().outline(q);
     const Point before = nearest(receiver, source.centre() + in_front * sites_.radius(q) * source_normal_);
-    return std::max(missed_at(before + at_border * (receiver.centre() - before), p, q),
-                    missed_at(close + off_border * (receiver.centre() - close), p, q));
+    return std::max(missed_at(before + at_border * (receiver.centre() - before), p, q, open),
+                    missed_at(close + off_border * (receiver.centre() - close), p, q, open));
 }
 
-double LinkJudge::missed_at(const Point& x, ElementId p, ElementId q) {
-    // Where it is less bright, departures tell, which cancel where light is even.
-    const double plainly = n_ == 1 ? 8 : 1.3;
-    double missed = light(row(x, sites_.normal(p)));
-    if (std::abs(missed) < plainly * brightest_) return 0;
+/// The same at a point; `outline_` is the source's.
+double LinkJudge::missed_at(const Point& x, ElementId p, ElementId q, bool open) {
+    // Where it is less bright, departures tell. They cancel where light is even, as it is mostly where views are open.
+    const double plainly = n_ == 1 ? 8 : open ? 4 : 1.3, least = plainly * brightest_;
+    const Normal& n = sites_.normal(p);
+    double even = 0;
+    for (std::size_t l = 0; l < n_; ++l) even += source_weight_[l] * source_light_[l];
+    ++form_factors_;
+    if (std::abs(even) * point_to_polygon(x, n, outline_) < least) return 0;
+    double missed = light(row(x, n));
+    if (std::abs(missed) < least) return 0;
     const Patch frame = sites_.frame(p);
     std::array<double, 9> factors{};
     sites_.basis().interpolate(frame.shape, frame.coordinates(x), std::span(factors).first(n_));
@@ -387,7 +394,7 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
         if (!leaf && visibility > allowed) return out.verdict = Verdict::cut_source, out;
     }
     if (by_error) {
-        out.missed = std::sqrt(area * weight) * missed_peak(p, q);
+        out.missed = std::sqrt(area * weight) * missed_peak(p, q, pair.view == View::open);
         out.cuts_receiver = out.missed > tolerance_.error;
     }
     hand_over(pair.view == View::open, out);

@@ -100,8 +100,8 @@ class LinkJudge {
     /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
     double send(ElementId p, ElementId q, double allowed, Departure& departure);
     double ratio_of(ElementId p, ElementId q) const;
-    double missed_peak(ElementId p, ElementId q);
-    double missed_at(const Point& x, ElementId p, ElementId q);
+    double missed_peak(ElementId p, ElementId q, bool open);
+    double missed_at(const Point& x, ElementId p, ElementId q, bool open);
     /// What one number sends: the mean form factor over the receiver, the error of the rule, and how light departs from
     /// the mean.
     struct Even {
