@@ -9,15 +9,14 @@
 
 namespace exitance {
 
-LinkRefiner::Found::Found(const LinkJudge::Result& result, bool is_open, bool is_from_leaf)
+LinkRefiner::Found::Found(const LinkJudge::Result& result, bool is_open)
     : link(result.link),
       squared_error(static_cast<float>(result.squared_error)),
       light(static_cast<float>(result.light)),
       missed(static_cast<float>(result.missed)),
       near(result.near),
       open(is_open),
-      cuts_receiver(result.cuts_receiver),
-      from_leaf(is_from_leaf) {
+      cuts_receiver(result.cuts_receiver) {
     for (std::size_t c = 0; c < departure.size(); ++c) departure[c] = static_cast<float>(result.departure[c]);
 }
 
@@ -143,8 +142,7 @@ std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const L
     std::size_t kept = 0;
     for (const Found& found : links_) {
         const float growth = growth_of[found.link.source];
-        const bool same = growth >= 0 && found.from_leaf == tree_.is_leaf(found.link.source);
-        if (!same || static_cast<double>(growth * growth * found.squared_error) > allowed ||
+        if (growth < 0 || static_cast<double>(growth * growth * found.squared_error) > allowed ||
             static_cast<double>(growth * found.missed) > tolerance.error) {
             stale.push_back(pair_of(found));
             continue;
@@ -222,7 +220,7 @@ LinkRefiner::Block LinkRefiner::judge_block(std::span<const LinkPair> pairs, Lin
             result.link.block = static_cast<std::uint32_t>(out.blocks.size());
             out.blocks.insert(out.blocks.end(), judge.block().begin(), judge.block().end());
         }
-        out.links.push_back({result, pair.view == View::open, tree_.is_leaf(pair.source)});
+        out.links.push_back({result, pair.view == View::open});
         if (pair.view == View::open || sites_.nodes() == 1 || result.link.is_constant()) continue;
         out.links.back().shadow = static_cast<std::uint32_t>(out.shadows.size());
         for (const auto& at_nodes : {result.shadowed, result.variance})

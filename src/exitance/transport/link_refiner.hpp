@@ -74,7 +74,7 @@ class LinkRefiner {
   private:
     /// A link, and what refining needs to know of it.
     struct Found {
-        Found(const LinkJudge::Result& result, bool is_open, bool is_from_leaf);
+        Found(const LinkJudge::Result& result, bool is_open);
         Found() = default;
 
         Link link;
@@ -84,7 +84,6 @@ class LinkRefiner {
         bool near = false;            ///< Has it a block?
         bool open = false;            ///< Is its view certain?
         bool cuts_receiver = false;   ///< Whatever its other links bring.
-        bool from_leaf = false;       ///< Was its source a leaf when it was judged?
     };
     static constexpr std::uint32_t none = 0xffffffffu;
     /// What all links of a receiver bring to it.

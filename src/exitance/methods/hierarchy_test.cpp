@@ -1,0 +1,46 @@
+#include "exitance/methods/hierarchy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/mesh/element_locator.hpp"
+#include "support/built_scene.hpp"
+#include "support/solved.hpp"
+
+namespace exitance {
+namespace {
+
+/// RMS of the difference of indirect light, relative to its mean, at the middles of the leaves of `g`.
+double relative_difference(const Solution& f, const Solution& g) {
+    const ElementTree& tree = g.indirect.tree;
+    const ElementLocator locator(f.indirect.tree, f.scene.regions().size());
+    double square = 0, light = 0, area = 0;
+    for (ElementId e : tree.leaves()) {
+        const Vec2 uv = tree.centre(e);
+        const double expected = mean(g.indirect.at({e, uv})),
+                     d = mean(f.indirect.at(locator.find(tree.region(e), tree.patch(e).at(uv)))) - expected;
+        square += tree.area(e) * d * d, light += tree.area(e) * expected, area += tree.area(e);
+    }
+    return std::sqrt(square / area) / (light / area);
+}
+
+/// No ray corrects links alone and no gather smooths them: what they miss shows, and falls with what they may miss.
+TEST(Hierarchy, OfLinksAloneErrsByWhatItsLinksMayMiss) {
+    const Scene scene = built_scene("cornell");
+    const Solution reference = solved(scene, {.method = Method::matrix, .error = 0.01});
+    for (const BasisKind basis : {BasisKind::haar, BasisKind::multiwavelet2, BasisKind::multiwavelet3}) {
+        SolveOptions options{.method = Method::wavelet, .basis = basis};
+        options.smoothing = false;
+        options.epsilon = 0.1;
+        const double coarse = relative_difference(solved(scene, options), reference);
+        options.epsilon = 0.025;
+        const double fine = relative_difference(solved(scene, options), reference);
+        // Closed scenes double what links miss, by reflections; constants err within their leaves besides.
+        EXPECT_LT(fine, (basis == BasisKind::haar ? 4 : 2) * *options.epsilon) << static_cast<int>(basis);
+        EXPECT_LT(fine, 0.6 * coarse) << static_cast<int>(basis);
+    }
+}
+
+}  // namespace
+}  // namespace exitance
