@@ -36,7 +36,7 @@ TEST(Hierarchy, OfLinksAloneErrsByWhatItsLinksMayMiss) {
         const double coarse = relative_difference(solved(scene, options), reference);
         options.epsilon = 0.025;
         const double fine = relative_difference(solved(scene, options), reference);
-        // Closed scenes double what links miss, by reflections; constants err within their leaves besides.
+        // Reflections bring back what links miss; and constants err within their leaves besides.
         EXPECT_LT(fine, (basis == BasisKind::haar ? 4 : 2) * *options.epsilon) << static_cast<int>(basis);
         EXPECT_LT(fine, 0.6 * coarse) << static_cast<int>(basis);
     }

@@ -75,11 +75,13 @@ void LinkJudge::set_source(ElementId q, const Spectrum& weight) {
     source_normal_ = sites_.normal(q);
     source_area_ = sites_.tree().area(q) / pi;
     source_roughness_ = mean(weight) * roughness_[q];
+    source_mean_ = 0;
     const Patch frame = sites_.frame(q);
     for (std::size_t l = 0; l < n_; ++l) {
         source_node_[l] = sites_.node(frame, l);
         source_weight_[l] = sites_.weight(q, l);
         source_light_[l] = mean(weight * b_.node(q, l));
+        source_mean_ += source_weight_[l] * source_light_[l];
     }
 }
 
@@ -192,10 +194,8 @@ double LinkJudge::missed_at(const Point& x, ElementId p, ElementId q, bool open)
     // Where it is less bright, departures tell. They cancel where light is even, as it is mostly where views are open.
     const double plainly = n_ == 1 ? 8 : open ? 4 : 1.3, least = plainly * brightest_;
     const Normal& n = sites_.normal(p);
-    double even = 0;
-    for (std::size_t l = 0; l < n_; ++l) even += source_weight_[l] * source_light_[l];
     ++form_factors_;
-    if (std::abs(even) * point_to_polygon(x, n, outline_) < least) return 0;
+    if (std::abs(source_mean_) * point_to_polygon(x, n, outline_) < least) return 0;
     double missed = light(row(x, n));
     if (std::abs(missed) < least) return 0;
     const Patch frame = sites_.frame(p);
@@ -287,8 +287,8 @@ LinkJudge::Even LinkJudge::send_evenly(ElementId p, ElementId q, double b, doubl
 /// number does, whatever the basis. Is that so here? Then `out` holds the link, if there is one.
 bool LinkJudge::judge_as_constant(LinkPair& pair, std::span<const PieceId> pool, double allowed, Result& out) {
     const auto [p, q] = std::pair{pair.receiver, pair.source};
-    double b = 0, variation = source_roughness_ * source_roughness_;
-    for (std::size_t l = 0; l < n_; ++l) b += source_weight_[l] * source_light_[l];
+    const double b = source_mean_;
+    double variation = source_roughness_ * source_roughness_;
     for (std::size_t l = 0; l < n_; ++l) variation += source_weight_[l] * std::pow(source_light_[l] - b, 2);
     const Even even = send_evenly(p, q, b, allowed);
     const double unevenness =

@@ -150,6 +150,7 @@ class LinkJudge {
     Normal source_normal_;
     double source_area_ = 0, source_roughness_ = 0;
     std::array<double, 9> source_light_{}, source_weight_{};
+    double source_mean_ = 0;  ///< Of source_light_.
     std::array<Point, 9> source_node_;
     std::array<double, 9> node_light_{};  ///< Light in the open at the receiver's nodes.
     double brightest_ = 0;                ///< Of light in the open, wherever it is looked at.
