@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/geometry/polygon.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/form_factor.hpp"
 
@@ -172,38 +173,90 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     return (near_ ? kernel_error : most * rule_error) + tolerance_.systematic * unevenness;
 }
 
+/// The part of an element that lies before a plane.
+void LinkJudge::set_part(ElementId e, const Plane& plane, Part& out) const {
+    out.plane = plane;
+    clip(sites_.tree().outline(e), plane, out.outline);
+    out.area = norm(area_vector(out.outline));
+    if (out.area <= 0) return;
+    out.middle = centroid(out.outline);
+    out.radius = 0;
+    for (const Point& corner : out.outline) out.radius = std::max(out.radius, norm(corner - out.middle));
+}
+
+/// Off the border, as far as the share says towards the middle, and before the plane.
+Point LinkJudge::Part::drawn_in(const Point& x, double share) const {
+    const double height = plane.signed_distance(middle), h = plane.signed_distance(x),
+                 to_front = h < height ? (share * height - h) / (height - h) : 0;
+    return x + std::clamp(to_front, share, 1.0) * (middle - x);
+}
+
 /// What a source sends to where none of the points are that are looked at: it is small and near, they all lie behind
 /// it, or the two meet in a tip. RMS over the receiver, W/m^2. After send(), for the same pair.
 double LinkJudge::missed_peak(ElementId p, ElementId q, bool open) {
     if (!near_) return 0;
-    constexpr double in_front = 0.5, at_border = 0.02, off_border = 0.1;
-    const Patch receiver = sites_.frame(p), source = sites_.frame(q);
-    const auto nearest = [](const Patch& patch, const Point& x) {
-        return patch.at(into_shape(patch.coordinates(x), patch.shape));
+    const auto plane_of = [&](ElementId e) {
+        return Plane{sites_.normal(e), dot(sites_.normal(e), sites_.centre(e))};
     };
-    Point close = receiver.centre();
-    for (int i = 0; i < 4; ++i) close = nearest(receiver, nearest(source, close));
-    outline_ = sites_.tree().outline(q);
-    const Point before = nearest(receiver, source.centre() + in_front * sites_.radius(q) * source_normal_);
-    return std::max(missed_at(before + at_border * (receiver.centre() - before), p, q, open),
-                    missed_at(close + off_border * (receiver.centre() - close), p, q, open));
+    set_part(p, plane_of(q), receiver_part_);
+    set_part(q, plane_of(p), source_part_);
+    if (receiver_part_.area <= 0 || source_part_.area <= 0) return 0;
+    const Patch receiver = sites_.frame(p), source = sites_.frame(q);
+    const auto nearest = [](const Patch& patch, const Part& part, const Point& x) {
+        return part.drawn_in(patch.at(into_shape(patch.coordinates(x), patch.shape)), 0);
+    };
+    constexpr double in_front = 0.5, at_border = 0.02, off_border = 0.1;
+    const double thickness = source_part_.thickness();
+    const Point& middle = source_part_.middle;
+    const Point before = nearest(receiver, receiver_part_, middle + in_front * thickness * source_normal_);
+    Point close = nearest(receiver, receiver_part_, middle);
+    for (int i = 0; i < 4; ++i)
+        close = nearest(receiver, receiver_part_, nearest(source, source_part_, close));
+    const double depth = norm(receiver_part_.middle - close);
+    const double off = std::min(off_border, in_front * thickness / std::max(depth, thickness));
+    const auto missed = [&](const Point& x) {
+        return missed_at(x, norm(nearest(source, source_part_, x) - x), p, open);
+    };
+    return std::max(missed(receiver_part_.drawn_in(before, at_border)), missed(receiver_part_.drawn_in(close, off)));
 }
 
-/// The same at a point; `outline_` is the source's.
-double LinkJudge::missed_at(const Point& x, ElementId p, ElementId q, bool open) {
+/// The same at a point, which is so far off the source.
+double LinkJudge::missed_at(const Point& x, double gap, ElementId p, bool open) {
     // Where it is less bright, departures tell. They cancel where light is even, as it is mostly where views are open.
     const double plainly = n_ == 1 ? 8 : open ? 4 : 1.3, least = plainly * brightest_;
     const Normal& n = sites_.normal(p);
     ++form_factors_;
-    if (std::abs(source_mean_) * point_to_polygon(x, n, outline_) < least) return 0;
-    double missed = light(row(x, n));
-    if (std::abs(missed) < least) return 0;
+    const double F = point_to_polygon(x, n, source_part_.outline), unknown = F * source_roughness_;
+    if (F * std::abs(source_mean_) + unknown < least) return 0;
+    const double there = light(row(x, n));
+    if (std::max(std::abs(there), unknown) < least) return 0;
+    const double missed = std::max(std::abs(there - said_at(x, p)), unknown);
+    const double area = (2 * source_part_.radius + gap) * (source_part_.thickness() + gap);  // of the peak
+    return missed * std::sqrt(std::min(1.0, area / sites_.tree().area(p)));
+}
+
+/// The nodes' polynomial, W/m^2.
+double LinkJudge::said_at(const Point& x, ElementId p) const {
     const Patch frame = sites_.frame(p);
     std::array<double, 9> factors{};
     sites_.basis().interpolate(frame.shape, frame.coordinates(x), std::span(factors).first(n_));
-    for (std::size_t k = 0; k < n_; ++k) missed -= factors[k] * node_light_[k];
-    const double width = sites_.radius(q) + norm(sites_.centre(q) - x);  // of the peak
-    return std::abs(missed) * std::sqrt(std::min(1.0, width / sites_.radius(p)));
+    double said = 0;
+    for (std::size_t k = 0; k < n_; ++k) said += factors[k] * node_light_[k];
+    return said;
+}
+
+/// Of a source that ends beside the receiver, what the nodes say of corners that see next to none of it. RMS over the
+/// receiver, W/m^2, where it is above `allowed`. After send(), for the same pair.
+double LinkJudge::missed_fall(ElementId p, double allowed) {
+    constexpr double plainly = 4, off_border = 0.03, share = 0.05;
+    if (!near_ || n_ == 1 || std::sqrt(share) * brightest_ <= allowed) return 0;
+    double most = 0;
+    for (const Point& corner : sites_.tree().outline(p)) {
+        const Point x = corner + off_border * (sites_.centre(p) - corner);
+        const double there = light(row(x, sites_.normal(p))), said = said_at(x, p);
+        if (std::abs(said) > plainly * std::abs(there)) most = std::max(most, std::abs(said - there));
+    }
+    return std::sqrt(share) * most;
 }
 
 /// How much light the kernel, made anew and scaled to send what near rows do in the mean, misplaces at the node where
@@ -394,7 +447,8 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
         if (!leaf && visibility > allowed) return out.verdict = Verdict::cut_source, out;
     }
     if (by_error) {
-        out.missed = std::sqrt(area * weight) * missed_peak(p, q, pair.view == View::open);
+        out.missed = std::sqrt(area * weight) *
+                     std::max(missed_peak(p, q, pair.view == View::open), missed_fall(p, allowed));
         out.cuts_receiver = out.missed > tolerance_.error;
     }
     hand_over(pair.view == View::open, out);

@@ -100,8 +100,20 @@ class LinkJudge {
     /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
     double send(ElementId p, ElementId q, double allowed, Departure& departure);
     double ratio_of(ElementId p, ElementId q) const;
+    struct Part {
+        Plane plane;  ///< What it is before.
+        std::vector<Point> outline;
+        Point middle;
+        double area = 0, radius = 0;
+
+        double thickness() const { return area / (2 * radius); }  ///< Of a long one the width, m.
+        Point drawn_in(const Point& x, double share) const;
+    };
+    void set_part(ElementId e, const Plane& plane, Part& out) const;
     double missed_peak(ElementId p, ElementId q, bool open);
-    double missed_at(const Point& x, ElementId p, ElementId q, bool open);
+    double missed_at(const Point& x, double gap, ElementId p, bool open);
+    double missed_fall(ElementId p, double allowed);
+    double said_at(const Point& x, ElementId p) const;
     /// What one number sends: the mean form factor over the receiver, the error of the rule, and how light departs from
     /// the mean.
     struct Even {
@@ -145,6 +157,7 @@ class LinkJudge {
     std::vector<PieceId> candidates_;
     std::vector<float> block_;
     std::vector<Point> outline_;
+    Part receiver_part_, source_part_;
     NearRow near_row_;
     PairVisibility visible_;
     Normal source_normal_;
