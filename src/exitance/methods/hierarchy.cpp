@@ -74,7 +74,7 @@ class Hierarchy {
         LinkTolerance tolerance = tolerance_of(first);
         tolerance.oracle = input_.options.oracle;
         tolerance.hidden = hidden();
-        tolerance.constants = !light_.delivers;
+        tolerance.corrected = !light_.delivers;
         tolerance.strongest = first_strength(first);
         constexpr int most_rounds = 8;
         constexpr double nearly = 1.15;  // of what rays correct: another round takes more time than it is worth

@@ -195,9 +195,7 @@ Point LinkJudge::Part::drawn_in(const Point& x, double share) const {
 /// it, or the two meet in a tip. RMS over the receiver, W/m^2. After send(), for the same pair.
 double LinkJudge::missed_peak(ElementId p, ElementId q, bool open) {
     if (!near_) return 0;
-    const auto plane_of = [&](ElementId e) {
-        return Plane{sites_.normal(e), dot(sites_.normal(e), sites_.centre(e))};
-    };
+    const auto plane_of = [&](ElementId e) { return Plane{sites_.normal(e), dot(sites_.normal(e), sites_.centre(e))}; };
     set_part(p, plane_of(q), receiver_part_);
     set_part(q, plane_of(p), source_part_);
     if (receiver_part_.area <= 0 || source_part_.area <= 0) return 0;
@@ -210,8 +208,7 @@ double LinkJudge::missed_peak(ElementId p, ElementId q, bool open) {
     const Point& middle = source_part_.middle;
     const Point before = nearest(receiver, receiver_part_, middle + in_front * thickness * source_normal_);
     Point close = nearest(receiver, receiver_part_, middle);
-    for (int i = 0; i < 4; ++i)
-        close = nearest(receiver, receiver_part_, nearest(source, source_part_, close));
+    for (int i = 0; i < 4; ++i) close = nearest(receiver, receiver_part_, nearest(source, source_part_, close));
     const double depth = norm(receiver_part_.middle - close);
     const double off = std::min(off_border, in_front * thickness / std::max(depth, thickness));
     const auto missed = [&](const Point& x) {
@@ -420,7 +417,7 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
     set_source(q, light_weight(material));
     const double area = sites_.tree().area(p), weight = tolerance_.weight(p),
                  allowed = tolerance_.error / std::sqrt(area * weight);
-    if (n_ > 1 && tolerance_.constants && judge_as_constant(pair, pool, allowed, out)) return out;
+    if (n_ > 1 && tolerance_.corrected && judge_as_constant(pair, pool, allowed, out)) return out;
     const double rule = send(p, q, allowed, out.departure);
     double light = 0;
     for (std::size_t k = 0; k < n_; ++k) light = std::max(light, std::abs(node_light_[k]));
@@ -446,9 +443,9 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
         visibility = cast(p, q, tiny, leaf ? allowed : HUGE_VAL);
         if (!leaf && visibility > allowed) return out.verdict = Verdict::cut_source, out;
     }
-    if (by_error) {
-        out.missed = std::sqrt(area * weight) *
-                     std::max(missed_peak(p, q, pair.view == View::open), missed_fall(p, allowed));
+    if (by_error && !tolerance_.corrected) {
+        out.missed =
+            std::sqrt(area * weight) * std::max(missed_peak(p, q, pair.view == View::open), missed_fall(p, allowed));
         out.cuts_receiver = out.missed > tolerance_.error;
     }
     hand_over(pair.view == View::open, out);

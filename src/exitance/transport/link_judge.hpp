@@ -27,7 +27,9 @@ struct LinkTolerance {
     double least_area = 0;    ///< No element is cut below this, m^2.
     bool fractional = false;  ///< The share of rays that get through, for all nodes of a link; else each its own.
     bool quadrature = false;  ///< One ray from each node to each node, yes or no.
-    bool constants = false;   ///< Links that carry little may be constants, whatever the basis.
+    /// Do rays correct what arrives in the mean? Then links that carry little may be constants, whatever the basis, and
+    /// what peaks between the points that are looked at is left to rays.
+    bool corrected = false;
     /// How much errors count on a receiver, squared, by element; null: alike everywhere.
     const Field<ElementId, double>* importance = nullptr;
     bool triage = true;  ///< Look for certain visibility before rays are cast.
