@@ -97,6 +97,7 @@ class Hierarchy {
             input_.progress.phase("link");
             const double judged_by = light_norm();
             refine(tolerance);
+            if (tolerance.gives_up && input_.stop.requested()) return std::move(light_);
             relax();
             // What links miss grows with the light, of which the first round knows but one reflection. Where rays
             // correct it, that does not matter.
@@ -187,6 +188,7 @@ class Hierarchy {
                 .least_area = input_.options.min_area.value_or(1e-7 * input_.stage.area),
                 .fractional = input_.options.visibility == VisibilityKind::fractional,
                 .quadrature = input_.options.visibility == VisibilityKind::quadrature,
+                .gives_up = input_.may_give_up,
                 .triage = input_.options.triage,
                 .seed = input_.options.seed};
     }

@@ -60,7 +60,7 @@ HierarchyBasis galerkin_basis(BasisKind basis) {
 /// linear` rows are cast from nodes, and what a ray reads is the polynomial of the element that it hits [Atkinson00].
 /// With `--basis galerkin1` to `3` blocks of Galerkin's matrix are integrated pair by pair [Zatz93].
 GlobalLight solve_matrix(const MethodInput& input) {
-    const auto& [stage, options, knobs, direct, progress, stop, safe_points] = input;
+    const auto& [stage, options, knobs, direct, progress, stop, safe_points, may_give_up] = input;
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis))
         return solve_galerkin(input, galerkin_basis(*options.basis));
     GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};

@@ -19,6 +19,8 @@ struct MethodInput {
     const StopRequest& stop;
     /// Where a method of several rounds may keep its state between them.
     SafePoints safe_points = {};
+    /// Is there light of another attempt? Then a stop may leave this one unfinished: nothing of it is read.
+    bool may_give_up = false;
 };
 
 /// Finds the reflected light of every element of a mesh that it makes. One file a method.

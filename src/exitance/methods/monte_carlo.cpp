@@ -75,7 +75,7 @@ class Shooter {
 /// with rays in proportion to the power that is left, and what arrives is the unbiased image of it. Independent runs
 /// are averaged; their spread is the standard error. O(rays), no form factors, memory of the elements alone.
 GlobalLight solve_monte_carlo(const MethodInput& input) {
-    const auto& [stage, options, knobs, direct_light, progress, stop, safe_points] = input;
+    const auto& [stage, options, knobs, direct_light, progress, stop, safe_points, may_give_up] = input;
     ElementTree tree = direct_light.tree;
     LeafNumbering numbering(tree);
     const std::size_t n = numbering.leaves.size();

@@ -7,11 +7,14 @@
 
 namespace exitance {
 
-void record_method(const Stage& stage, const GlobalLight& light, bool has_links, SolveStatistics& statistics) {
+void record_work(const GlobalLight& light, SolveStatistics& statistics) {
     statistics.iterations += light.report.iterations;
-    statistics.residual = light.report.residual;
     statistics.rays += light.rays;
     statistics.form_factors += light.form_factors;
+}
+
+void record_method(const Stage& stage, const GlobalLight& light, bool has_links, SolveStatistics& statistics) {
+    statistics.residual = light.report.residual;
     statistics.links = light.links;
     statistics.link_memory_bytes = light.link_memory_bytes;
     statistics.element_memory_bytes = light.element_memory_bytes;

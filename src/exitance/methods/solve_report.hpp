@@ -10,7 +10,10 @@ namespace exitance {
 
 // What a solve says of itself, in its statistics and as text.
 
-/// What a method did, added to what is counted already. `has_links`: is it one of those with a hierarchy?
+/// What a method did, added to what is counted already.
+void record_work(const GlobalLight& light, SolveStatistics& statistics);
+
+/// What the light that is delivered was found by. `has_links`: is it of one of the methods with a hierarchy?
 void record_method(const Stage& stage, const GlobalLight& light, bool has_links, SolveStatistics& statistics);
 
 /// How right the delivered light is, and how many elements it is held by.

@@ -210,11 +210,12 @@ class Solver {
         if (step_ == Step::project) {
             fresh_ = !light_;
             if (fresh_) project_direct();
-            if (stop_.requested() && certificate_.points > 0) return;
+            if (gives_up()) return;
             reach(Step::solve);
         }
         if (step_ == Step::solve) {
             find_light();
+            if (gives_up()) return;
             reach(Step::gather);
         }
         if (step_ == Step::decide) return;
@@ -246,13 +247,19 @@ class Solver {
         reach(Step::decide);
     }
 
+    /// Of an attempt, with its estimate.
+    bool has_light() const { return certificate_.points > 0; }
+
+    /// Once a stop is asked for, what another attempt has found stands.
+    bool gives_up() const { return stop_.requested() && has_light(); }
+
     void find_light() {
         const Stopwatch watch;
         if (fresh_) {
-            light_ =
-                entry_of(options_.method).solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points()});
-            record_method(stage_, *light_, has_links_, statistics());
-            share_ = direct_share();
+            light_ = entry_of(options_.method)
+                         .solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points(), has_light()});
+            record_work(*light_, statistics());
+            if (!gives_up()) share_ = direct_share();
         }
         statistics().seconds["solve"] += watch.seconds();
     }
@@ -282,9 +289,10 @@ class Solver {
         if (stop_.requested()) {
             // Half a local pass is worth less than the last whole one, or than what the method has found.
             if (step_ != Step::refine) {
-                if (certificate_.points > 0) return false;
+                if (has_light()) return false;
                 solution_.indirect = constant_on_leaves(*light_);
                 solution_.direct_in_elements = light_->holds_direct;
+                record_method(stage_, *light_, has_links_, statistics());
             }
             constexpr double roughly = 0.1;
             certify_solution({.error = roughly});
@@ -293,6 +301,7 @@ class Solver {
         solution_.indirect = std::move(indirect);
         solution_.direct_share = share_;
         solution_.direct_in_elements = light_->holds_direct;
+        record_method(stage_, *light_, has_links_, statistics());
         return true;
     }
 

@@ -296,6 +296,42 @@ TEST(SolveScene, AnInterruptedSolveStillHasAResult) {
         for (float v : value) EXPECT_TRUE(std::isfinite(v));
 }
 
+/// Interrupts a solve in a round of links of its second attempt.
+class InterruptsSecondAttempt final : public Progress {
+  public:
+    InterruptsSecondAttempt(StopRequest& stop, int round) : stop_(stop), left_(round) {}
+    void phase(std::string_view name) override {
+        certified_ |= name == "certify";
+        if (certified_ && name == "link" && --left_ == 0) stop_.interrupt();
+    }
+
+  private:
+    StopRequest& stop_;
+    int left_;
+    bool certified_ = false;
+};
+
+/// What an interrupt leaves unfinished is neither delivered nor told of.
+TEST(SolveScene, AnInterruptedAttemptLeavesWhatTheOneBeforeHasFound) {
+    const Scene scene = built_scene("cornell");
+    SolveOptions options{.method = Method::wavelet, .basis = BasisKind::haar, .error = 0.05};
+    options.smoothing = false;
+    std::vector<Solution> found;
+    for (const int round : {1, 2}) {
+        StopRequest stop;
+        InterruptsSecondAttempt progress(stop, round);
+        Result<Solution> solution = solve_scene(scene, options, progress, stop);
+        ASSERT_TRUE(solution);
+        ASSERT_EQ(solution->statistics.stopped_by, "interrupt") << "too few attempts or rounds for this test";
+        found.push_back(std::move(*solution));
+    }
+    EXPECT_GT(found[0].statistics.links, 0);
+    EXPECT_EQ(found[0].statistics.links, found[1].statistics.links);
+    EXPECT_EQ(found[0].statistics.link_memory_bytes, found[1].statistics.link_memory_bytes);
+    EXPECT_EQ(found[0].statistics.relative_error_estimate, found[1].statistics.relative_error_estimate);
+    EXPECT_EQ(found[0].interpolant.values, found[1].interpolant.values);
+}
+
 TEST(SolveScene, FractionalVisibilityCarriesTheEmittersLightThroughTheElements) {
     const Scene scene = built_scene("gcr2");
     const Solution solution =

@@ -443,7 +443,7 @@ LinkJudge::Result LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool
         visibility = cast(p, q, tiny, leaf ? allowed : HUGE_VAL);
         if (!leaf && visibility > allowed) return out.verdict = Verdict::cut_source, out;
     }
-    if (by_error && !tolerance_.corrected) {
+    if (by_error && !tolerance_.corrected && allowed < HUGE_VAL) {
         out.missed =
             std::sqrt(area * weight) * std::max(missed_peak(p, q, pair.view == View::open), missed_fall(p, allowed));
         out.cuts_receiver = out.missed > tolerance_.error;

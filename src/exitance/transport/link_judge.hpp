@@ -32,7 +32,8 @@ struct LinkTolerance {
     bool corrected = false;
     /// How much errors count on a receiver, squared, by element; null: alike everywhere.
     const Field<ElementId, double>* importance = nullptr;
-    bool triage = true;  ///< Look for certain visibility before rays are cast.
+    bool gives_up = false;  ///< Are pairs dropped once a stop is asked for? Else they are linked as they are.
+    bool triage = true;     ///< Look for certain visibility before rays are cast.
     LinkOracle oracle = LinkOracle::transport;
     double strongest = 0;  ///< Of the other oracles: form factor or power (W) of a link.
     std::uint64_t seed = 1;

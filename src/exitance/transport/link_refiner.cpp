@@ -245,18 +245,20 @@ void LinkRefiner::add_links_of(const Block& block) {
 void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const LinkTolerance& tolerance,
                         const StopRequest& stop) {
     std::vector<PieceId> pool;
-    while (!pairs.empty()) {
+    while (!pairs.empty() && !(tolerance.gives_up && stop.requested())) {
         const std::size_t block_size = block_size_for(pairs.size());
         std::vector<Block> blocks((pairs.size() + block_size - 1) / block_size);
-        // Once a stop is asked for, what is left is linked as it is.
         LinkTolerance now = tolerance;
         now.importance = importance_.empty() ? nullptr : &importance_;
+        // Once a stop is asked for, what is left is linked as it is.
+        LinkTolerance any = now;
+        any.error = HUGE_VAL;
         limited_ |= links_.size() + pairs.size() > tolerance.most_links;
-        if (stop.requested() || limited_) now.error = HUGE_VAL;
         parallel_for(
             blocks.size(), 1,
             [&](std::size_t i) {
-                LinkJudge judge(sites_, b, roughness_, now);
+                if (tolerance.gives_up && stop.requested()) return;
+                LinkJudge judge(sites_, b, roughness_, limited_ || stop.requested() ? any : now);
                 const std::size_t first = i * block_size, count = std::min(block_size, pairs.size() - first);
                 blocks[i] = judge_block(std::span(pairs).subspan(first, count), judge, pool);
                 note_touched("rays", blocks[i].rays), note_touched("links", blocks[i].links.size());
