@@ -113,8 +113,9 @@ class Hierarchy {
                             100 * missed / light_norm(), 100 * demand / light_norm()));
             light_.limited_by_memory = refiner_.is_limited();
             if (input_.stop.requested() || light_.limited_by_memory) break;
-            const bool weighed = round > 0 || !somewhere;
-            if (weighed && missed <= (light_.delivers ? 1 : nearly) * demand) break;
+            // The first round knows nothing of importance, nor of what only reflections light.
+            const bool knows_enough = round > 0 || (!somewhere && !light_.delivers);
+            if (knows_enough && missed <= (light_.delivers ? 1 : nearly) * demand) break;
             // Each of the two may have half of what is allowed, squared, and what the other leaves.
             const auto beside = [&](double other) {
                 return std::sqrt(demand * demand - std::min(other * other, 0.5 * demand * demand));
