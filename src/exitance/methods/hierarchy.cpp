@@ -219,7 +219,7 @@ class Hierarchy {
     /// only how light varies within them is the links', and is gathered once more; where links deliver it, no gather
     /// takes a share of the error asked for.
     double share_of_links() const {
-        constexpr double rays_correct = 8, without_gather = 2;
+        constexpr double rays_correct = 8, without_gather = 1.7;
         if (light_.delivers) return input_.options.epsilon ? 1 : without_gather;
         return input_.options.smoothing ? 1 : rays_correct;
     }

@@ -245,7 +245,7 @@ double LinkJudge::said_at(const Point& x, ElementId p) const {
 /// Of a source that ends beside the receiver, what the nodes say of corners that see next to none of it. RMS over the
 /// receiver, W/m^2, where it is above `allowed`. After send(), for the same pair.
 double LinkJudge::missed_fall(ElementId p, double allowed) {
-    constexpr double plainly = 4, off_border = 0.03, share = 0.05;
+    constexpr double plainly = 4, off_border = 0.03, share = 0.02;
     if (!near_ || n_ == 1 || std::sqrt(share) * brightest_ <= allowed) return 0;
     double most = 0;
     for (const Point& corner : sites_.tree().outline(p)) {
