@@ -83,7 +83,7 @@ struct LinkRefiner::ReceivedLight {
             const double w = sites.weight(e, k);
             mean += w * shadowed[k], square += w * shadowed[k] * shadowed[k], noise += w * variance[k];
         }
-        const double share = sites.nodes() > 4 ? 0.75 : 0.5;
+        const double share = sites.nodes() > 4 ? 0.75 : 0.5;  // quadratics overshoot beside shadows
         return mean_square(departure) + share * share * std::max(0.0, square - mean * mean - noise);
     }
 };
