@@ -24,8 +24,8 @@ TEST(MethodChoice, DependsOnWhatStandsInTheSceneAndOnTheError) {
         return choice.options.method;
     };
     EXPECT_EQ(chosen(open, 0.02), Method::matrix);
-    EXPECT_EQ(chosen(open, 0.002), Method::wavelet);
-    EXPECT_EQ(chosen(cluttered, 0.002), Method::matrix);
+    EXPECT_EQ(chosen(open, 0.001), Method::wavelet);
+    EXPECT_EQ(chosen(cluttered, 0.001), Method::matrix);
 }
 
 TEST(MethodChoice, GivesLinksToWhoLooksAtPointsAndCountsReflectionsByMatrix) {

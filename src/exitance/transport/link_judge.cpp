@@ -245,13 +245,13 @@ double LinkJudge::said_at(const Point& x, ElementId p) const {
 /// Of a source that ends beside the receiver, what the nodes say of corners that see next to none of it. RMS over the
 /// receiver, W/m^2, where it is above `allowed`. After send(), for the same pair.
 double LinkJudge::missed_fall(ElementId p, double allowed) {
-    constexpr double plainly = 4, off_border = 0.03, share = 0.02;
+    constexpr double plainly = 4, much = 0.5, off_border = 0.03, share = 0.02;
     if (!near_ || n_ == 1 || std::sqrt(share) * brightest_ <= allowed) return 0;
     double most = 0;
     for (const Point& corner : sites_.tree().outline(p)) {
         const Point x = corner + off_border * (sites_.centre(p) - corner);
-        const double there = light(row(x, sites_.normal(p))), said = said_at(x, p);
-        if (std::abs(said) > plainly * std::abs(there)) most = std::max(most, std::abs(said - there));
+        const double there = light(row(x, sites_.normal(p))), said = said_at(x, p), missed = std::abs(said - there);
+        if (std::abs(said) > plainly * std::abs(there) && missed > much * brightest_) most = std::max(most, missed);
     }
     return std::sqrt(share) * most;
 }
