@@ -173,7 +173,6 @@ double LinkJudge::send(ElementId p, ElementId q, double allowed, Departure& depa
     return (near_ ? kernel_error : most * rule_error) + tolerance_.systematic * unevenness;
 }
 
-/// The part of an element that lies before a plane.
 void LinkJudge::set_part(ElementId e, const Plane& plane, Part& out) const {
     out.plane = plane;
     clip(sites_.tree().outline(e), plane, out.outline);

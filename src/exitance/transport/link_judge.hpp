@@ -103,8 +103,9 @@ class LinkJudge {
     /// Fills rows and light at the nodes, and the departure; returns the error of the rule.
     double send(ElementId p, ElementId q, double allowed, Departure& departure);
     double ratio_of(ElementId p, ElementId q) const;
+    /// What of an element lies before a plane.
     struct Part {
-        Plane plane;  ///< What it is before.
+        Plane plane;
         std::vector<Point> outline;
         Point middle;
         double area = 0, radius = 0;
