@@ -66,5 +66,27 @@ TEST(Hierarchy, FindsWhatOnlySeveralReflectionsLight) {
     }
 }
 
+class CollectsWarnings final : public Progress {
+  public:
+    void warn(std::string_view message) override { found.emplace_back(message); }
+    std::vector<std::string> found;
+};
+
+TEST(Hierarchy, TakesClustersWhereLinksBetweenAllPairsWouldOutgrowMemory) {
+    const Scene scene = built_scene("complex", {{"m", "36"}});  // 977 polygons: 72 MB
+    const StopRequest never;
+    SolveOptions options{.method = Method::hierarchical, .error = 0.05};
+    options.clusters = false;
+    for (const std::size_t megabytes : {60, 4000}) {
+        options.memory_limit_bytes = megabytes * 1'000'000;
+        CollectsWarnings warnings;
+        const Result<Solution> solution = solve_scene(scene, options, warnings, never);
+        ASSERT_TRUE(solution);
+        ASSERT_EQ(warnings.found.size(), megabytes == 60 ? 1 : 0);
+        for (const std::string& warning : warnings.found)
+            EXPECT_NE(warning.find("clusters are used"), std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace exitance
