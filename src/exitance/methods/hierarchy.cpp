@@ -31,21 +31,14 @@ bool is_polynomial(HierarchyBasis kind) {
     return kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
 }
 
-/// Would links between all pieces that see each other, about half of the pairs, take more than all may take?
-bool outgrow_memory(std::size_t pieces, const SolveOptions& options) {
-    constexpr double see_each_other = 0.5;
-    const double pairs = see_each_other * std::pow(static_cast<double>(pieces), 2);
-    return options.memory_limit_bytes &&
-           pairs * LinkRefiner::bytes_a_link > static_cast<double>(*options.memory_limit_bytes);
-}
-
 /// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error. They are taken
 /// in any case where there is no room for links without.
 bool wants_clusters(const MethodInput& input) {
     constexpr std::size_t many_pieces = 500;
     const SolveOptions& o = input.options;
     const std::size_t pieces = input.direct.tree.roots().size();
-    return o.clusters.value_or(pieces > many_pieces && o.oracle == LinkOracle::transport) || outgrow_memory(pieces, o);
+    return o.clusters.value_or(pieces > many_pieces && o.oracle == LinkOracle::transport) ||
+           links_outgrow_memory(pieces, o);
 }
 
 /// Clusters look at elements before links come to them; and from the means of flatlets nothing below is read.
@@ -507,6 +500,13 @@ bool asks_for_judged_links(const SolveOptions& o) {
 }
 
 }  // namespace
+
+bool links_outgrow_memory(std::size_t pieces, const SolveOptions& options) {
+    constexpr double see_each_other = 0.5;
+    const double pairs = see_each_other * std::pow(static_cast<double>(pieces), 2);
+    return options.memory_limit_bytes &&
+           pairs * LinkRefiner::bytes_a_link > static_cast<double>(*options.memory_limit_bytes);
+}
 
 GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind) {
     if (!asks_for_judged_links(input.options))

@@ -20,4 +20,7 @@ GlobalLight solve_hierarchy(const MethodInput& input, HierarchyBasis kind);
 /// or gathered, by the same rule. O(leaves^2). Source: [Zatz93].
 GlobalLight solve_galerkin(const MethodInput& input, HierarchyBasis kind);
 
+/// Would links between all pieces that see each other, about half of the pairs, take more than `--memory-limit`?
+bool links_outgrow_memory(std::size_t pieces, const SolveOptions& options);
+
 }  // namespace exitance

@@ -66,25 +66,12 @@ TEST(Hierarchy, FindsWhatOnlySeveralReflectionsLight) {
     }
 }
 
-class CollectsWarnings final : public Progress {
-  public:
-    void warn(std::string_view message) override { found.emplace_back(message); }
-    std::vector<std::string> found;
-};
-
-TEST(Hierarchy, TakesClustersWhereLinksBetweenAllPairsWouldOutgrowMemory) {
-    const StopRequest never;
-    SolveOptions options{.method = Method::hierarchical, .error = 0.05};
-    options.clusters = false;
-    options.memory_limit_bytes = 780'000'000;  // 3,245 polygons want 790 MB, 17 of them next to nothing
-    for (const bool large : {true, false}) {
-        CollectsWarnings warnings;
-        const Scene scene = large ? built_scene("complex", {{"m", "120"}}) : built_scene("cornell");
-        ASSERT_TRUE(solve_scene(scene, options, warnings, never));
-        ASSERT_EQ(warnings.found.size(), large ? 1 : 0);
-        for (const std::string& warning : warnings.found)
-            EXPECT_NE(warning.find("clusters are used"), std::string::npos);
-    }
+TEST(Hierarchy, KnowsWhereLinksBetweenAllPairsOutgrowMemory) {
+    SolveOptions options;
+    EXPECT_FALSE(links_outgrow_memory(100'000, options)) << "no limit is given";
+    options.memory_limit_bytes = 300'000'000;
+    EXPECT_FALSE(links_outgrow_memory(977, options));   // 72 MB
+    EXPECT_TRUE(links_outgrow_memory(5'405, options));  // 2.2 GB
 }
 
 }  // namespace
