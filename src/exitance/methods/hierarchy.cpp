@@ -31,14 +31,11 @@ bool is_polynomial(HierarchyBasis kind) {
     return kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
 }
 
-/// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error. They are taken
-/// in any case where there is no room for links without.
+/// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error.
 bool wants_clusters(const MethodInput& input) {
     constexpr std::size_t many_pieces = 500;
     const SolveOptions& o = input.options;
-    const std::size_t pieces = input.direct.tree.roots().size();
-    return o.clusters.value_or(pieces > many_pieces && o.oracle == LinkOracle::transport) ||
-           links_outgrow_memory(pieces, o);
+    return o.clusters.value_or(input.direct.tree.roots().size() > many_pieces && o.oracle == LinkOracle::transport);
 }
 
 /// Clusters look at elements before links come to them; and from the means of flatlets nothing below is read.
@@ -163,11 +160,6 @@ class Hierarchy {
 
   private:
     void make_clusters() {
-        if (input_.options.clusters == false && !input_.may_give_up)
-            input_.progress.warn(
-                fmt::format("links between all pairs of {} polygons would outgrow --memory-limit: "
-                            "clusters are used",
-                            light_.tree.roots().size()));
         const Rooms rooms = find_rooms(input_.stage, light_.tree, input_.options.seed);
         light_.rays += rooms.rays;
         clusters_.emplace(light_.tree, rooms.of_root);

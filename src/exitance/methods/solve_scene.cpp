@@ -7,6 +7,7 @@
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/choice.hpp"
+#include "exitance/methods/hierarchy.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light_functions.hpp"
 #include "exitance/methods/memory_plan.hpp"
@@ -56,6 +57,11 @@ class Solver {
             warn(fmt::format("--importance steers links, of which the method {} has none", statistics().method));
         if (options.oracle != LinkOracle::transport && !has_links_)
             warn(fmt::format("--oracle judges links, of which the method {} has none", statistics().method));
+        if (has_links_ && options.clusters == false && links_outgrow_memory(stage_.pieces.size(), options)) {
+            warn(fmt::format("links between all pairs of {} polygons would outgrow --memory-limit: clusters are used",
+                             stage_.pieces.size()));
+            options_.clusters = true;
+        }
         statistics().converged = true;
         solution_.indirect = dark(stage_);
         // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
