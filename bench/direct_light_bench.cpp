@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "exitance/core/random.hpp"
+#include "exitance/direct/direct_light.hpp"
 #include "exitance/geometry/triangulation.hpp"
-#include "exitance/scene/generate.hpp"
-#include "exitance/transport/direct_light.hpp"
-#include "exitance/transport/visibility.hpp"
+#include "exitance/scene/families/generate.hpp"
+#include "exitance/visibility/rays.hpp"
 
 // Exact direct light and packets of rays in rooms full of chairs: time a point (or ray) at three sizes, and for direct
 // light the largest difference between its two ways, subtraction and edge sums.

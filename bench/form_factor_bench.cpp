@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "exitance/core/random.hpp"
-#include "exitance/transport/form_factor.hpp"
-#include "exitance/transport/form_factor_batch.hpp"
-#include "exitance/transport/pair_form_factor.hpp"
+#include "exitance/form_factors/pair_form_factor.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/form_factors/point_to_polygon_batch.hpp"
 
 // Form factors, nothing in between: time an entry, and the largest relative error against the scalar contour sum.
 namespace {

@@ -5,8 +5,8 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
+#include "exitance/links/links.hpp"
 #include "exitance/scene/scene.hpp"
-#include "exitance/transport/links.hpp"
 
 namespace exitance {
 namespace {

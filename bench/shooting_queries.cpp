@@ -17,7 +17,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/geometry/triangulation.hpp"
-#include "exitance/io/scene_file.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 

@@ -13,9 +13,9 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
-#include "exitance/io/scene_file.hpp"
-#include "exitance/transport/view_factors.hpp"
-#include "exitance/transport/visible_part.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/view_factors/view_factors.hpp"
+#include "exitance/visibility/visible_part.hpp"
 
 namespace {
 

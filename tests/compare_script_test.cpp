@@ -3,9 +3,9 @@
 #include <fstream>
 
 #include "exitance/core/random.hpp"
-#include "exitance/io/probe_file.hpp"
-#include "exitance/io/scene_file.hpp"
-#include "exitance/reconstruct/compare.hpp"
+#include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/scene/locator.hpp"
 #include "support/run.hpp"
 

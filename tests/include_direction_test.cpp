@@ -14,9 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders in the order in which they may include: each includes itself and those before it.
-const std::vector<std::string> order{"core",  "geometry",    "scene",   "mesh", "basis", "transport",
-                                     "solve", "reconstruct", "methods", "io",   "cli"};
+/// Folders in the order in which they may include: each includes itself, its own subfolders and those before it.
+const std::vector<std::string> order{"core",       "geometry",     "joining",     "scene",       "form_factors",
+                                     "visibility", "mesh",         "basis",       "direct",      "transport",
+                                     "links",      "view_factors", "solve",       "reconstruct", "accuracy",
+                                     "methods",    "io",           "experiments", "cli"};
 
 /// The files that may include a third-party library, by the first folder or the name of its headers.
 struct Door {
@@ -25,17 +27,19 @@ struct Door {
     std::set<std::string> files;
 };
 const std::vector<Door> doors{
-    {"Embree", std::regex("embree3?/.*"), {"transport/embree_visibility.cpp"}},
+    {"Embree", std::regex("embree3?/.*"), {"visibility/embree_rays.cpp"}},
     {"CGAL", std::regex("CGAL/.*"), {"mesh/planar_subdivision.cpp"}},
     {"oneTBB", std::regex("(tbb|oneapi)/.*"), {"core/parallel.cpp"}},
     {"HDF5",
      std::regex("hdf5.*|H5.*"),
-     {"io/hdf5_library.cpp", "io/hdf5_reader.cpp", "io/hdf5_rehearsal.cpp", "io/hdf5_writer.cpp"}},
-    {"libpng", std::regex("png\\.h"), {"io/png.cpp"}},
-    {"libjpeg", std::regex("jpeglib\\.h"), {"io/jpeg_mean.cpp"}},
-    {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/gltf.cpp"}},
+     {"io/solution/hdf5_library.cpp", "io/solution/hdf5_reader.cpp", "io/solution/hdf5_rehearsal.cpp",
+      "io/solution/hdf5_writer.cpp"}},
+    {"libpng", std::regex("png\\.h"), {"io/pictures/png.cpp"}},
+    {"libjpeg", std::regex("jpeglib\\.h"), {"io/scenes/jpeg_mean.cpp"}},
+    {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf.cpp"}},
+    {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/arguments.cpp"}},
-    {"nlohmann-json", std::regex("nlohmann/.*"), {"cli/json_output.cpp", "io/json.cpp"}},
+    {"nlohmann-json", std::regex("nlohmann/.*"), {"cli/json_output.cpp"}},
 };
 
 struct Include {

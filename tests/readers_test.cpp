@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "exitance/io/export.hpp"
-#include "exitance/io/solution_file.hpp"
+#include "exitance/io/export/export.hpp"
+#include "exitance/io/solution/solution_file.hpp"
 #include "support/run.hpp"
 #include "support/sample_solution.hpp"
 

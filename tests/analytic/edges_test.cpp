@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "exitance/io/probe_file.hpp"
-#include "exitance/io/scene_file.hpp"
+#include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "support/solved.hpp"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/small_scene.hpp"
-#include "exitance/io/solution_file.hpp"
+#include "exitance/io/solution/solution_file.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance::test {

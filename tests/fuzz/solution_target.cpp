@@ -5,9 +5,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "exitance/io/hdf5_checksum.hpp"
-#include "exitance/io/hdf5_rehearsal.hpp"
-#include "exitance/io/solution_file.hpp"
+#include "exitance/io/solution/hdf5_checksum.hpp"
+#include "exitance/io/solution/hdf5_rehearsal.hpp"
+#include "exitance/io/solution/solution_file.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/reconstruct/surface_light.hpp"
 #include "fuzz/target.hpp"

@@ -1,9 +1,9 @@
 #include <array>
 #include <cstring>
 
-#include "exitance/io/mtl.hpp"
-#include "exitance/io/probe_file.hpp"
-#include "exitance/io/scene_file.hpp"
+#include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/scenes/mtl.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "fuzz/solution_target.hpp"
 #include "fuzz/target.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/transport/convex_blockers.hpp"
+#include "exitance/visibility/convex_blockers.hpp"
 
 namespace exitance::test {
 

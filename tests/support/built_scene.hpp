@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "exitance/scene/generate.hpp"
+#include "exitance/scene/families/generate.hpp"
 
 namespace exitance {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/transport/link_sites.hpp"
+#include "exitance/links/link_sites.hpp"
 
 namespace exitance {
 

@@ -9,7 +9,8 @@
 namespace exitance {
 
 /// A room of 2 m x 1 m x 1 m: its floor cut into two faces, a luminous strip in its ceiling, and a free-standing
-/// triangle seen from both sides; a spot, parallel light and a camera. Eleven faces on lines 10 to 20, four materials, three groups.
+/// triangle seen from both sides; a spot, parallel light and a camera. Eleven faces on lines 10 to 20, four materials,
+/// three groups.
 inline Scene sample_scene() {
     SceneDescription d;
     d.file = "sample room.obj";

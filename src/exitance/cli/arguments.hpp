@@ -8,11 +8,11 @@
 
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/core/result.hpp"
-#include "exitance/io/false_colour.hpp"
-#include "exitance/io/scene_file.hpp"
-#include "exitance/io/tone_map.hpp"
-#include "exitance/methods/solve_options.hpp"
+#include "exitance/io/pictures/false_colour.hpp"
+#include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
 

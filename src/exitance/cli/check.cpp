@@ -2,9 +2,9 @@
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/io/check_picture.hpp"
-#include "exitance/io/scene_file.hpp"
-#include "exitance/io/whole_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/pictures/check_picture.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/scene/findings.hpp"
 #include "exitance/scene/shell.hpp"
 

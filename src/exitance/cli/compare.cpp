@@ -4,10 +4,10 @@
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/io/probe_file.hpp"
-#include "exitance/io/solution_file.hpp"
-#include "exitance/reconstruct/area_samples.hpp"
-#include "exitance/reconstruct/compare.hpp"
+#include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/reconstruct/error/area_samples.hpp"
+#include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 
 namespace exitance {

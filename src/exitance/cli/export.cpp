@@ -1,8 +1,8 @@
-#include "exitance/io/export.hpp"
+#include "exitance/io/export/export.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/io/export_links.hpp"
-#include "exitance/io/solution_file.hpp"
+#include "exitance/io/export/export_links.hpp"
+#include "exitance/io/solution/solution_file.hpp"
 
 namespace exitance {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "exitance/cli/verbs.hpp"
-#include "exitance/io/obj_writer.hpp"
-#include "exitance/scene/generate.hpp"
+#include "exitance/io/scenes/obj_writer.hpp"
+#include "exitance/scene/families/generate.hpp"
 
 namespace exitance {
 namespace {

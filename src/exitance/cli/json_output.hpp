@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "exitance/methods/forecast.hpp"
-#include "exitance/methods/solve_options.hpp"
-#include "exitance/reconstruct/compare.hpp"
+#include "exitance/methods/plan/forecast.hpp"
+#include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/reconstruct/solution.hpp"
+#include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
 

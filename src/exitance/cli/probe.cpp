@@ -3,9 +3,9 @@
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/io/probe_file.hpp"
-#include "exitance/io/solution_file.hpp"
-#include "exitance/reconstruct/path_reference.hpp"
+#include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/reconstruct/error/path_reference.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/scene/locator.hpp"
 

@@ -8,12 +8,12 @@
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/io/display.hpp"
-#include "exitance/io/isolux.hpp"
-#include "exitance/io/linear_image.hpp"
-#include "exitance/io/solution_file.hpp"
-#include "exitance/io/whole_file.hpp"
-#include "exitance/reconstruct/automatic_camera.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/pictures/display.hpp"
+#include "exitance/io/pictures/isolux.hpp"
+#include "exitance/io/pictures/linear_image.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/reconstruct/pictures/automatic_camera.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/methods/forecast.hpp"
+#include "exitance/methods/plan/forecast.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
 namespace exitance {

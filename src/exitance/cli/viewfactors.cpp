@@ -6,9 +6,9 @@
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/io/atomic_file.hpp"
-#include "exitance/io/scene_file.hpp"
-#include "exitance/io/view_factor_file.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/view_factor_file.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 
 namespace exitance {
 namespace {

@@ -4,8 +4,7 @@ namespace exitance {
 
 Vec3 area_vector(std::span<const Point> outline) {
     Vec3 sum;
-    for (std::size_t i = 2; i < outline.size(); ++i)
-        sum += cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
+    for (std::size_t i = 2; i < outline.size(); ++i) sum += cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
     return 0.5 * sum;
 }
 

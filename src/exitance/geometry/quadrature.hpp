@@ -28,8 +28,8 @@ struct PlanarNode {
 /// n x n Gauss points of the unit square, weights summing to 1, 1 <= n <= 32. Exact to degree 2n - 1 in each direction.
 std::span<const PlanarNode> square_rule(int n);
 
-/// 16 points of the unit square, weights summing to 1, exact to total degree 8; none of fewer is known [Wissmann86]. No two
-/// of them stand in line, so that they see what 4 x 4 Gauss points are blind to: Legendre's polynomial of degree 4,
+/// 16 points of the unit square, weights summing to 1, exact to total degree 8; none of fewer is known [Wissmann86]. No
+/// two of them stand in line, so that they see what 4 x 4 Gauss points are blind to: Legendre's polynomial of degree 4,
 /// which vanishes at all of those, or a shadow no wider than the space between two rows.
 std::span<const PlanarNode> scattered_square_rule();
 

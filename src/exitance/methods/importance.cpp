@@ -1,9 +1,9 @@
 #include "exitance/methods/importance.hpp"
 
 #include "exitance/core/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/scene/locator.hpp"
-#include "exitance/transport/hemisphere.hpp"
 
 namespace exitance {
 namespace {

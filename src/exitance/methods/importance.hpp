@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "exitance/methods/solve_options.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/solve/global_light.hpp"
+#include "exitance/solve/solve_options.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

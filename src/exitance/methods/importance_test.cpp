@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/path_reference.hpp"
+#include "exitance/reconstruct/error/path_reference.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "support/test_scenes.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "exitance/links/ray_links.hpp"
 #include "exitance/methods/constant_elements.hpp"
 #include "exitance/transport/open_share.hpp"
-#include "exitance/transport/ray_links.hpp"
 
 namespace exitance {
 namespace {

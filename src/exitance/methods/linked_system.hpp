@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "exitance/links/cluster_links.hpp"
+#include "exitance/links/links.hpp"
 #include "exitance/methods/methods.hpp"
-#include "exitance/transport/cluster_links.hpp"
-#include "exitance/transport/links.hpp"
 
 namespace exitance {
 

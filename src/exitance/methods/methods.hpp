@@ -1,7 +1,7 @@
 #pragma once
 
+#include "exitance/accuracy/accuracy.hpp"
 #include "exitance/core/checkpoint.hpp"
-#include "exitance/methods/accuracy.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/stage.hpp"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "exitance/methods/light_functions.hpp"
+#include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/methods.hpp"
 
 namespace exitance {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/reconstruct/certificate.hpp"
+#include "exitance/reconstruct/error/certificate.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/solve/global_light.hpp"
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "exitance/core/checkpoint.hpp"
-#include "exitance/methods/solve_options.hpp"
 #include "exitance/reconstruct/solution.hpp"
+#include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "exitance/core/parallel.hpp"
-#include "exitance/reconstruct/path_reference.hpp"
+#include "exitance/reconstruct/error/path_reference.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"

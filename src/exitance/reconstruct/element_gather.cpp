@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "exitance/transport/form_factor.hpp"
-#include "exitance/transport/quad_lanes.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/form_factors/quad_lanes.hpp"
 
 namespace exitance {
 namespace {

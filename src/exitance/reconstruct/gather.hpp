@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/transport/hemisphere.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "exitance/core/random.hpp"
-#include "exitance/transport/form_factor.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
 #include "support/built_scene.hpp"
 #include "support/test_scenes.hpp"
 

@@ -3,10 +3,10 @@
 #include <memory>
 #include <span>
 
+#include "exitance/direct/direct_light.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/scene/locator.hpp"
-#include "exitance/transport/direct_light.hpp"
 
 namespace exitance {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/transport/kept_link.hpp"
+#include "exitance/links/kept_link.hpp"
 
 namespace exitance {
 

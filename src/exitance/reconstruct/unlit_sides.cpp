@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "exitance/core/parallel.hpp"
-#include "exitance/reconstruct/path_tracer.hpp"
+#include "exitance/reconstruct/error/path_tracer.hpp"
 #include "exitance/scene/other_side.hpp"
 
 namespace exitance {

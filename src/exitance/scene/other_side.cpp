@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "exitance/core/random.hpp"
-#include "exitance/scene/hash_chains.hpp"
+#include "exitance/joining/hash_chains.hpp"
 
 namespace exitance {
 namespace {

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "exitance/scene/cell_keys.hpp"
-#include "exitance/scene/common_area.hpp"
+#include "exitance/joining/cell_keys.hpp"
+#include "exitance/joining/common_area.hpp"
 
 namespace exitance {
 namespace {

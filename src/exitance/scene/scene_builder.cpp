@@ -8,14 +8,14 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/geometry/triangulation.hpp"
-#include "exitance/scene/border.hpp"
+#include "exitance/joining/border.hpp"
+#include "exitance/joining/hash_chains.hpp"
+#include "exitance/joining/outline.hpp"
+#include "exitance/joining/regions.hpp"
+#include "exitance/joining/weld.hpp"
 #include "exitance/scene/findings.hpp"
-#include "exitance/scene/hash_chains.hpp"
-#include "exitance/scene/outline.hpp"
 #include "exitance/scene/overlaps.hpp"
-#include "exitance/scene/regions.hpp"
 #include "exitance/scene/scene.hpp"
-#include "exitance/scene/weld.hpp"
 
 namespace exitance {
 

@@ -7,8 +7,8 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/geometry/bvh.hpp"
-#include "exitance/scene/hash_chains.hpp"
-#include "exitance/scene/weld.hpp"
+#include "exitance/joining/hash_chains.hpp"
+#include "exitance/joining/weld.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
-#include "exitance/transport/hemisphere.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 
 namespace exitance {
 namespace {

@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
+#include "exitance/links/kept_link.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
 #include "exitance/solve/relaxation.hpp"
-#include "exitance/transport/kept_link.hpp"
 
 namespace exitance {
 

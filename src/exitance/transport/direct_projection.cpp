@@ -2,8 +2,8 @@
 
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/direct/sampled_light.hpp"
 #include "exitance/mesh/adaptive.hpp"
-#include "exitance/transport/sampled_light.hpp"
 
 namespace exitance {
 namespace {

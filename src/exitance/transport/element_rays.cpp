@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/transport/hemisphere.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 
 namespace exitance {
 

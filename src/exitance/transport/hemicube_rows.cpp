@@ -4,7 +4,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
-#include "exitance/transport/form_factor.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {
 

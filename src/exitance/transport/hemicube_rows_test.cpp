@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "exitance/core/parallel.hpp"
-#include "exitance/transport/form_factor.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
 #include "support/built_scene.hpp"
 #include "support/test_scenes.hpp"
 

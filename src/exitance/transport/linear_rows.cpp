@@ -2,7 +2,7 @@
 
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/transport/hemisphere.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 
 namespace exitance {
 namespace {

@@ -7,7 +7,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/transport/element_rays.hpp"
-#include "exitance/transport/shaft.hpp"
+#include "exitance/visibility/shaft.hpp"
 
 namespace exitance {
 namespace {

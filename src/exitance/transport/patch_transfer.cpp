@@ -4,8 +4,8 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
-#include "exitance/transport/form_factor.hpp"
-#include "exitance/transport/hemisphere.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {
 namespace {

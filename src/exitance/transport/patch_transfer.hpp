@@ -9,7 +9,7 @@
 
 #include "exitance/core/groups.hpp"
 #include "exitance/core/progress.hpp"
-#include "exitance/transport/form_factor_batch.hpp"
+#include "exitance/form_factors/point_to_polygon_batch.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/transport/transport_operator.hpp"
 

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "exitance/direct/direct_light.hpp"
 #include "exitance/mesh/contact_lines.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
-#include "exitance/transport/direct_light.hpp"
-#include "exitance/transport/occluders.hpp"
-#include "exitance/transport/visibility.hpp"
+#include "exitance/visibility/occluders.hpp"
+#include "exitance/visibility/rays.hpp"
 
 namespace exitance {
 

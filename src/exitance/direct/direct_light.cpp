@@ -1,0 +1,167 @@
+#include "exitance/direct/direct_light.hpp"
+
+#include <algorithm>
+
+#include "exitance/geometry/polygon.hpp"
+
+namespace exitance {
+namespace {
+
+/// Can the emitter's front and the receiver's upper side meet at all? Cheap; errs to yes.
+bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rounding) {
+    return emitter.plane.signed_distance(at.x) > 0 && dot(at.n, emitter.centre - at.x) > -emitter.radius - rounding;
+}
+
+}  // namespace
+
+void ReceiverLight::clear() {
+    sources.clear(), beams.clear(), candidates.clear();
+    open.clear(), open_light.clear();
+}
+
+DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
+    : occluders_(&occluders), beams_(scene.lights(), occluders) {
+    for (RegionId r : scene.regions().ids()) {
+        if (!scene.material(r).emits()) continue;
+        const Region& region = scene.regions()[r];
+        Emitter emitter{r, scene.material(r).exitance, region.plane, {}, 0, occluders.pieces(r)};
+        Box box;
+        for (PieceId p : emitter.pieces)
+            for (const Point& corner : occluders.corners(p)) box.add(corner);
+        emitter.centre = box.centre();
+        for (PieceId p : emitter.pieces)
+            for (const Point& corner : occluders.corners(p))
+                emitter.radius = std::max(emitter.radius, norm(corner - emitter.centre));
+        emitters_.push_back(emitter);
+    }
+}
+
+double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const {
+    if (emitter.region == at.own || !may_see(at, emitter, occluders_->rounding())) return 0;
+    double sum = 0;
+    for (PieceId piece : emitter.pieces) sum += visible_form_factor(*occluders_, at, piece, scratch);
+    return sum;
+}
+
+/// Points come from files and from rays, off their plane by more than rounding: there the other side of a sheet would
+/// stand between them and all light.
+Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) const {
+    if (own.is_none()) return {x, n, own};
+    const Plane& plane = occluders_->scene().regions()[own].plane;
+    return {x - plane.signed_distance(x) * plane.n, n, own};
+}
+
+Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
+    const Receiver at = receiver(x, n, own);
+    Spectrum sum;
+    for (const Emitter& emitter : emitters_) {
+        const double f = form_factor(at, emitter, scratch);
+        if (f > 0) sum += f * emitter.exitance;
+    }
+    return beams_.empty() ? sum : sum + beams_.irradiance(at);
+}
+
+void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
+                          Workspace& scratch) const {
+    light.n = n, light.own = own;
+    light.clear();
+    const Point middle = centroid(receiver);
+    double radius = occluders_->rounding();
+    for (const Point& p : receiver) radius = std::max(radius, norm(p - middle));
+    for (std::uint32_t e = 0; e < emitters_.size(); ++e) {
+        const Emitter& emitter = emitters_[e];
+        if (emitter.region == own || emitter.plane.signed_distance(middle) <= -radius ||
+            dot(n, emitter.centre - middle) <= -emitter.radius)
+            continue;
+        for (PieceId piece : emitter.pieces) look_at({e, piece}, receiver, light, scratch);
+    }
+    if (!beams_.empty()) beams_.prepare(receiver, n, own, light.beams, light.candidates);
+}
+
+void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own,
+                          std::span<const SourceName> sources, ReceiverLight& light, Workspace& scratch) const {
+    light.n = n, light.own = own;
+    light.clear();
+    for (const SourceName& source : sources) look_at(source, receiver, light, scratch);
+}
+
+void DirectLight::look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
+                          Workspace& scratch) const {
+    const auto& [e, piece] = source;
+    const Emitter& emitter = emitters_[e];
+    if (occluders_->has_nothing_inside()) {
+        if (face_each_other({light.n, dot(light.n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
+            add_open(e, piece, light);
+        return;
+    }
+    scratch.shaft.set(*occluders_, {receiver, light.n, light.own},
+                      {occluders_->corners(piece), emitter.plane.n, emitter.region});
+    PieceId& likely = scratch.last_blocker(*occluders_, piece);
+    if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) return;
+    add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
+    if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
+}
+
+void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
+                          Workspace& scratch) const {
+    light.n = whole.n, light.own = whole.own;
+    light.clear();
+    for (const ReceiverLight::Source& source : whole.sources) {
+        if (source.count == 0) {
+            add_open(source.emitter, source.piece, light);
+            continue;
+        }
+        const Emitter& emitter = emitters_[source.emitter];
+        scratch.shaft.set(*occluders_, {receiver, whole.n, whole.own},
+                          {occluders_->corners(source.piece), emitter.plane.n, emitter.region});
+        const auto from = std::span(whole.candidates).subspan(source.first, source.count);
+        add_source(source.emitter, source.piece, scratch.shaft.classify(from, scratch.candidates), light, scratch);
+    }
+    if (!whole.beams.empty())
+        beams_.prepare(receiver, whole.n, whole.own, whole.beams, whole.candidates, light.beams, light.candidates);
+}
+
+bool DirectLight::face_each_other(const Plane& receiver_plane, std::span<const Point> receiver,
+                                  const Plane& source_plane, std::span<const Point> source) const {
+    const auto rises_over = [&](std::span<const Point> points, const Plane& plane) {
+        return std::any_of(points.begin(), points.end(),
+                           [&](const Point& p) { return plane.signed_distance(p) > occluders_->rounding(); });
+    };
+    return rises_over(receiver, source_plane) && rises_over(source, receiver_plane);
+}
+
+void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light,
+                             Workspace& scratch) const {
+    if (view == View::none) return;
+    if (view == View::open) return add_open(emitter, piece, light);
+    light.sources.push_back({emitter, piece, static_cast<std::uint32_t>(light.candidates.size()),
+                             static_cast<std::uint32_t>(scratch.candidates.size())});
+    light.candidates.insert(light.candidates.end(), scratch.candidates.begin(), scratch.candidates.end());
+}
+
+void DirectLight::add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const {
+    const std::span<const Point> corners = occluders_->corners(piece);
+    const bool in_batch = corners.size() <= 4;
+    light.sources.push_back({emitter, piece, 0, 0, in_batch});
+    if (!in_batch) return;
+    light.open.add({corners[0], corners[1], corners[2], corners[corners.size() - 1]});
+    light.open_light.push_back(emitters_[emitter].exitance);
+}
+
+Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
+                                 Spectrum* parallel) const {
+    const Receiver at = receiver(x, light.n, light.own);
+    Spectrum sum;
+    scratch.factors.resize(light.open.size());
+    point_to_quads(at.x, light.n, light.open, scratch.factors);
+    for (std::size_t i = 0; i < scratch.factors.size(); ++i) sum += scratch.factors[i] * light.open_light[i];
+    for (const ReceiverLight::Source& source : light.sources) {
+        if (source.in_batch) continue;
+        const auto candidates = std::span(light.candidates).subspan(source.first, source.count);
+        const double f = visible_form_factor(*occluders_, at, source.piece, candidates, scratch);
+        if (f > 0) sum += f * emitters_[source.emitter].exitance;
+    }
+    return light.beams.empty() ? sum : sum + beams_.irradiance(at, light.beams, light.candidates, parallel);
+}
+
+}  // namespace exitance

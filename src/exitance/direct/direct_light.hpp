@@ -1,0 +1,109 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/direct/beams.hpp"
+#include "exitance/form_factors/point_to_polygon_batch.hpp"
+#include "exitance/scene/scene.hpp"
+#include "exitance/visibility/occluders.hpp"
+#include "exitance/visibility/shaft.hpp"
+#include "exitance/visibility/visible_part.hpp"
+
+namespace exitance {
+
+/// What is known about the emitters from everywhere on one convex part of a surface: which of them can be seen, and
+/// what can stand in between. Made once a part, it saves every point of it the search of the tree.
+struct ReceiverLight {
+    struct Source {
+        std::uint32_t emitter = 0;
+        PieceId piece;
+        std::uint32_t first = 0, count = 0;  ///< Of `candidates`; none: all of the piece is visible.
+        bool in_batch = false;               ///< One of `open`.
+    };
+    Normal n;
+    RegionId own;
+    std::vector<Source> sources;  ///< Those that are not certainly hidden.
+    std::vector<Beam> beams;      ///< Of lights without extent, likewise.
+    std::vector<PieceId> candidates;
+    QuadBatch open;                    ///< Sources of four corners or less that are all visible, in their order,
+    std::vector<Spectrum> open_light;  ///< and their exitances.
+
+    void clear();
+    bool is_dark() const { return sources.empty() && beams.empty(); }  ///< No light from anywhere, certainly.
+    bool is_unshadowed() const { return candidates.empty(); }  ///< Smooth: no shadow edge crosses it, certainly.
+};
+
+/// The light that arrives straight from the emitters and from lights without extent, exact at every point.
+class DirectLight {
+  public:
+    using Workspace = VisibilityWorkspace;
+
+    /// Both must outlive it.
+    DirectLight(const Scene& scene, const Occluders& occluders);
+
+    /// Irradiance (W/m^2) at x on a surface of normal n:
+    ///
+    ///     E = sum over emitters s of  M_s F(x, visible part of s)
+    ///
+    /// and what lights without extent bring (beams.hpp). Exact but for rounding (1e-12 relative where F is not tiny). x
+    /// lies on region `own`, into whose plane it is moved, or own is none. A point that another surface covers is for
+    /// the caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
+    Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
+
+    /// A convex piece of an emitter.
+    struct SourceName {
+        std::uint32_t emitter = 0;
+        PieceId piece;
+    };
+
+    /// Looks at the emitters from a convex polygon of region `own` (metres, counter-clockwise about n); fills `light`,
+    /// whose memory is used again. About 1-2 microseconds an emitter, and what the shaft meets of the tree.
+    void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
+                 Workspace& scratch) const;
+
+    /// The same for these sources alone, and no beams.
+    void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, std::span<const SourceName> sources,
+                 ReceiverLight& light, Workspace& scratch) const;
+
+    /// The same for a part of the polygon that `whole` was made for: only what reached into its shafts is looked at.
+    void prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
+                 Workspace& scratch) const;
+
+    /// The irradiance at a point of the polygon that `light` was made for: as above, up to rounding. What comes from
+    /// parallel light is added to `parallel`, if given.
+    Spectrum irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
+                        Spectrum* parallel = nullptr) const;
+
+    const Beams& beams() const { return beams_; }
+
+    /// An emitting region: its convex pieces, and a ball around it for quick rejection.
+    struct Emitter {
+        RegionId region;
+        Spectrum exitance;  ///< W/m^2
+        Plane plane;
+        Point centre;
+        double radius = 0;  ///< m
+        IdRange<PieceId> pieces;
+    };
+    const std::vector<Emitter>& emitters() const { return emitters_; }
+    const Occluders& occluders() const { return *occluders_; }
+
+    /// Form factor from a receiver to the visible part of an emitter.
+    double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
+
+  private:
+    Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
+    void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
+                 Workspace& scratch) const;
+    void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch) const;
+    void add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const;
+    /// Does any of either polygon rise over the plane of the other?
+    bool face_each_other(const Plane& receiver_plane, std::span<const Point> receiver, const Plane& source_plane,
+                         std::span<const Point> source) const;
+
+    const Occluders* occluders_;
+    std::vector<Emitter> emitters_;
+    Beams beams_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,173 @@
+#include "exitance/direct/sampled_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+#include <utility>
+
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/geometry/polygon.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr unsigned rays_for_sight = 16;  // an element
+
+/// A place of a convex polygon of that area (m^2) with uniform density, from two numbers in [0, 1).
+Point uniform_on(std::span<const Point> corners, double area_of_all, double s, double t) {
+    double rest = s * 2 * area_of_all;
+    for (std::size_t i = 2;; ++i) {
+        const Vec3 a = corners[i - 1] - corners[0], b = corners[i] - corners[0];
+        const double area = norm(cross(a, b));
+        if (rest < area || i + 1 == corners.size()) {
+            const Vec2 uv = uniform_in_shape(Patch::Shape::triangle, std::min(rest / area, 1.0), t);
+            return corners[0] + uv.x * a + uv.y * b;
+        }
+        rest -= area;
+    }
+}
+
+/// Deals a whole number of rays out to one source after the other, to each within one of what it should have, and as
+/// many in all as chance leaves open: where rays of like worth are counted, hardly any chance is left.
+class Dealer {
+  public:
+    /// `begin`: uniform in [0, 1).
+    explicit Dealer(double begin) : sum_(begin) {}
+    unsigned deal(double expected) {
+        const double before = std::floor(sum_);
+        sum_ += expected;
+        return static_cast<unsigned>(std::floor(sum_) - before);
+    }
+
+  private:
+    double sum_;
+};
+
+constexpr std::size_t quad = 4;  ///< Corners; a triangle repeats its last one.
+
+}  // namespace
+
+SampledLight::SampledLight(const DirectLight& direct, const RayTracer& tracer, std::uint64_t seed)
+    : direct_(direct), tracer_(tracer), seed_(seed) {
+    for (const DirectLight::Emitter& emitter : direct_.emitters())
+        for (PieceId piece : emitter.pieces) {
+            const std::span<const Point> corners = direct_.occluders().corners(piece);
+            quads_.add({corners[0], corners[1], corners[2], corners[std::min(corners.size(), quad) - 1]});
+            area_.push_back(norm(area_vector(corners)));
+        }
+    F_.resize(quads_.size());
+}
+
+void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, double radius) {
+    sources_.clear();
+    point_to_quads(x, n, quads_, F_);
+    double all = 0;
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < direct_.emitters().size(); ++i) {
+        const DirectLight::Emitter& emitter = direct_.emitters()[i];
+        const std::size_t first = std::exchange(next, next + emitter.pieces.size());
+        if (emitter.region == own || emitter.plane.signed_distance(x) <= 0 ||
+            dot(n, emitter.centre - x) <= -emitter.radius)
+            continue;
+        for (std::size_t k = 0; k < emitter.pieces.size(); ++k) {
+            const PieceId piece = emitter.pieces[k];
+            const std::span<const Point> corners = direct_.occluders().corners(piece);
+            const double F = corners.size() <= quad ? F_[first + k] : point_to_polygon(x, n, corners);
+            if (F <= 0) continue;
+            const double both = radius + emitter.radius;
+            const double near = std::min(1.0, both * both / squared_norm(emitter.centre - x));
+            sources_.push_back(
+                {{i, piece}, emitter.region, F, area_[first + k], F * emitter.exitance, 0, near, {}, 0, 0});
+            all += mean(sources_.back().light);
+        }
+    }
+    for (Source& source : sources_) source.share = mean(source.light) / all;
+}
+
+void SampledLight::add_rays(const ElementTree& tree, ElementId e, std::uint32_t s, unsigned rays, Purpose purpose) {
+    Source& source = sources_[s];
+    source.rays = rays, source.arrived = 0;
+    if (rays == 0) return;
+    const ScrambledSobol points(hash(seed_, static_cast<std::uint64_t>(Stream::direct), e.value,
+                                     source.name.piece.value, static_cast<std::uint64_t>(purpose)));
+    const RegionId own = tree.region(e);
+    const Normal& n = direct_.occluders().scene().regions()[own].plane.n;
+    const Plane& plane = direct_.emitters()[source.name.emitter].plane;
+    const std::span<const Point> corners = direct_.occluders().corners(source.name.piece);
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        const Point x = tree.patch(e).at(tree.uniform(e, points(i, 0), points(i, 1)));
+        const Point y = uniform_on(corners, source.area, points(i, 2), points(i, 3));
+        const Vec3 d = y - x;
+        const double above = dot(n, d), below = -dot(plane.n, d), squared = squared_norm(d);
+        if (above <= 0 || below <= 0) continue;
+        from_.push_back({x, own}), to_.push_back({y, source.region});
+        rays_.push_back({above * below / (pi * squared * squared), s});
+    }
+}
+
+void SampledLight::trace_rays() {
+    std::array<bool, most_rays + 1> blocked;
+    EXI_CHECK(rays_.size() <= blocked.size());
+    tracer_.occluded(from_, to_, std::span(blocked).first(rays_.size()));
+    for (std::size_t i = 0; i < rays_.size(); ++i)
+        if (!blocked[i]) sources_[rays_[i].source].arrived += rays_[i].kernel;
+    from_.clear(), to_.clear(), rays_.clear();
+}
+
+const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, ElementId e, const Spectrum& weight,
+                                                       double allowed, unsigned value_rays) {
+    EXI_CHECK(value_rays <= most_rays && rays_for_sight <= most_rays);
+    const RegionId own = tree.region(e);
+    const Point x = tree.patch(e).at(tree.centre(e));
+    double radius = 0;
+    for (const Point& corner : tree.outline(e)) radius = std::max(radius, norm(corner - x));
+    find_sources(x, direct_.occluders().scene().regions()[own].plane.n, own, radius);
+    // What is in sight is found by rays of its own: a source must not be thought weak because its light was missed.
+    RandomStream random(seed_, Stream::direct, e.value);
+    Dealer for_sight(random.uniform()), for_value(random.uniform());
+    for (std::uint32_t s = 0; s < sources_.size(); ++s)
+        add_rays(tree, e, s, for_sight.deal(rays_for_sight * sources_[s].share), Purpose::sight);
+    trace_rays();
+    for (Source& source : sources_)
+        if (source.arrived > 0) source.in_sight = (1 / std::min(1.0, rays_for_sight * source.share)) * source.light;
+    ranks_.clear();
+    for (std::uint32_t s = 0; s < sources_.size(); ++s)
+        ranks_.push_back({mean(sources_[s].in_sight), sources_[s].near * mean(sources_[s].light), s});
+    std::sort(ranks_.begin(), ranks_.end());
+    // Light that comes and goes between nothing and U misses in the mean square U^2 / 4 at most; as a rule half of
+    // that. Sources that no ray has found may still send theirs: then chance has it that rays of the second kind find
+    // it.
+    constexpr double misses = 0.125;
+    const auto power = [&](const Spectrum& light) { return squared(weight * light) / static_cast<double>(bands); };
+    estimate_.weak = Spectrum();
+    estimate_.misfit_squared = 0;
+    estimate_.strong.clear();
+    // Weak light counts as even over the element, and all of a source as in sight or not, where either may vary by
+    // (radii / distance)^2 of it: by half of what is allowed at most, whether a ray was drawn or not.
+    constexpr double askew = 4;
+    Spectrum in_sight, astray;
+    for (Source& source : sources_) source.arrived = 0;
+    for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {
+        const Spectrum in_sight_with = in_sight + sources_[s].in_sight;
+        const Spectrum astray_with = astray + sources_[s].near * sources_[s].light;
+        const double misfit = std::max(misses * power(in_sight_with), askew * power(astray_with));
+        if (misfit > allowed) {
+            estimate_.strong.push_back(sources_[s].name);
+            continue;
+        }
+        in_sight = in_sight_with, astray = astray_with;
+        estimate_.misfit_squared = misfit;
+        add_rays(tree, e, s, for_value.deal(value_rays * sources_[s].share), Purpose::value);
+    }
+    trace_rays();
+    for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {
+        const Source& source = sources_[s];
+        if (source.arrived == 0) continue;
+        const double expected = source.F * source.rays * std::min(1.0, value_rays * source.share);
+        estimate_.weak += source.area * source.arrived / expected * source.light;
+    }
+    return estimate_;
+}
+
+}  // namespace exitance

@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "exitance/io/export/export_formats.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/probe_file.hpp"
+#include "exitance/reconstruct/surface_light.hpp"
+
+namespace exitance {
+namespace {
+
+/// A text as a field of CSV: between quotation marks where it needs them.
+std::string field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + "\"";
+}
+
+}  // namespace
+
+Result<void> write_surface_table(const Solution& solution, const std::string& path) {
+    const Scene& scene = solution.scene;
+    const Field<SurfaceId, SurfaceLight> light = mean_light(solution);
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return file.error();
+    std::string row = "surface,line,group,material,area [m^2]";
+    for (const char* prefix : {",E_", ",B_"})
+        for (std::size_t b = 0; b < bands; ++b) row += prefix + band_name(b) + " [W/m^2]";
+    file->write(row + "\n");
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const Surface& face = scene.surfaces()[s];
+        row = fmt::format("{},{},{},{},{:.10g}", s.value, face.line, field(scene.groups()[face.group]),
+                          field(scene.material(s).name), face.area);
+        for (const Spectrum& mean : {light[s].irradiance, light[s].radiosity})
+            for (double value : mean.value) fmt::format_to(std::back_inserter(row), ",{:.10g}", value);
+        file->write(row + "\n");
+    }
+    return file->commit();
+}
+
+}  // namespace exitance

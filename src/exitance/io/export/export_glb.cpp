@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "exitance/io/export/conforming_mesh.hpp"
+#include "exitance/io/export/export_formats.hpp"
+#include "exitance/io/export/glb_container.hpp"
+#include "exitance/io/export/glb_nodes.hpp"
+#include "exitance/io/pictures/tone_map.hpp"
+
+namespace exitance {
+namespace {
+
+using Float3 = std::array<float, 3>;
+
+/// glTF has Y up where scenes have Z up.
+Float3 y_up(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)};
+}
+
+/// Polygons of one group and one material, as a range of all vertices and of all indices.
+struct Primitive {
+    std::size_t group = 0, material = 0;
+    std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
+    Float3 lo = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, hi = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+};
+
+/// The arrays of the binary chunk, and what they are divided into.
+struct Triangles {
+    std::vector<Float3> position, normal, radiosity, irradiance, colour;
+    std::vector<std::uint32_t> index;  ///< Counted from the first vertex of its primitive.
+    std::vector<Primitive> primitives;
+};
+
+Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
+    const ConformingMesh conforming = make_conforming(make_element_mesh(solution));
+    const ElementMesh& mesh = conforming.mesh;
+    std::vector<std::size_t> order(mesh.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto key = [&](std::size_t i) { return std::pair(mesh.group[i], mesh.material[i]); };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+
+    Triangles out;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const std::size_t i = order[k];
+        if (k == 0 || key(i) != key(order[k - 1]))
+            out.primitives.push_back({static_cast<std::size_t>(mesh.group[i]),
+                                      static_cast<std::size_t>(mesh.material[i]), out.position.size(), 0,
+                                      out.index.size(), 0});
+        Primitive& primitive = out.primitives.back();
+        const Normal& n = solution.scene.regions()[RegionId(static_cast<std::size_t>(mesh.region[i]))].plane.n;
+        const auto add_triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
+            for (const std::size_t corner : {a, b, c})
+                out.index.push_back(static_cast<std::uint32_t>(primitive.vertices + corner));
+        };
+        const std::size_t count = mesh.corner_count(i);
+        if (conforming.has_middle[i])
+            for (std::size_t c = 0; c + 1 < count; ++c) add_triangle(count - 1, c, (c + 1) % (count - 1));
+        else
+            for (std::size_t c = 2; c < count; ++c) add_triangle(0, c - 1, c);
+        for (std::uint32_t p = mesh.first_point[i]; p < mesh.first_point[i + 1]; ++p) {
+            Spectrum light;
+            Float3 radiosity, irradiance;
+            for (std::size_t b = 0; b < bands; ++b) light[b] = static_cast<double>(mesh.irradiance[p][b]);
+            for (std::size_t b = 0; b < 3; ++b) {
+                const std::size_t band = bands == 3 ? b : b * (bands - 1) / 2;  // as the tone map chooses them
+                radiosity[b] = mesh.radiosity[p][band], irradiance[b] = mesh.irradiance[p][band];
+            }
+            const DisplayColour colour = tone(light);
+            out.position.push_back(y_up(mesh.points[p]));
+            out.normal.push_back(y_up(n));
+            out.radiosity.push_back(radiosity);
+            out.irradiance.push_back(irradiance);
+            out.colour.push_back(
+                {static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])});
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                primitive.lo[axis] = std::min(primitive.lo[axis], out.position.back()[axis]);
+                primitive.hi[axis] = std::max(primitive.hi[axis], out.position.back()[axis]);
+            }
+        }
+        primitive.vertices = out.position.size() - primitive.first_vertex;
+        primitive.indices = out.index.size() - primitive.first_index;
+    }
+    return out;
+}
+
+std::string json_triple(const auto& v) {
+    return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
+}
+
+std::string material_json(const Material& material) {
+    std::array<double, 3> rho = red_green_blue(material.reflectance),
+                          radiance = red_green_blue(radiance_of_exitance(material.exitance));
+    const std::string out = fmt::format(
+        "{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{},{},{},1],"
+        "\"metallicFactor\":0,\"roughnessFactor\":1}}",
+        json_text(material.name), rho[0], rho[1], rho[2]);
+    if (!material.emits()) return out + ",\"extensions\":{\"KHR_materials_unlit\":{}}}";
+    const double strength = std::max({radiance[0], radiance[1], radiance[2], 1e-30});
+    for (double& value : radiance) value /= strength;
+    return fmt::format(
+        "{},\"emissiveFactor\":{},\"extensions\":{{\"KHR_materials_emissive_strength\":{{\"emissiveStrength\":{}}}}}}}",
+        out, json_triple(radiance), strength);
+}
+
+/// Byte ranges of the binary chunk: five vertex arrays of one length, then the indices.
+constexpr const char* attribute_names[] = {"POSITION", "NORMAL", "_RADIOSITY", "_IRRADIANCE", "COLOR_0"};
+constexpr std::size_t attributes = std::size(attribute_names);
+
+/// Items of JSON arrays, with commas between them.
+struct Lists {
+    std::string nodes, meshes, accessors;
+    std::size_t node_count = 0, accessor_count = 0;
+
+    static void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ",") + item; }
+    std::size_t add_accessor(const std::string& item) {
+        add(accessors, item);
+        return accessor_count++;
+    }
+};
+
+std::string primitive_json(const Primitive& p, Lists& lists) {
+    std::string names;
+    for (std::size_t a = 0; a < attributes; ++a) {
+        std::string accessor =
+            fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
+                        a, p.first_vertex * sizeof(Float3), p.vertices);
+        if (a == 0) accessor += fmt::format(",\"min\":{},\"max\":{}", json_triple(p.lo), json_triple(p.hi));
+        Lists::add(names, fmt::format("\"{}\":{}", attribute_names[a], lists.add_accessor(accessor + "}")));
+    }
+    const std::size_t indices = lists.add_accessor(
+        fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
+                    attributes, p.first_index * 4, p.indices));
+    return fmt::format("{{\"attributes\":{{{}}},\"indices\":{},\"material\":{}}}", names, indices, p.material);
+}
+
+/// A node and a mesh a group; a primitive a material in it.
+void add_groups(const Scene& scene, std::span<const Primitive> primitives, Lists& lists) {
+    for (std::size_t first = 0, last = 0; first < primitives.size(); first = last) {
+        std::string items;
+        for (; last < primitives.size() && primitives[last].group == primitives[first].group; ++last)
+            Lists::add(items, primitive_json(primitives[last], lists));
+        const std::string name = json_text(scene.groups()[GroupId(primitives[first].group)]);
+        Lists::add(lists.nodes, fmt::format("{{\"mesh\":{},\"name\":{}}}", lists.node_count++, name));
+        Lists::add(lists.meshes, fmt::format("{{\"name\":{},\"primitives\":[{}]}}", name, items));
+    }
+}
+
+std::string extensions_json(const Scene& scene, const GlbNodes& placed) {
+    bool unlit = false, emits = false;
+    for (const Material& m : scene.materials()) (m.emits() ? emits : unlit) = true;
+    std::string used;
+    if (unlit) Lists::add(used, "\"KHR_materials_unlit\"");
+    if (emits) Lists::add(used, "\"KHR_materials_emissive_strength\"");
+    if (placed.lights.empty()) return fmt::format("\"extensionsUsed\":[{}],", used);
+    Lists::add(used, "\"KHR_lights_punctual\"");
+    return fmt::format("\"extensionsUsed\":[{}],\"extensions\":{{\"KHR_lights_punctual\":{{\"lights\":[{}]}}}},", used,
+                       placed.lights);
+}
+
+std::string make_json(const Scene& scene, const Triangles& triangles, const ToneMap& tone) {
+    const GlbNodes placed = make_light_and_camera_nodes(scene);
+    Lists lists;
+    add_groups(scene, triangles.primitives, lists);
+    if (placed.count > 0) Lists::add(lists.nodes, placed.nodes);
+    std::string scene_nodes, materials, views;
+    for (std::size_t i = 0; i < lists.node_count + placed.count; ++i) Lists::add(scene_nodes, std::to_string(i));
+    for (const Material& m : scene.materials()) Lists::add(materials, material_json(m));
+    const std::size_t array_bytes = triangles.position.size() * sizeof(Float3),
+                      index_bytes = triangles.index.size() * 4;
+    for (std::size_t a = 0; a < attributes; ++a)
+        Lists::add(views, fmt::format(
+                              "{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"byteStride\":12,\"target\":34962}}",
+                              a * array_bytes, array_bytes));
+    Lists::add(views, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
+                                  attributes * array_bytes, index_bytes));
+    std::string json = fmt::format(
+        "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"W/m^2\","
+        "\"radianceUnit\":\"W/(m^2 "
+        "sr)\",\"exposure\":{},\"white\":{}}}}},{}\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}],"
+        "\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],\"bufferViews\":[{}],{}"
+        "\"buffers\":[{{\"byteLength\":{}}}]}}",
+        EXITANCE_VERSION, tone.scale, tone.white, extensions_json(scene, placed), scene_nodes, lists.nodes,
+        lists.meshes, materials, lists.accessors, views,
+        placed.cameras.empty() ? "" : fmt::format("\"cameras\":[{}],", placed.cameras),
+        attributes * array_bytes + index_bytes);
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    return json;
+}
+
+}  // namespace
+
+Result<void> write_glb(const Solution& solution, const std::string& path) {
+    const ToneMap tone = make_tone_map(solution);
+    const Triangles triangles = make_triangles(solution, tone);
+    const std::string json = make_json(solution.scene, triangles, tone);
+    std::vector<std::span<const std::byte>> parts;
+    for (const auto* array :
+         {&triangles.position, &triangles.normal, &triangles.radiosity, &triangles.irradiance, &triangles.colour})
+        parts.push_back(std::as_bytes(std::span(*array)));
+    parts.push_back(std::as_bytes(std::span(triangles.index)));
+    return write_glb_container(path, json, parts, "export .vtkhdf, or solve with a larger --error");
+}
+
+}  // namespace exitance

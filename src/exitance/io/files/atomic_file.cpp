@@ -1,0 +1,146 @@
+#include "exitance/io/files/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t buffer_bytes = 1 << 18;
+
+Error cannot_write(const std::string& path, int error) {
+    std::string hint;
+    if (error == ENOENT) hint = "make the folder first";
+    if (error == EISDIR) hint = "name a file in it";
+    if (error == ENOSPC) hint = "free some space, or write to another disk";
+    return {ErrorCode::cannot_write, std::string("cannot be written: ") + std::strerror(error), path, hint};
+}
+
+/// The place behind symbolic links, so that renaming replaces the file and not the link.
+std::string resolved(const std::string& path) {
+    char* real = ::realpath(path.c_str(), nullptr);
+    std::string target = real ? real : path;
+    std::free(real);
+    return target;
+}
+
+int write_all(int file, const char* data, std::size_t size) {
+    while (size > 0) {
+        const ssize_t n = ::write(file, data, size);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return errno;
+        data += n, size -= static_cast<std::size_t>(n);
+    }
+    return 0;
+}
+
+/// The rights that a newly made file gets; reading the mask means setting it.
+mode_t usual_mode() {
+    const mode_t mask = ::umask(022);
+    ::umask(mask);
+    return 0666 & ~mask;
+}
+
+}  // namespace
+
+Result<AtomicFile> AtomicFile::create(const std::string& path) {
+    AtomicFile out;
+    out.path_ = path;
+    if (path.empty()) return Error{ErrorCode::cannot_write, "cannot write a file without a name", "", ""};
+    struct stat present;
+    const bool exists = ::stat(path.c_str(), &present) == 0;
+    if (exists && S_ISDIR(present.st_mode)) return cannot_write(path, EISDIR);
+    if (exists && !S_ISREG(present.st_mode)) {
+        out.file_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+        out.sync_ = false;
+        if (out.file_ < 0) return cannot_write(path, errno);
+        return out;
+    }
+    if (exists && ::access(path.c_str(), W_OK) != 0) return cannot_write(path, errno);  // as a plain open would
+    out.target_ = exists ? resolved(path) : path;
+    const std::size_t name = out.target_.rfind('/') + 1;  // 0 when there is no folder
+    std::string temporary = out.target_.substr(0, name) + "." + out.target_.substr(name) + ".XXXXXX";
+    out.file_ = ::mkostemp(temporary.data(), O_CLOEXEC);
+    if (out.file_ < 0) return cannot_write(path, errno);
+    out.temporary_ = temporary;
+    ::fchmod(out.file_, exists ? present.st_mode & 07777 : usual_mode());
+    return out;
+}
+
+AtomicFile AtomicFile::standard_output() {
+    AtomicFile out;
+    out.path_ = "standard output";
+    out.file_ = ::dup(STDOUT_FILENO);
+    out.error_ = out.file_ < 0 ? errno : 0;
+    out.sync_ = false;
+    return out;
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept {
+    *this = std::move(other);
+}
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+    if (this == &other) return *this;
+    abandon();
+    path_ = std::move(other.path_), target_ = std::move(other.target_);
+    temporary_ = std::exchange(other.temporary_, {});
+    buffer_ = std::exchange(other.buffer_, {});
+    file_ = std::exchange(other.file_, -1);
+    error_ = other.error_, sync_ = other.sync_;
+    return *this;
+}
+
+AtomicFile::~AtomicFile() {
+    abandon();
+}
+
+void AtomicFile::abandon() {
+    if (file_ >= 0) ::close(std::exchange(file_, -1));
+    if (!temporary_.empty()) ::unlink(std::exchange(temporary_, {}).c_str());
+}
+
+void AtomicFile::flush() {
+    if (error_ == 0) error_ = write_all(file_, buffer_.data(), buffer_.size());
+    buffer_.clear();
+}
+
+void AtomicFile::write(std::string_view text) {
+    if (buffer_.size() + text.size() > buffer_bytes) flush();
+    if (text.size() > buffer_bytes) {
+        if (error_ == 0) error_ = write_all(file_, text.data(), text.size());
+    } else {
+        buffer_.append(text);
+    }
+}
+
+Result<void> AtomicFile::commit() {
+    flush();
+    if (error_ == 0 && sync_ && ::fsync(file_) != 0) error_ = errno;
+    if (file_ >= 0 && ::close(std::exchange(file_, -1)) != 0 && error_ == 0) error_ = errno;
+    if (error_ == 0 && !temporary_.empty()) {
+        if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+            error_ = errno;
+        } else {
+            temporary_.clear();  // a power cut may still bring the old file back, but whole: the folder is not flushed
+        }
+    }
+    abandon();
+    if (error_ != 0) return cannot_write(path_, error_);
+    return {};
+}
+
+Result<void> write_file(const std::string& path, std::string_view content) {
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return file.error();
+    file->write(content);
+    return file->commit();
+}
+
+}  // namespace exitance

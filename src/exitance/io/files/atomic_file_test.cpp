@@ -1,0 +1,101 @@
+#include "exitance/io/files/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace exitance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An empty folder of the running test's own, gone afterwards.
+class AtomicFiles : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "exitance-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder = name;
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    std::string read(const fs::path& path) const {
+        std::ifstream in(path);
+        std::stringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+    std::size_t files() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+    }
+    fs::path folder;
+};
+
+TEST_F(AtomicFiles, AppearWithTheirContentAndNothingBeside) {
+    ASSERT_TRUE(write_file((folder / "a.txt").string(), "light"));
+    EXPECT_EQ(read(folder / "a.txt"), "light");
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(AtomicFiles, LeaveTheOldFileUntilTheyAreWhole) {
+    const fs::path path = folder / "a.txt";
+    ASSERT_TRUE(write_file(path.string(), "old"));
+    {
+        Result<AtomicFile> file = AtomicFile::create(path.string());
+        ASSERT_TRUE(file);
+        file->write(std::string(1 << 20, 'x'));
+        EXPECT_EQ(read(path), "old");
+    }
+    EXPECT_EQ(read(path), "old");
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(AtomicFiles, GatherManySmallPieces) {
+    Result<AtomicFile> file = AtomicFile::create((folder / "a.txt").string());
+    ASSERT_TRUE(file);
+    std::string all;
+    for (int i = 0; i < 100000; ++i) {
+        const std::string piece = std::to_string(i) + "\n";
+        file->write(piece);
+        all += piece;
+    }
+    ASSERT_TRUE(file->commit());
+    EXPECT_EQ(read(folder / "a.txt"), all);
+}
+
+TEST_F(AtomicFiles, SayWhyTheyCannotBeWritten) {
+    const std::string missing = (folder / "no" / "a.txt").string();
+    const Result<void> written = write_file(missing, "x");
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::cannot_write);
+    EXPECT_NE(written.error().where.find(missing), std::string::npos);
+    EXPECT_NE(written.error().message.find("No such file"), std::string::npos);
+    EXPECT_EQ(write_file(folder.string(), "x").error().code, ErrorCode::cannot_write);
+    EXPECT_EQ(write_file("", "x").error().code, ErrorCode::cannot_write);
+}
+
+TEST_F(AtomicFiles, FullDisksAreReported) {
+    if (!fs::exists("/dev/full")) return;
+    const Result<void> written = write_file("/dev/full", "x");
+    ASSERT_FALSE(written);
+    EXPECT_NE(written.error().message.find("No space"), std::string::npos);
+}
+
+TEST_F(AtomicFiles, WriteThroughLinksAndKeepRights) {
+    ASSERT_TRUE(write_file((folder / "a.txt").string(), "old"));
+    fs::permissions(folder / "a.txt", fs::perms::owner_read | fs::perms::owner_write);
+    fs::create_symlink("a.txt", folder / "link");
+    ASSERT_TRUE(write_file((folder / "link").string(), "new"));
+    EXPECT_TRUE(fs::is_symlink(folder / "link"));
+    EXPECT_EQ(read(folder / "a.txt"), "new");
+    EXPECT_EQ(fs::status(folder / "a.txt").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(AtomicFiles, DevicesAreWrittenToDirectly) {
+    ASSERT_TRUE(write_file("/dev/null", "x"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,77 @@
+#include "exitance/io/files/rehearsal.hpp"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <new>
+
+namespace exitance {
+namespace {
+
+constexpr int crash_signals[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU};
+
+enum Outcome { went_well, failed, lacks_memory };  ///< The copy's exit status.
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool memory_can_be_limited = false;
+#else
+constexpr bool memory_can_be_limited = true;
+#endif
+
+/// From now on no more than `bytes` beyond what this process has mapped.
+void limit_memory(std::size_t bytes) {
+    std::size_t pages = 0;
+    if (!memory_can_be_limited || !(std::ifstream("/proc/self/statm") >> pages)) return;
+    const std::size_t mapped = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    if (bytes > std::numeric_limits<std::size_t>::max() - mapped) return;
+    rlimit space{};
+    ::getrlimit(RLIMIT_AS, &space);
+    space.rlim_cur = std::min<rlim_t>(mapped + bytes, space.rlim_max);
+    ::setrlimit(RLIMIT_AS, &space);
+}
+
+[[noreturn]] void perform(const std::function<bool()>& work, rlim_t seconds, std::size_t memory) {
+    for (const int signal : crash_signals) ::signal(signal, SIG_DFL);
+    const rlimit time = {seconds, seconds + 1}, no_core = {0, 0};
+    ::setrlimit(RLIMIT_CPU, &time);
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);  // the C library's last words about a broken heap
+    limit_memory(memory);
+    try {
+        ::_exit(work() ? went_well : failed);
+    } catch (const std::bad_alloc&) {
+        ::_exit(lacks_memory);
+    }
+}
+
+}  // namespace
+
+std::optional<std::string> rehearse(const std::function<bool()>& work, double seconds, std::size_t memory) {
+    const auto limit = static_cast<rlim_t>(std::ceil(seconds));
+    const pid_t copy = ::fork();
+    if (copy < 0) return {};
+    if (copy == 0) perform(work, limit, memory);
+    int status = 0;
+    while (::waitpid(copy, &status, 0) < 0)
+        if (errno != EINTR) return {};  // somebody else has waited for it
+    if (WIFEXITED(status) && WEXITSTATUS(status) == lacks_memory)
+        return "asks for more than " + std::to_string((memory >> 20) + 1) + " MiB";
+    if (WIFEXITED(status) && WEXITSTATUS(status) == failed) return "fails";
+    if (WIFEXITED(status))
+        return WEXITSTATUS(status) == went_well ? std::nullopt : std::optional<std::string>("crashes");
+    const int signal = WTERMSIG(status);
+    if (signal == SIGXCPU) return "takes more than " + std::to_string(limit) + " s";
+    for (const int crash : crash_signals)
+        if (signal == crash) return "crashes";
+    return {};  // ended from outside
+}
+
+}  // namespace exitance

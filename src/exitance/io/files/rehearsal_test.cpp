@@ -1,0 +1,53 @@
+#include "exitance/io/files/rehearsal.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <vector>
+
+namespace exitance {
+namespace {
+
+TEST(Rehearsal, LeavesNoTraceOfWhatItDid) {
+    int written = 0;
+    EXPECT_FALSE(rehearse([&] { return ++written == 1; }, 5));
+    EXPECT_EQ(written, 0);
+}
+
+TEST(Rehearsal, TellsThatItFailed) {
+    EXPECT_EQ(rehearse([] { return false; }, 5), "fails");
+}
+
+TEST(Rehearsal, TellsThatItCrashed) {
+    EXPECT_EQ(rehearse([] { return ::raise(SIGSEGV) == 0; }, 5), "crashes");
+    EXPECT_EQ(rehearse([] { return ::raise(SIGABRT) == 0; }, 5), "crashes");
+}
+
+TEST(Rehearsal, DoesNotGoOnForEver) {
+    const auto never_ending = [] {
+        for (;;) ::getppid();
+        return true;
+    };
+    EXPECT_EQ(rehearse(never_ending, 0.5), "takes more than 1 s");
+}
+
+#if !defined(__SANITIZE_ADDRESS__)  // whose shadow fills the address space
+TEST(Rehearsal, TakesNoMoreMemoryThanItMay) {
+    const auto take = [](std::size_t bytes) {
+        return [bytes] {
+            const std::vector<char> taken(bytes);
+            return taken.back() == 0;
+        };
+    };
+    EXPECT_EQ(rehearse(take(300 << 20), 5, 100 << 20), "asks for more than 101 MiB");
+    EXPECT_FALSE(rehearse(take(50 << 20), 5, 100 << 20));
+}
+#endif
+
+TEST(Rehearsal, EndedByTheUserSaysNothingOfTheWork) {
+    EXPECT_FALSE(rehearse([] { return ::raise(SIGTERM) == 0; }, 5));
+}
+
+}  // namespace
+}  // namespace exitance

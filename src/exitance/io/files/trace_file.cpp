@@ -1,0 +1,68 @@
+#include "exitance/io/files/trace_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+
+namespace exitance {
+namespace {
+
+/// A span of time on a line; `arguments` begins with the comma after the id.
+std::string event(std::string_view name, const char* kind, std::size_t line, double begin, double end, std::uint64_t id,
+                  std::string_view arguments) {
+    constexpr double micro = 1e6;
+    // Ends are rounded like beginnings, so that rounding makes no overlaps.
+    const double from = std::floor(begin * micro * 1000) / 1000, to = std::floor(end * micro * 1000) / 1000;
+    return fmt::format(
+        ",\n{{\"name\":\"{}\",\"cat\":\"{}\",\"ph\":\"X\",\"pid\":1,\"tid\":{},\"ts\":{:.3f},\"dur\":{:.3f},"
+        "\"args\":{{\"id\":{}{}}}}}",
+        name, kind, line, from, to - from, id, arguments);
+}
+
+std::string line_name(std::size_t line, std::string_view name) {
+    return fmt::format(R"({{"name":"thread_name","ph":"M","pid":1,"tid":{},"args":{{"name":"{}"}}}})", line, name);
+}
+
+std::string describe(const TaskTrace::Loop& loop, const TaskTrace::Task& task) {
+    const std::uint64_t first = task.index * loop.grain, last = std::min<std::uint64_t>(loop.count, first + loop.grain);
+    std::string out = fmt::format(R"(,"parent":{},"first":{},"last":{})", loop.id, first, last);
+    if (task.polygon != TaskTrace::none) out += fmt::format(R"(,"receiver_polygon":{})", task.polygon);
+    if (task.first_source != TaskTrace::none)
+        out +=
+            fmt::format(R"(,"first_source_polygon":{},"last_source_polygon":{})", task.first_source, task.last_source);
+    for (const TaskTrace::Touched& touched : task.touched)
+        if (touched.what) out += fmt::format(R"(,"{}":{})", touched.what, touched.count);
+    return out;
+}
+
+}  // namespace
+
+Result<void> write_trace(const TaskTrace& trace, const std::string& path) {
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return file.error();
+    std::size_t workers = 0;
+    for (const TaskTrace::Loop& loop : trace.loops())
+        for (const TaskTrace::Task& task : loop.tasks) workers = std::max(workers, task.worker + 1);
+    file->write(
+        fmt::format("{{\"displayTimeUnit\":\"ms\",\"otherData\":{{\"schedule\":\"{}\",\"threads\":{}}},"
+                    "\"traceEvents\":[\n{}",
+                    schedule_names[static_cast<std::size_t>(schedule())].second, threads(), line_name(0, "phases")));
+    for (std::size_t w = 0; w < workers; ++w) file->write(",\n" + line_name(w + 1, fmt::format("worker {}", w)));
+    for (const TaskTrace::Phase& phase : trace.phases())
+        file->write(event(phase.name, "phase", 0, phase.begin, phase.end, phase.id, ""));
+    for (const TaskTrace::Loop& loop : trace.loops()) {
+        file->write(event(loop.name, "loop", 0, loop.begin, loop.end, loop.id,
+                          fmt::format(R"(,"parent":{},"tasks":{},"indices":{},"grain":{})",
+                                      trace.phases()[loop.phase].id, loop.tasks.size(), loop.count, loop.grain)));
+        for (const TaskTrace::Task& task : loop.tasks)
+            file->write(event(loop.name, "task", task.worker + 1, task.begin, task.end, loop.id + 1 + task.index,
+                              describe(loop, task)));
+    }
+    file->write("\n]}\n");
+    return file->commit();
+}
+
+}  // namespace exitance

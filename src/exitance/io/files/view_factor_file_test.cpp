@@ -1,0 +1,63 @@
+#include "exitance/io/files/view_factor_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace exitance {
+namespace {
+
+ViewFactors two_faces() {
+    return {{1, 2}, {0.5, 0.25}, {0, 1.0 / 3, 1.0 / 6, 0}, {1.0 / 3, 1.0 / 6}, 0};
+}
+
+TEST(ViewFactorFile, CsvGivesTheSameDoublesBack) {
+    std::istringstream in(view_factors_csv(two_faces()));
+    std::string line;
+    std::getline(in, line);
+    EXPECT_EQ(line, "surface,area,row_sum,F_1,F_2");
+    std::getline(in, line);
+    EXPECT_EQ(line, "1,1,0.33333333333333331,0,0.33333333333333331");
+    EXPECT_EQ(std::stod(line.substr(line.rfind(',') + 1)), 1.0 / 3);
+}
+
+TEST(ViewFactorFile, VfHoldsHeaderAreasRowsAndEmittances) {
+    const std::string text = view_factors_vf(two_faces());
+    EXPECT_EQ(text.find('\n'), 30u);
+    std::istringstream in(text);
+    std::string name, version;
+    int out, encl, emit;
+    std::size_t n;
+    in >> name >> version >> out >> encl >> emit >> n;
+    EXPECT_EQ(name, "View3D");
+    EXPECT_EQ(n, 2u);
+    double area[2], F[4], emittance[2];
+    in >> area[0] >> area[1] >> F[0] >> F[1] >> F[2] >> F[3] >> emittance[0] >> emittance[1];
+    ASSERT_TRUE(in);
+    EXPECT_EQ(area[1], 2);
+    EXPECT_NEAR(F[2], 1.0 / 6, 5e-7);  // six decimals
+    EXPECT_EQ(emittance[1], 0.25);
+}
+
+TEST(ViewFactorFile, IsWrittenWholeOrNotAtAll) {
+    const auto folder = std::filesystem::temp_directory_path() / "exitance_view_factor_file";
+    std::filesystem::create_directories(folder);
+    const std::string path = (folder / "F.csv").string();
+    ASSERT_TRUE(write_view_factors(path, two_faces()));
+    std::ifstream file(path);
+    std::stringstream content;
+    content << file.rdbuf();
+    EXPECT_EQ(content.str(), view_factors_csv(two_faces()));
+    const Result<void> failed = write_view_factors((folder / "none" / "F.csv").string(), two_faces());
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().code, ErrorCode::cannot_write);
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++files;
+    EXPECT_EQ(files, 1u);
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,46 @@
+#include "exitance/io/pictures/isolux.hpp"
+
+#include <gtest/gtest.h>
+
+namespace exitance {
+namespace {
+
+/// Illuminance that rises from 0 to 100 lx from left to right, on two regions, one above the other.
+Picture ramp(int width, int height) {
+    Picture picture{{width, height}, std::vector<Pixel>(static_cast<std::size_t>(width * height))};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            Pixel& pixel = picture.pixels[static_cast<std::size_t>(y * width + x)];
+            pixel.front = 1;
+            pixel.irradiance = Spectrum((y < height / 2 ? 1.0 : 0.5) * 100.0 * x / width);
+            pixel.region = RegionId(std::size_t(y < height / 2 ? 0 : 1));
+        }
+    return picture;
+}
+
+TEST(Isolux, LinesStandWhereLightPassesTheStepsAndNotBetweenSurfaces) {
+    const Picture picture = ramp(200, 40);
+    Image image(200, 40);
+    draw_isolux(image, picture, {{0, 25, 50, 75, 100}});
+    const auto is_drawn = [&](int x, int y) { return image.at(x, y)[0] > 0; };
+    for (const int y : {1, 3, 5}) {
+        EXPECT_TRUE(is_drawn(49, y) && is_drawn(99, y) && is_drawn(149, y));  // 25, 50 and 75 lx begin at the next
+        EXPECT_FALSE(is_drawn(60, y) || is_drawn(120, y));
+    }
+    EXPECT_TRUE(is_drawn(99, 22));  // half the light on the lower surface: 25 lx
+    int on_border = 0;
+    for (int x = 0; x < 200; ++x) on_border += is_drawn(x, 19);
+    EXPECT_LT(on_border, 10);
+}
+
+TEST(Isolux, LongLinesCarryTheirValues) {
+    const Picture picture = ramp(200, 160);
+    Image image(200, 160);
+    draw_isolux(image, picture, {{0, 50, 100}});
+    int paper = 0;  // the colour behind the figures, on the line of 50 lx
+    for (int y = 0; y < 80; ++y) paper += image.at(94, y)[2] == 24;
+    EXPECT_GT(paper, 5);
+}
+
+}  // namespace
+}  // namespace exitance

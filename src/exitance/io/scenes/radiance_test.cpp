@@ -1,0 +1,177 @@
+#include "exitance/io/scenes/radiance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/scenes/round_shapes.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/scenes/xform.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace exitance {
+namespace {
+
+class RadianceFiles : public testing::Test {
+  protected:
+    CheckedScene load(const std::string& text, const std::string& name = "s.rad") {
+        EXPECT_TRUE(write_file(folder_ / name, materials + text));
+        return load_scene(folder_ / name);
+    }
+    Scene scene(const std::string& text) {
+        CheckedScene out = load(text);
+        EXPECT_TRUE(out.scene) << out.scene.error().where << ' ' << out.scene.error().message;
+        if (!out.scene) std::abort();
+        return std::move(*out.scene);
+    }
+    std::string first_error(const std::string& text) {
+        const CheckedScene out = load(text);
+        if (out.scene) return "no error";
+        const std::string where = out.scene.error().where;
+        return where.substr(where.find_last_of('/') + 1) + ": " + out.scene.error().message;
+    }
+    static double area(const Scene& scene) {
+        double sum = 0;
+        for (const Surface& s : scene.surfaces()) sum += s.area;
+        return sum;
+    }
+    static constexpr const char* materials =
+        "# line 1\nvoid plastic grey 0 0 5 .5 .4 .3 0 0\nvoid light lamp 0 0 3 10 20 30\n";
+    static constexpr const char* square = "polygon square 0 0 12  0 0 0  1 0 0  1 1 0  0 1 0\n";
+    TemporaryFolder folder_;
+};
+
+}  // namespace
+
+TEST_F(RadianceFiles, WhatReflectsHasTwoSidesAndWhatEmitsOne) {
+    const Scene s = scene(std::string("grey ") + square + "lamp polygon l 0 0 9 0 0 1 1 0 1 0 1 1\n");
+    ASSERT_EQ(s.surfaces().size(), 3u);
+    EXPECT_EQ(s.surfaces()[SurfaceId(0)].normal, (Normal{0, 0, 1}));
+    EXPECT_EQ(s.surfaces()[SurfaceId(1)].normal, (Normal{0, 0, -1}));
+    EXPECT_EQ(s.surfaces()[SurfaceId(0)].line, 4);
+    EXPECT_EQ(s.emitters(), std::vector<SurfaceId>{SurfaceId(2)});
+    EXPECT_EQ(s.material(SurfaceId(0)).reflectance[0], 0.5);
+    EXPECT_NEAR(s.material(SurfaceId(2)).exitance[0], 10 * pi, 1e-12);
+    EXPECT_EQ(s.groups()[s.surfaces()[SurfaceId(2)].group], "l");
+}
+
+TEST_F(RadianceFiles, OnlyTheDiffusePartCountsAndTheRestIsSaidOnce) {
+    const CheckedScene s = load(
+        "void metal gold 0 0 5 .8 .8 .8 .25 .05\nvoid metal silver 0 0 5 .8 .8 .8 .5 .05\n"
+        "void trans paper 0 0 7 .8 .8 .8 0 0 .5 0\nvoid glass pane 0 0 3 .9 .9 .9\n"
+        "gold polygon a 0 0 9 0 0 0 1 0 0 0 1 0\nsilver polygon b 0 0 9 0 0 1 1 0 1 0 1 1\n"
+        "paper polygon c 0 0 9 0 0 2 1 0 2 0 1 2\npane polygon d 0 0 9 0 0 3 1 0 3 0 1 3\n");
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 6u) << "glass is left out";
+    EXPECT_NEAR(s.scene->material(SurfaceId(0)).reflectance[0], 0.6, 1e-12);
+    EXPECT_NEAR(s.scene->material(SurfaceId(2)).reflectance[0], 0.4, 1e-12);
+    EXPECT_NEAR(s.scene->material(SurfaceId(4)).reflectance[0], 0.4, 1e-12);
+    const auto about = [&](const std::string& what) {
+        return std::count_if(s.findings.begin(), s.findings.end(),
+                             [&](const Finding& f) { return f.message.find(what) != f.message.npos; });
+    };
+    EXPECT_EQ(about("specular"), 1);
+    EXPECT_EQ(about("goes through"), 1);
+    EXPECT_EQ(about("glass"), 1);
+}
+
+TEST_F(RadianceFiles, RoundShapesHaveTheRightArea) {
+    EXPECT_NEAR(area(scene("lamp sphere s 0 0 4 1 2 3 0.5\n")), pi, 1e-9);
+    EXPECT_NEAR(area(scene("lamp cylinder s 0 0 7 0 0 0 1 1 1 0.5\n")), pi * std::sqrt(3.0), 1e-9);
+    EXPECT_NEAR(area(scene("lamp ring s 0 0 8 0 0 0 1 1 1 0.5 1\n")), 0.75 * pi, 1e-9);
+    for (const double height : {0.01, 1.0, 10.0}) {
+        const double exact = pi * std::hypot(1, height);
+        EXPECT_NEAR(area(scene("lamp cone s 0 0 8 0 0 0 0 0 " + std::to_string(height) + " 1 0\n")), exact,
+                    0.005 * exact);
+    }
+}
+
+TEST_F(RadianceFiles, OutsidesFaceOutAndInsidesIn) {
+    const auto outwards = [&](const std::string& text) {
+        const Scene s = scene(text);
+        std::size_t count = 0;
+        for (SurfaceId id : s.surfaces().ids()) {
+            const Vec3 middle = centroid(s.outline(id));
+            count += dot(s.surfaces()[id].normal, Vec3{middle.x, middle.y, 0}) > -1e-9;
+        }
+        return std::pair(count, s.surfaces().size());
+    };
+    for (const char* type : {"cylinder s 0 0 7 0 0 0 0 0 1 1", "cone s 0 0 8 0 0 0 0 0 1 1 0.5"}) {
+        const auto [out, all] = outwards(std::string("lamp ") + type + '\n');
+        EXPECT_EQ(out, all) << type;
+    }
+    for (const char* type : {"tube s 0 0 7 0 0 0 0 0 1 1", "cup s 0 0 8 0 0 0 0 0 1 1 0.5"})
+        EXPECT_EQ(outwards(std::string("lamp ") + type + '\n').first, 0u) << type;
+    for (const auto& facet : sphere_facets({1, 2, 3}, 2))
+        EXPECT_GT(dot(area_vector(facet), centroid(facet) - Point{1, 2, 3}), 0);
+}
+
+TEST_F(RadianceFiles, CommandsOfXformAreDoneHere) {
+    ASSERT_TRUE(write_file(folder_ / "part.rad", std::string("lamp ") + square));
+    const Scene s = scene("!xform -n row -rz 90 -s 2 -t 0 0 1 -a 3 -t 5 0 0 \\\n part.rad\n");
+    ASSERT_EQ(s.surfaces().size(), 3u);
+    EXPECT_EQ(s.groups()[GroupId(0)], "row.square");
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Surface& surface = s.surfaces()[SurfaceId(i)];
+        EXPECT_NEAR(surface.area, 4, 1e-12);
+        EXPECT_EQ(surface.normal, (Normal{0, 0, 1}));
+        EXPECT_EQ(s.outline(SurfaceId(i))[0], (Point{5.0 * static_cast<double>(i), 0, 1}));
+        EXPECT_EQ(s.outline(SurfaceId(i))[1], (Point{5.0 * static_cast<double>(i), 2, 1}));
+        EXPECT_EQ(surface.line, 4);
+    }
+    const Scene mirrored = scene("!xform -mz part.rad\n");
+    EXPECT_EQ(mirrored.surfaces()[SurfaceId(0)].normal, (Normal{0, 0, -1}));
+}
+
+TEST(Xform, ArraysMakeGridsAndIterationsRepeat) {
+    const auto parsed = parse_xform({"-a", "2", "-t", "1", "0", "0", "-a", "3", "-t", "0", "1", "0", "f"}, 100);
+    ASSERT_TRUE(parsed);
+    ASSERT_EQ(parsed->copies.size(), 6u);
+    EXPECT_EQ(parsed->copies[5].origin, (Point{1, 2, 0}));
+    const auto repeated = parse_xform({"-i", "3", "-rz", "30", "-i", "1", "-t", "0", "0", "1", "f"}, 100);
+    ASSERT_TRUE(repeated);
+    EXPECT_NEAR(norm(repeated->copies[0].x - Vec3{0, 1, 0}), 0, 1e-12);
+    EXPECT_EQ(repeated->copies[0].origin, (Point{0, 0, 1}));
+    EXPECT_FALSE(parse_xform({"-a", "1000000000", "-t", "1", "0", "0", "f"}, 100));
+    EXPECT_FALSE(parse_xform({"-a", "50", "-a", "50", "f"}, 100));
+}
+
+TEST_F(RadianceFiles, OtherCommandsAreRefusedWithAWayOut) {
+    const CheckedScene s = load("!genbox grey box 1 2 3\n");
+    ASSERT_FALSE(s.scene);
+    EXPECT_EQ(s.scene.error().where, folder_ / "s.rad:4");
+    EXPECT_NE(s.scene.error().message.find("genbox"), std::string::npos);
+    EXPECT_NE(s.scene.error().hint.find("!xform"), std::string::npos);
+    EXPECT_NE(first_error("!xform a.rad | sort\n").find("not run"), std::string::npos);
+    EXPECT_NE(first_error("!xform absent.rad\n").find("absent.rad"), std::string::npos);
+    EXPECT_NE(first_error("!xform s.rad\n").find("calls itself"), std::string::npos);
+}
+
+TEST_F(RadianceFiles, AliasesAndPatternsLeadToTheirMaterial) {
+    const Scene s = scene(
+        "void alias stone grey\ngrey brightfunc dirt 2 dirt dirt.cal 0 1 .5\n"
+        "stone polygon a 0 0 9 0 0 0 1 0 0 0 1 0\ndirt polygon b 0 0 9 0 0 1 1 0 1 0 1 1\n"
+        "lamp polygon c 0 0 9 0 0 2 1 0 2 0 1 2\n");
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.material(SurfaceId(i)).name, "grey");
+}
+
+TEST_F(RadianceFiles, TheSunIsParallelLight) {
+    const Scene s = scene(std::string("lamp source sun 0 0 4 0 1 1 0.5\ngrey ") + square);
+    ASSERT_EQ(s.lights().size(), 1u);
+    EXPECT_NEAR(norm(s.lights()[0].direction - Vec3{0, -std::sqrt(0.5), -std::sqrt(0.5)}), 0, 1e-12);
+    const double solid_angle = 2 * pi * (1 - std::cos(0.25 * pi / 180));
+    EXPECT_NEAR(s.lights()[0].intensity[0], 10 * solid_angle, 1e-15);
+}
+
+TEST_F(RadianceFiles, ErrorsNameFileAndLine) {
+    EXPECT_EQ(first_error("grey polygon a 0 0 9 0 0 0 1 0 0 0 x 0\n"), "s.rad:4: 'x' is not a finite number");
+    EXPECT_EQ(first_error("grey polygon a 0 0 8 0 0 0 1 0 0 0 1\n"), "s.rad:4: polygon 'a' has 8 numbers");
+    EXPECT_EQ(first_error("grey polygon a 0 0 99 0 0 0\n"), "s.rad:4: the file ends within 'a'");
+    EXPECT_EQ(first_error("blue polygon a 0 0 9 0 0 0 1 0 0 0 1 0\n"),
+              "s.rad:4: material 'blue' is not defined before 'a'");
+    EXPECT_EQ(first_error("grey instance a 1 b.oct 0 0\n"),
+              "s.rad:4: instance 'a' stands in a compiled file, which is not read");
+}
+
+}  // namespace exitance

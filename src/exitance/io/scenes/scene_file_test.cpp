@@ -1,0 +1,98 @@
+#include "exitance/io/scenes/scene_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace exitance {
+namespace {
+
+/// What is to become of a hard or malformed file.
+struct Expected {
+    std::string file;
+    std::size_t surfaces;  ///< 0: the file is refused.
+    std::size_t regions;
+    std::vector<std::string> said;  ///< "E x.obj:3" for an error there, W for a warning, R for a repair.
+};
+
+const std::vector<Expected> expectations = {
+    {"t_vertices", 11, 3, {}},
+    {"nonplanar_1e-6", 17, 2, {"R nonplanar_1e-6.obj:35"}},
+    {"nonplanar_5cm", 0, 0, {"E nonplanar_5cm.obj:14"}},
+    {"box_on_floor", 8, 8, {}},
+    {"coplanar_touching", 21, 14, {}},
+    {"coplanar_duplicate", 2, 2, {"R coplanar_duplicate.obj:20"}},
+    {"slivers", 6, 3, {}},
+    {"interpenetrating", 20, 20, {}},
+    {"coords_1e6", 8, 8, {}},
+    {"scale_1e-4", 8, 8, {}},
+    {"scale_1e6", 8, 8, {}},
+    {"aligned_edges", 4, 4, {}},
+    {"edge_in_receiver", 5, 5, {}},
+    {"light_edge_on_wall", 4, 4, {}},
+    {"zero_area_face", 2, 2, {"R zero_area_face.obj:13", "R zero_area_face.obj:17"}},
+    {"duplicate_vertices", 2, 2, {"R duplicate_vertices.obj:14"}},
+    {"face_2_vertices", 2, 2, {"R face_2_vertices.obj:13"}},
+    {"repeated_index", 2, 2, {"R repeated_index.obj:12"}},
+    {"self_intersecting", 0, 0, {"E self_intersecting.obj:12"}},
+    {"nan_coordinate", 0, 0, {"E nan_coordinate.obj:4"}},
+    {"inf_coordinate", 0, 0, {"E inf_coordinate.obj:4"}},
+    {"bad_number", 0, 0, {"E bad_number.obj:4"}},
+    {"index_out_of_range", 0, 0, {"E index_out_of_range.obj:12"}},
+    {"index_zero", 0, 0, {"E index_zero.obj:12"}},
+    {"negative_index", 2, 2, {}},
+    {"slashes_and_comments", 2, 2, {}},
+    {"missing_mtl", 0, 0, {"E missing_mtl.obj:1"}},
+    {"unknown_material", 0, 0, {"E unknown_material.obj:11"}},
+    {"no_material", 2, 2, {"W no_material.obj:10"}},
+    {"reflectance_1", 0, 0, {"E reflectance_1.mtl:2"}},
+    {"reflectance_above_1", 0, 0, {"E reflectance_above_1.mtl:2"}},
+    {"reflectance_negative", 0, 0, {"E reflectance_negative.mtl:2"}},
+    {"emission_negative", 0, 0, {"E emission_negative.mtl:5"}},
+    {"emission_nan", 0, 0, {"E emission_nan.mtl:5"}},
+    {"no_light", 1, 1, {"W no_light.obj:12"}},
+    {"empty", 0, 0, {"E empty.obj:1"}},
+    {"truncated", 2, 2, {}},
+};
+
+std::string said(const Finding& f) {
+    const char* kind = f.kind == Finding::Kind::error ? "E " : f.kind == Finding::Kind::warning ? "W " : "R ";
+    return kind + std::filesystem::path(f.file).filename().string() + ":" + std::to_string(f.line);
+}
+
+TEST(SceneFile, HardAndMalformedFilesAreAcceptedRepairedOrRefusedByName) {
+    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "scenes" / "degenerate";
+    for (const Expected& e : expectations) {
+        const std::filesystem::path path = folder / (e.file + ".obj");
+        if (!std::filesystem::exists(path)) continue;
+        const CheckedScene checked = load_scene(path.string());
+        EXPECT_EQ(bool(checked.scene), e.surfaces > 0) << e.file;
+        std::vector<std::string> findings;
+        for (const Finding& f : checked.findings) findings.push_back(said(f));
+        EXPECT_EQ(findings, e.said) << e.file;
+        if (!checked.scene) {
+            EXPECT_EQ(checked.scene.error().code, ErrorCode::bad_input) << e.file;
+            continue;
+        }
+        EXPECT_EQ(checked.scene->surfaces().size(), e.surfaces) << e.file;
+        EXPECT_EQ(checked.scene->regions().size(), e.regions) << e.file;
+    }
+}
+
+TEST(SceneFile, EveryPublishedSceneIsAccepted) {
+    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "scenes";
+    std::error_code missing;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
+        if (entry.path().extension() != ".obj") continue;
+        const CheckedScene checked = load_scene(entry.path().string());
+        ASSERT_TRUE(checked.scene) << checked.scene.error().where << ": " << checked.scene.error().message;
+        double faces = 0, regions = 0;
+        for (const Surface& s : checked.scene->surfaces()) faces += s.area;
+        for (const Region& r : checked.scene->regions()) regions += r.area;
+        EXPECT_NEAR(regions, faces, 1e-9 * faces) << entry.path();  // corners of bent faces are moved
+    }
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,138 @@
+#include "exitance/io/solution/checkpoint_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+
+#include "exitance/core/random.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::string_view first_line = "exitance checkpoint 1\n";
+
+std::uint64_t checksum(std::string_view bytes) {
+    std::uint64_t sum = bytes.size();
+    for (; !bytes.empty(); bytes.remove_prefix(std::min<std::size_t>(8, bytes.size()))) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data(), std::min<std::size_t>(8, bytes.size()));
+        sum = hash(sum ^ word);
+    }
+    return sum;
+}
+
+/// Numbers drawn into one hash.
+class Fingerprint {
+  public:
+    void add(double v) { hash_ = hash(hash_, std::bit_cast<std::uint64_t>(v)); }
+    void add(const Vec3& v) { add(v.x), add(v.y), add(v.z); }
+    void add(const Spectrum& s) {
+        for (double v : s.value) add(v);
+    }
+    std::uint64_t value() const { return hash_; }
+
+  private:
+    std::uint64_t hash_ = 0;
+};
+
+Error damaged(const std::string& path) {
+    return {ErrorCode::bad_input, "is damaged, or no checkpoint of this version", path,
+            "without --resume the solve begins anew"};
+}
+
+/// What the checkpoint is of and the run is not; "" where they agree.
+std::string difference(const CheckpointFacts& kept, const CheckpointFacts& own) {
+    for (const auto& [name, value] : own) {
+        const auto at = std::find_if(kept.begin(), kept.end(), [&, &n = name](const auto& f) { return f.first == n; });
+        const std::string other = at == kept.end() ? "unknown" : at->second;
+        if (other != value) return name + " was " + other + " and is " + value;
+    }
+    return kept.size() == own.size() ? "" : "it was made by another version";
+}
+
+/// States are laid out as the program that runs has them; its file tells it from any other.
+const std::string& program_fingerprint() {
+    static const std::string text = [] {
+        const Result<std::string> program = read_whole_file("/proc/self/exe");
+        return program ? fmt::format("{:016x}", checksum(*program)) : "unknown";
+    }();
+    return text;
+}
+
+}  // namespace
+
+std::string scene_fingerprint(const Scene& scene) {
+    Fingerprint all;
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const Surface& surface = scene.surfaces()[s];
+        for (const Point& p : scene.outline(s)) all.add(p);
+        all.add(surface.material.value), all.add(surface.region.value);
+    }
+    for (const Material& material : scene.materials()) all.add(material.reflectance), all.add(material.exitance);
+    for (const PunctualLight& light : scene.lights()) {
+        all.add(static_cast<double>(light.kind));
+        all.add(light.position), all.add(light.direction), all.add(light.intensity);
+        all.add(light.inner_cone), all.add(light.outer_cone);
+    }
+    return fmt::format("{:016x}", all.value());
+}
+
+CheckpointFile::CheckpointFile(std::string path, CheckpointFacts facts, double every)
+    : path_(std::move(path)), facts_(std::move(facts)), every_(every) {
+    facts_.emplace_back("the version", EXITANCE_VERSION);
+    facts_.emplace_back("the build", program_fingerprint());
+}
+
+Result<bool> CheckpointFile::load() {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path_, ignored)) return false;
+    Result<std::string> content = read_whole_file(path_);
+    if (!content) return content.error();
+    std::string_view bytes = *content;
+    if (!bytes.starts_with(first_line)) return damaged(path_);
+    bytes.remove_prefix(first_line.size());
+    ArchiveReader reader(bytes);
+    std::uint64_t sum = 0;
+    reader(sum);
+    if (!reader.good() || sum != checksum(bytes.substr(sizeof sum))) return damaged(path_);
+    std::vector<std::string> names, values;
+    reader(names, values, state_);
+    if (!reader.good() || reader.left() != 0 || names.size() != values.size()) return damaged(path_);
+    CheckpointFacts kept;
+    for (std::size_t i = 0; i < names.size(); ++i) kept.emplace_back(names[i], values[i]);
+    if (const std::string differs = difference(kept, facts_); !differs.empty())
+        return Error{ErrorCode::bad_input, "is of another solve: " + differs, path_,
+                     "run as before, or without --resume to begin anew"};
+    return true;
+}
+
+void CheckpointFile::keep(std::string state) {
+    std::vector<std::string> names, values;
+    for (const auto& [name, value] : facts_) names.push_back(name), values.push_back(value);
+    ArchiveWriter writer;
+    writer(names, values, state);
+    state.clear();
+    const std::string body = writer.take();
+    std::uint64_t sum = checksum(body);
+    ArchiveWriter head;
+    head(sum);
+    written_ = {};
+    if (Result<AtomicFile> file = AtomicFile::create(path_)) {
+        file->write(first_line), file->write(head.take()), file->write(body);
+        written_ = file->commit();
+    } else {
+        written_ = file.error();
+    }
+    watch_.restart();
+}
+
+void CheckpointFile::remove() const {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+}
+
+}  // namespace exitance

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/io/solution/solution_groups.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::uint32_t none = ElementId::none_value;
+
+/// Cuts a tree anew in the order in which its elements came to be; why not, when the file makes no sense.
+class Replay {
+  public:
+    Replay(Hdf5Reader& file, const std::string& group, std::size_t region_count)
+        : parent_(file.read<std::uint32_t>(group + "/parent")),
+          cut_(file.read<std::uint8_t>(group + "/cut", 1, parent_.size())),
+          ratio_(file.read<double>(group + "/ratio", 1, parent_.size())),
+          line_element_(file.read<std::uint32_t>(group + "/line_element")),
+          line_(file.read<double>(group + "/line", 3, line_element_.size())),
+          region_(file.read<std::uint32_t>(group + "/root_region")),
+          shape_(file.read<std::uint8_t>(group + "/root_shape", 1, region_.size())),
+          patch_(file.read<double>(group + "/root_patch", 9, region_.size())),
+          region_count_(region_count) {}
+
+    std::optional<std::string> run(ElementTree& tree) {
+        std::size_t root = 0;
+        while (tree.size() < parent_.size()) {
+            const std::size_t at = tree.size();
+            const bool good = parent_[at] == none ? add_root(tree, root++) : split(tree);
+            if (!good) return "makes no tree at element " + std::to_string(at);
+        }
+        for (ElementId e : tree.ids())
+            if (tree.is_leaf(e) && cut_[e.value] != 0)
+                return "lacks the children of element " + std::to_string(e.value);
+        if (root != region_.size()) return "has fewer roots than patches";
+        std::vector<bool> has_root(region_count_);
+        for (const std::uint32_t region : region_) has_root[region] = true;
+        const auto bare = std::find(has_root.begin(), has_root.end(), false);
+        if (bare != has_root.end()) return "has no element on region " + std::to_string(bare - has_root.begin());
+        return {};
+    }
+
+  private:
+    bool add_root(ElementTree& tree, std::size_t i) {
+        if (i >= region_.size() || region_[i] >= region_count_ || shape_[i] > 1) return false;
+        const double* p = &patch_[9 * i];
+        for (int k = 0; k < 9; ++k)
+            if (!std::isfinite(p[k])) return false;
+        const Patch patch{{p[0], p[1], p[2]},
+                          {p[3], p[4], p[5]},
+                          {p[6], p[7], p[8]},
+                          shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram};
+        const double squared_area = squared_norm(cross(patch.a, patch.b));
+        if (!(squared_area > 0 && std::isfinite(1 / squared_area))) return false;  // no place would have coordinates
+        tree.add_root(RegionId(region_[i]), patch);
+        return true;
+    }
+    bool split(ElementTree& tree) {
+        const std::size_t first = tree.size();
+        const std::uint32_t p = parent_[first];
+        if (p >= first || !tree.is_leaf(ElementId(p)) || cut_[p] == 0 || cut_[p] > 4) return false;
+        const Cut way = static_cast<Cut>(cut_[p]);
+        if (way == Cut::line) return split_by_line(tree, ElementId(p));
+        if (!(ratio_[p] > 0 && ratio_[p] < 1) || tree.is_cell(ElementId(p))) return false;
+        const std::size_t pieces = way == Cut::both || tree.patch(ElementId(p)).is_triangle() ? 4 : 2;
+        if (pieces > parent_.size() - first) return false;
+        for (std::size_t k = 0; k < pieces; ++k)
+            if (parent_[first + k] != p) return false;
+        tree.split(ElementId(p), way, ratio_[p]);
+        return true;
+    }
+
+    bool split_by_line(ElementTree& tree, ElementId e) {
+        const std::size_t first = tree.size();
+        const auto found = std::lower_bound(line_element_.begin(), line_element_.end(), e.value);
+        if (found == line_element_.end() || *found != e.value || parent_.size() - first < 2) return false;
+        if (parent_[first] != e.value || parent_[first + 1] != e.value) return false;
+        const double* line = &line_[3 * static_cast<std::size_t>(found - line_element_.begin())];
+        if (tree.split_by_line(e, {{line[0], line[1]}, line[2]}, 0).is_none()) return false;
+        // Slivers cut from slivers keep few digits of their areas; the same cuts give the same ones again.
+        const double a = tree.area(ElementId(first)), b = tree.area(ElementId(first + 1));
+        return a > 0 && b > 0 && a + b <= 1.5 * tree.area(e);
+    }
+
+    std::vector<std::uint32_t> parent_;
+    std::vector<std::uint8_t> cut_;
+    std::vector<double> ratio_;
+    std::vector<std::uint32_t> line_element_;  ///< Ascending.
+    std::vector<double> line_;
+    std::vector<std::uint32_t> region_;
+    std::vector<std::uint8_t> shape_;
+    std::vector<double> patch_;
+    std::size_t region_count_;
+};
+
+/// The values of a function, those of its leaves in the order of their ids.
+std::vector<float> leaf_values(const ElementFunction& function) {
+    const ElementTree& tree = function.tree;
+    std::vector<float> out;
+    out.reserve(bands * function.values.size());
+    for (ElementId e : tree.ids()) {
+        if (!tree.is_leaf(e)) continue;
+        const std::size_t first = function.first_value[e],
+                          count = static_cast<std::size_t>(tree.patch(e).corner_count());
+        EXI_CHECK(first + count <= function.values.size());
+        for (std::size_t i = first; i < first + count; ++i)
+            out.insert(out.end(), function.values[i].begin(), function.values[i].end());
+    }
+    return out;
+}
+
+}  // namespace
+
+void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function) {
+    const ElementTree& tree = function.tree;
+    std::vector<std::uint32_t> parent, line_element, region;
+    std::vector<std::uint8_t> way, shape;
+    std::vector<double> ratio, line, patches;
+    for (ElementId e : tree.ids()) {
+        parent.push_back(tree.parent(e).value);
+        way.push_back(static_cast<std::uint8_t>(tree.way(e)));
+        ratio.push_back(tree.ratio(e));
+        if (tree.way(e) != Cut::line) continue;
+        line_element.push_back(e.value);
+        line.insert(line.end(), {tree.line(e).normal.x, tree.line(e).normal.y, tree.line(e).offset});
+    }
+    for (ElementId e : tree.roots()) {
+        const Patch& p = tree.patch(e);
+        region.push_back(tree.region(e).value);
+        shape.push_back(p.is_triangle() ? 1 : 0);
+        for (const Vec3& v : {p.origin, p.a, p.b}) patches.insert(patches.end(), {v.x, v.y, v.z});
+    }
+    const auto in = [&](const char* name) { return group + "/" + name; };
+    file.make_group(group);
+    file.write(in("parent"), parent, 1, {"1", "parent of an element; 4294967295 for a root"});
+    file.write(in("cut"), way, 1,
+               {"1", "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line"});
+    file.write(in("ratio"), ratio, 1, {"1", "where a cut across one direction stands, in (0, 1)"});
+    file.write(in("line_element"), line_element, 1, {"1", "elements that are cut along a line, ascending"});
+    file.write(in("line"), line, 3, {"1", "n and d of a cut n . (u, v) = d in the element's coordinates"});
+    file.write(in("root_region"), region, 1, {"1", "region of a root"});
+    file.write(in("root_shape"), shape, 1, {"1", "shape of a root: 0 parallelogram, 1 triangle"});
+    file.write(in("root_patch"), patches, 9, {"m", "origin, a and b of a root: its points are origin + u a + v b"});
+    file.write(in("values"), leaf_values(function), bands,
+               {"W/m^2", "irradiance at the corners of the leaves' patches, leaf after leaf"});
+}
+
+ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count) {
+    Replay replay(file, group, region_count);
+    const std::vector<float> values = file.read<float>(group + "/values", bands);
+    if (file.failed()) return {};
+    ElementFunction function;
+    if (const auto wrong = replay.run(function.tree)) return file.fail(group + "/parent", *wrong), ElementFunction();
+
+    function.first_value.resize(function.tree.size(), 0);
+    std::size_t count = 0;
+    for (ElementId e : function.tree.ids()) {
+        if (!function.tree.is_leaf(e)) continue;
+        function.first_value[e] = static_cast<std::uint32_t>(count);
+        count += static_cast<std::size_t>(function.tree.patch(e).corner_count());
+    }
+    if (count * bands != values.size() || count >= none)
+        return file.fail(group + "/values",
+                         "has " + std::to_string(values.size() / bands) + " rows in place of " + std::to_string(count)),
+               ElementFunction();
+    function.values.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t b = 0; b < bands; ++b) function.values[i][b] = values[i * bands + b];
+    return function;
+}
+
+}  // namespace exitance

@@ -1,0 +1,71 @@
+#include "exitance/io/solution/solution_file.hpp"
+
+#include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/io/solution/stored_scene_check.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::int64_t format = 1;  ///< Raised when older programs could not read the file.
+
+}  // namespace
+
+Result<void> write_solution(const std::string& path, const Solution& solution) {
+    Hdf5Writer file;
+    write_vtkhdf(file, solution);
+    file.make_group("exitance");
+    file.set_attribute("exitance", "format", format);
+    file.set_attribute("exitance", "program_version", std::string_view(EXITANCE_VERSION));
+    file.set_attribute("exitance", "bands", static_cast<std::int64_t>(bands));
+    file.set_attribute("exitance", "bounces", static_cast<std::int64_t>(solution.bounces));
+    file.set_attribute("exitance", "direct_in_elements", static_cast<std::int64_t>(solution.direct_in_elements));
+    file.write_text("exitance/options", solution.options, {"1", "options in force, as JSON"});
+    StoredScene::write(file, "exitance/scene", solution.scene);
+    write_function(file, "exitance/indirect", solution.indirect);
+    const Spectrum& c = solution.direct_share;
+    file.write("exitance/direct_share", std::span<const double>(c.value), 1,
+               {"1", "share of the direct light that the values of indirect hold too, a value a band"});
+    write_function(file, "exitance/interpolant", solution.interpolant);
+    if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
+    write_statistics(file, "exitance/statistics", solution.statistics);
+    return file.write_file(path);
+}
+
+Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed) {
+    Result<Hdf5Reader> opened = Hdf5Reader::open(path, rehearsed);
+    if (!opened) return opened.error();
+    Hdf5Reader& file = *opened;
+    const auto wrong = [&](const std::string& what) {
+        return Error{ErrorCode::bad_input, what, path, "solve the scene again with this program"};
+    };
+    const auto found = file.integer_attribute("exitance", "format");
+    if (!found) return wrong("is an HDF5 file, but no solution of exitance");
+    if (*found != format)
+        return wrong("is of format " + std::to_string(*found) + "; this program reads format " +
+                     std::to_string(format));
+    const std::int64_t held = file.integer_attribute("exitance", "bands").value_or(0);
+    if (held != static_cast<std::int64_t>(bands))
+        return wrong("has " + std::to_string(held) + " bands; this program carries " + std::to_string(bands));
+
+    Solution solution;
+    solution.bounces = static_cast<int>(file.integer_attribute("exitance", "bounces").value_or(-1));
+    solution.direct_in_elements = file.integer_attribute("exitance", "direct_in_elements").value_or(0) != 0;
+    solution.options = file.read_text("exitance/options");
+    solution.scene = StoredScene::read(file, "exitance/scene");
+    const std::size_t regions = solution.scene.regions().size();
+    solution.indirect = read_function(file, "exitance/indirect", regions);
+    if (file.has("exitance/direct_share")) {
+        const std::vector<double> c = file.read<double>("exitance/direct_share", 1, bands);
+        std::copy(c.begin(), c.end(), solution.direct_share.value.begin());
+        if (!is_finite(solution.direct_share)) file.fail("exitance/direct_share", "holds a number that is not finite");
+    }
+    solution.interpolant = read_function(file, "exitance/interpolant", regions);
+    if (file.has("exitance/links")) solution.links = read_links(file, "exitance/links", regions);
+    solution.statistics = read_statistics(file, "exitance/statistics");
+    if (file.failed()) return file.error();
+    for (const ElementTree* tree : {&solution.indirect.tree, &solution.interpolant.tree})
+        if (const auto nonsense = find_nonsense(*tree, solution.scene)) return wrong("is damaged: " + *nonsense);
+    return solution;
+}
+
+}  // namespace exitance

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/io/solution/hdf5_file.hpp"
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+// The parts of a solution's file. The readers check every count and index; what they return is safe to use unless
+// reader.failed() afterwards.
+
+/// A scene as it is in memory, regions and all, so that it comes back bit for bit.
+class StoredScene {
+  public:
+    static void write(Hdf5Writer& file, const std::string& group, const Scene& scene);
+    static Scene read(Hdf5Reader& file, const std::string& group);
+};
+
+/// A tree as its roots' patches and how every element was cut, which gives all patches back bit for bit; values in the
+/// order of the leaves and their patches' corners.
+void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function);
+ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+
+/// The links of a hierarchy, with their elements as a function.
+void write_links(Hdf5Writer& file, const std::string& group, const KeptLinks& links);
+KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+
+/// Everything that may differ from run to run.
+void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics);
+SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);
+
+/// The group /VTKHDF that ParaView opens: the leaves of the interpolant as polygons, each with points of its own,
+/// since light may jump from one to the next.
+void write_vtkhdf(Hdf5Writer& file, const Solution& solution);
+
+}  // namespace exitance

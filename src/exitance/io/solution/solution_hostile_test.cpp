@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "exitance/io/export/export.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/solution/hdf5_file.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/mesh/element_locator.hpp"
+#include "fuzz/solution_target.hpp"
+#include "support/run.hpp"
+#include "support/sample_solution.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr Hdf5Label label = {"1", "made up"};
+
+/// The parts of a file of one square cut into four, of which one at a time is made wrong.
+struct Parts {
+    std::vector<std::uint32_t> parent = {0xffffffffu, 0, 0, 0, 0}, root_region = {0};
+    std::vector<std::uint8_t> cut = {3, 0, 0, 0, 0}, root_shape = {0};
+    std::vector<double> ratio = {0.5, 0.5, 0.5, 0.5, 0.5}, root_patch = {0, 0, 0, 1, 0, 0, 0, 1, 0}, line;
+    std::vector<std::uint32_t> line_element;
+    std::vector<float> values = std::vector<float>(16 * bands, 1);
+
+    std::string wrong(const std::string& path) const {
+        Hdf5Writer out;
+        out.make_group("f");
+        out.write("f/parent", parent, 1, label);
+        out.write("f/cut", cut, 1, label);
+        out.write("f/ratio", ratio, 1, label);
+        out.write("f/line_element", line_element, 1, label);
+        out.write("f/line", line, 3, label);
+        out.write("f/root_region", root_region, 1, label);
+        out.write("f/root_shape", root_shape, 1, label);
+        out.write("f/root_patch", root_patch, 9, label);
+        out.write("f/values", values, bands, label);
+        if (!out.write_file(path)) return "cannot write";
+        Result<Hdf5Reader> in = Hdf5Reader::open(path);
+        if (!in) return "cannot open";
+        read_function(*in, "f", 1);
+        return in->failed() ? in->error().message.substr(in->error().message.find("data set")) : "";
+    }
+};
+
+TEST(HostileSolutions, MakeNoTreeOfNonsense) {
+    const TemporaryFolder folder;
+    const auto outcome = [&](const auto& change) {
+        Parts p;
+        change(p);
+        return p.wrong(folder / "f.h5");
+    };
+    EXPECT_EQ(outcome([](Parts&) {}), "");
+    EXPECT_EQ(outcome([](Parts& p) { p.parent[1] = 7; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.parent[0] = 0; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.parent[4] = 1; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[0] = 0; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[0] = 9; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[0] = 4; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.cut[3] = 1; }), "data set f/parent lacks the children of element 3");
+    EXPECT_EQ(outcome([](Parts& p) { p.ratio[0] = 1; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.ratio[0] = NAN; }), "data set f/parent makes no tree at element 1");
+    EXPECT_EQ(outcome([](Parts& p) { p.ratio.pop_back(); }), "data set f/ratio has 4 rows in place of 5");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_region[0] = 1; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_shape[0] = 2; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_patch[4] = INFINITY; }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_region.push_back(0); }), "data set f/root_shape has 1 rows in place of 2");
+    EXPECT_EQ(outcome([](Parts& p) { p.values.resize(15 * bands); }), "data set f/values has 15 rows in place of 16");
+}
+
+TEST(HostileSolutions, CutNothingAlongLinesThatMissIt) {
+    const TemporaryFolder folder;
+    Parts p;
+    p.parent = {0xffffffffu, 0, 0}, p.cut = {4, 0, 0}, p.ratio = {0.5, 0.5, 0.5};
+    p.line_element = {0}, p.values.resize(8 * bands);
+    p.line = {1, 1, 0.7};
+    EXPECT_EQ(p.wrong(folder / "f.h5"), "");
+    for (const std::vector<double>& line : {std::vector<double>{1, 1, 7}, {NAN, 1, 0.7}, {0, 0, 0}, {1, 0, 1}}) {
+        p.line = line;
+        EXPECT_EQ(p.wrong(folder / "f.h5"), "data set f/parent makes no tree at element 1");
+    }
+}
+
+TEST(HostileSolutions, SliversCutFromSliversAreNone) {
+    // Thin triangles that a solve halves again and again keep few digits of their areas.
+    Solution s = sample_solution();
+    RandomStream random(3, Stream::mesh);
+    s.indirect = sample_function(s.scene, 1, 0);
+    const Vec3 a{0.3, 0.7, 0};
+    ElementId e = s.indirect.tree.add_root(RegionId(std::size_t(0)),
+                                           {{0.2, 0.1, 0}, a, 1.1 * a + Vec3{0, 1e-11, 0}, Patch::Shape::triangle});
+    for (int depth = 0; depth < 12; ++depth) {
+        const Vec2 n = {random.uniform() - 0.5, random.uniform() - 0.5};
+        e = s.indirect.tree.split_by_line(e, {n, dot(n, s.indirect.tree.centre(e))}, 0);
+        ASSERT_FALSE(e.is_none());
+    }
+    s.indirect.values.clear();
+    s.indirect.first_value.resize(s.indirect.tree.size(), 0);
+    for (ElementId leaf : s.indirect.tree.leaves()) {
+        s.indirect.first_value[leaf] = static_cast<std::uint32_t>(s.indirect.values.size());
+        s.indirect.values.resize(s.indirect.values.size() +
+                                 static_cast<std::size_t>(s.indirect.tree.patch(leaf).corner_count()));
+    }
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", s));
+    const Result<Solution> back = load_solution(folder / "s.h5");
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->indirect.tree.size(), s.indirect.tree.size());
+}
+
+TEST(HostileSolutions, WithElementsApartFromTheSceneAreErrors) {
+    const TemporaryFolder folder;
+    const auto outcome = [&](const auto& change) {
+        Solution s = sample_solution();
+        change(s);
+        EXPECT_TRUE(write_solution(folder / "s.h5", s));
+        const Result<Solution> back = load_solution(folder / "s.h5");
+        return back ? std::string() : back.error().message;
+    };
+    EXPECT_EQ(outcome([](Solution&) {}), "");
+    const auto with_root = [](const Patch& patch) {
+        return [patch](Solution& s) {
+            ElementTree tree;
+            for (ElementId root : s.indirect.tree.roots())
+                tree.add_root(s.indirect.tree.region(root), root.value == 0 ? patch : s.indirect.tree.patch(root));
+            s.indirect = {tree, Field<ElementId, std::uint32_t>(tree.size()), {}};
+            for (ElementId e : tree.ids()) {
+                s.indirect.first_value[e] = static_cast<std::uint32_t>(s.indirect.values.size());
+                s.indirect.values.resize(s.indirect.values.size() +
+                                         static_cast<std::size_t>(tree.patch(e).corner_count()));
+            }
+        };
+    };
+    const Patch good = sample_solution().indirect.tree.patch(ElementId(std::size_t(0)));
+    EXPECT_EQ(outcome(with_root(good)), "");
+    Patch bad = good;
+    bad.origin.z += 1;
+    EXPECT_NE(outcome(with_root(bad)).find("does not lie on its region"), std::string::npos);
+    bad = good, bad.a = 1e150 * good.a;
+    EXPECT_NE(outcome(with_root(bad)), "");
+    bad = good, bad.b = bad.a;  // no area, no coordinates
+    EXPECT_NE(outcome(with_root(bad)).find("makes no tree at element 0"), std::string::npos);
+}
+
+TEST(HostileSolutions, AreDarkAtPointsThatAreNotFinite) {
+    // A damaged scene may have rays hit there.
+    const Solution s = sample_solution();
+    const ElementLocator locator(s.indirect.tree, s.scene.regions().size());
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (RegionId r : s.scene.regions().ids()) EXPECT_EQ(s.indirect.at(locator.find(r, {nan, nan, nan})), Spectrum());
+}
+
+TEST(HostileSolutions, MayNotChangeTheKindOfASet) {
+    const TemporaryFolder folder;
+    Hdf5Writer out;
+    out.write("a", std::vector<double>{1, 2, 3, 4}, 2, label);
+    out.write("b", std::vector<std::int64_t>{-1, 2}, 1, label);
+    out.write_text("c", "text", label);
+    out.make_group("g");
+    ASSERT_TRUE(out.write_file(folder / "f.h5"));
+    const auto wrong = [&](const auto& read) {
+        Result<Hdf5Reader> in = Hdf5Reader::open(folder / "f.h5");
+        EXPECT_TRUE(in);
+        read(*in);
+        return in->failed() ? in->error().message.substr(in->error().message.find("data set")) : "";
+    };
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a", 2); }), "");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a", 3); }), "data set a does not have rows of 3");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a"); }), "data set a does not have rows of 1");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("b"); }), "data set b does not hold fractions");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<std::uint8_t>("a", 2); }), "data set a does not hold integers");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("x/y"); }), "data set x/y is missing");
+    EXPECT_EQ(wrong([](auto& in) { in.template read<double>("a/y"); }), "data set a/y is missing");
+    EXPECT_EQ(wrong([](auto& in) { in.read_text("a"); }), "data set a is not one text of fixed length");
+    EXPECT_EQ(wrong([](auto& in) { in.read_texts("c"); }), "data set c is not a row of texts of fixed length");
+    EXPECT_TRUE(wrong([](auto& in) { in.template read<double>("g"); }).starts_with("data set g cannot be opened"));
+}
+
+TEST(HostileSolutions, WhoseMetadataCrashTheLibraryAreErrors) {
+    // The attributes of a data set are said to lie in a heap too, at an address where there is none: version 1.10.8 of
+    // the library crashes on it, others may not.
+    std::string bytes = fuzz::solution_corpus().at(0);
+    const std::string heap = std::string("\x15\x12\0\x04\0\0", 6) + std::string(16, '\xff');
+    const std::string first_attribute("\x0c\x1c\0\0\x03\0\x06\0\x08\0\x04\0\0units", 18);
+    const std::size_t at = bytes.find(heap + first_attribute);
+    ASSERT_NE(at, bytes.npos);
+    bytes[at + 6] = '\xf0';
+    fuzz::mend_solution(bytes);
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_file(folder / "s.h5", bytes));
+    const Result<Solution> back = load_solution(folder / "s.h5");
+    const std::string said = back ? "" : back.error().message;
+    EXPECT_TRUE(back || said.starts_with("is damaged")) << said;
+}
+
+TEST(HostileSolutions, WhoseMetadataAskForMuchMemoryAreErrors) {
+    // The second part of a header is said to be 32 TiB long: version 1.10.8 of the library makes room for it.
+    const std::string bytes = fuzz::solution_corpus().at(0), goes_on("\x10\x10\0\0", 4);
+    const TemporaryFolder folder;
+    std::size_t refused = 0;
+    for (std::size_t at = bytes.find(goes_on); at != bytes.npos && at < 20000; at = bytes.find(goes_on, at + 4)) {
+        std::string longer = bytes;
+        longer[at + goes_on.size() + 1 + 8 + 5] = '\x20';  // flags, address, length
+        fuzz::mend_solution(longer);
+        ASSERT_TRUE(write_file(folder / "s.h5", longer));
+        const Result<Solution> back = load_solution(folder / "s.h5");
+        refused += !back && back.error().message.starts_with("is damaged: the HDF5 library ");
+    }
+    EXPECT_GE(refused, 1u);
+}
+
+TEST(Exports, ByUnknownEndingsAreErrors) {
+    const Result<void> written = export_solution(sample_solution(), "solution.stl");
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::usage);
+    EXPECT_EQ(written.error().hint, "endings known: .vtkhdf, .vtu, .glb, .obj, .csv");
+    EXPECT_EQ(export_solution(sample_solution(), "no/folder/s.glb").error().code, ErrorCode::cannot_write);
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,78 @@
+#include "exitance/io/solution/solution_groups.hpp"
+
+namespace exitance {
+namespace {
+
+/// Every figure by its name in the file, for writing and for reading.
+template <class Statistics, class Visit>
+void for_figures(Statistics& s, const Visit& visit) {
+    visit("method", s.method);
+    visit("basis", s.basis);
+    visit("schedule", s.schedule);
+    visit("threads", s.threads);
+    visit("surfaces", s.surfaces);
+    visit("elements", s.elements);
+    visit("leaf_elements", s.leaf_elements);
+    visit("links", s.links);
+    visit("rays", s.rays);
+    visit("form_factors", s.form_factors);
+    visit("iterations", s.iterations);
+    visit("converged", s.converged);
+    visit("residual", s.residual);
+    visit("relative_error_estimate", s.relative_error_estimate);
+    visit("relative_error_bound", s.relative_error_bound);
+    visit("relative_error_estimate_interpolant", s.relative_error_estimate_interpolant);
+    visit("standard_error", s.standard_error);
+    visit("energy_emitted", s.energy.emitted);
+    visit("energy_absorbed", s.energy.absorbed);
+    visit("energy_defect", s.energy.defect);
+    visit("peak_memory_bytes", s.peak_memory_bytes);
+    visit("link_memory_bytes", s.link_memory_bytes);
+    visit("element_memory_bytes", s.element_memory_bytes);
+    visit("stopped_by", s.stopped_by);
+}
+
+}  // namespace
+
+void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics) {
+    file.make_group(group);
+    for_figures(statistics, [&]<class T>(const char* name, const T& value) {
+        if constexpr (std::is_same_v<T, std::string>)
+            file.set_attribute(group, name, std::string_view(value));
+        else if constexpr (std::is_same_v<T, double>)
+            file.set_attribute(group, name, value);
+        else
+            file.set_attribute(group, name, static_cast<std::int64_t>(value));
+    });
+    file.make_group(group + "/seconds");
+    for (const auto& [phase, seconds] : statistics.seconds)
+        file.set_attribute(group + "/seconds", phase.c_str(), seconds);
+    if (!statistics.elements_by_level.empty()) {
+        const std::vector<std::int64_t> levels(statistics.elements_by_level.begin(),
+                                               statistics.elements_by_level.end());
+        file.write(group + "/elements_by_level", levels, 1, {"1", "elements of a hierarchy by depth, roots first"});
+    }
+    file.write_texts(group + "/warnings", statistics.warnings, {"1", "what the user should know"});
+}
+
+SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
+    SolveStatistics statistics;
+    for_figures(statistics, [&]<class T>(const char* name, T& value) {  // a figure that is missing keeps its default
+        if constexpr (std::is_same_v<T, std::string>)
+            value = file.text_attribute(group, name).value_or(value);
+        else if constexpr (std::is_same_v<T, double>)
+            value = file.number_attribute(group, name).value_or(value);
+        else if (const auto whole = file.integer_attribute(group, name))
+            value = static_cast<T>(*whole);
+    });
+    for (const std::string& phase : file.attribute_names(group + "/seconds"))
+        if (const auto seconds = file.number_attribute(group + "/seconds", phase.c_str()))
+            statistics.seconds[phase] = *seconds;
+    if (const std::string levels = group + "/elements_by_level"; file.has(levels))
+        for (const std::int64_t count : file.read<std::int64_t>(levels))
+            statistics.elements_by_level.push_back(static_cast<std::size_t>(std::max<std::int64_t>(0, count)));
+    statistics.warnings = file.read_texts(group + "/warnings");
+    return statistics;
+}
+
+}  // namespace exitance

@@ -1,0 +1,215 @@
+#include "exitance/methods/light/light_functions.hpp"
+
+#include <cmath>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/solve/conserving_transport.hpp"
+#include "exitance/transport/open_share.hpp"
+
+namespace exitance {
+
+ElementFunction dark(const Stage& stage) {
+    ElementFunction out;
+    for (const auto& [region, patch] : stage.pieces) out.tree.add_root(region, patch);
+    out.first_value.resize(out.tree.size(), 0);
+    out.values.assign(4, {});
+    return out;
+}
+
+namespace {
+
+/// Direct light as projected, on every leaf.
+ElementFunction as_function(const DirectProjection& direct) {
+    ElementFunction out;
+    out.tree = direct.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (ElementId e : out.tree.leaves()) {
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        for (const Spectrum& corner : direct.fit[e].corners) out.add_value(corner);
+    }
+    return out;
+}
+
+}  // namespace
+
+ElementFunction constant_on_leaves(const GlobalLight& light) {
+    ElementFunction out;
+    out.tree = light.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
+        out.first_value[light.numbering.leaves[i]] = static_cast<std::uint32_t>(out.values.size());
+        for (int corner = 0; corner < 4; ++corner) out.add_value(light.indirect[i]);
+    }
+    return out;
+}
+
+ElementFunction polynomials_on_leaves(const GlobalLight& light) {
+    ElementFunction out;
+    out.tree = light.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        for (int corner = 0; corner < out.tree.patch(e).corner_count(); ++corner)
+            out.add_value(light.indirect_corners[i][static_cast<std::size_t>(corner)]);
+    }
+    return out;
+}
+
+ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+                               const Spectrum& c) {
+    ElementFunction out;
+    out.tree = light.tree;
+    out.first_value.resize(out.tree.size(), 0);
+    for (std::size_t i = 0; i < light.numbering.leaves.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const Material& material = scene.material(out.tree.region(e));
+        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
+        const Spectrum mean = light.direct_share * light.direct[i];
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Spectrum& E_dir = light.on_projection            ? direct.fit[e].corners[k]
+                                    : light.direct_corners.empty() ? light.direct[i]
+                                                                   : light.direct_corners[i][k];
+            const Spectrum& E_ind = light.indirect_corners.empty() ? light.indirect[i] : light.indirect_corners[i][k];
+            out.add_value(material.reflectance * (E_dir - light.direct_share * E_dir + mean + E_ind) +
+                          c * material.exitance);
+        }
+    }
+    return out;
+}
+
+DeliveredLight::DeliveredLight(const Scene& scene, const ElementFunction& indirect, const DirectProjection& direct,
+                               const Spectrum& direct_weight, const Spectrum& c)
+    : scene_(scene),
+      indirect_(indirect, scene.regions().size()),
+      direct_(as_function(direct), scene.regions().size()),
+      direct_weight_(direct_weight),
+      c_(c) {}
+
+void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
+    constexpr std::size_t together = 64;
+    std::array<Spectrum, together> direct;
+    indirect_.read(hits, values);
+    for (std::size_t first = 0; first < hits.size(); first += together) {
+        const std::size_t count = std::min(together, hits.size() - first);
+        direct_.read(hits.subspan(first, count), std::span(direct).first(count));
+        for (std::size_t i = 0; i < count; ++i) {
+            const Material& material = scene_.material(hits[first + i].region);
+            Spectrum& b = values[first + i];
+            b = material.reflectance * (b + direct_weight_ * direct[i]) + c_ * material.exitance;
+        }
+    }
+}
+
+std::vector<ElementFunction> delivered_functions(const Scene& scene, const ElementFunction& indirect,
+                                                 const DirectProjection& direct, const Spectrum& direct_weight,
+                                                 const Spectrum& c) {
+    std::vector<ElementFunction> out = {indirect, as_function(direct)};
+    const auto turn = [&](ElementFunction& f, const Spectrum& factor, const Spectrum& emitted) {
+        for (ElementId e : f.tree.leaves()) {
+            const Material& material = scene.material(f.tree.region(e));
+            const Spectrum rho = factor * material.reflectance, more = emitted * material.exitance;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(f.tree.patch(e).corner_count()); ++i) {
+                std::array<float, bands>& value = f.values[f.first_value[e] + i];
+                for (std::size_t k = 0; k < bands; ++k)
+                    value[k] = static_cast<float>(rho[k] * static_cast<double>(value[k]) + more[k]);
+            }
+        }
+    };
+    turn(out[0], Spectrum(1.0), c), turn(out[1], direct_weight, Spectrum());
+    return out;
+}
+
+namespace {
+
+/// Does all light arrive that leaves send, `radiosity(leaf)` of it per area?
+template <class Radiosity>
+bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                 const Radiosity& radiosity, std::uint64_t seed) {
+    std::vector<double> power = leaf_areas(tree, numbering);
+    for (std::size_t i = 0; i < power.size(); ++i) power[i] *= mean(radiosity(numbering.leaves[i]));
+    const ElementLocator locator(tree, stage.scene.regions().size());
+    return is_closed(stage, tree, numbering, locator, seed, power);
+}
+
+}  // namespace
+
+Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed) {
+    if (!stage.scene.lights().empty()) return Spectrum(1.0);
+    const auto exitance = [&](ElementId e) { return stage.scene.material(direct.tree.region(e)).exitance; };
+    if (!all_arrives(stage, direct.tree, LeafNumbering(direct.tree), exitance, seed)) return Spectrum(1.0);
+    Spectrum emitted, received;  // W
+    for (ElementId e : direct.tree.leaves()) {
+        emitted += direct.tree.area(e) * exitance(e);
+        received += direct.tree.area(e) * direct.fit[e].mean;
+    }
+    const Spectrum scale = conserving_scale(emitted, received);
+    for (DirectFit& fit : direct.fit) {
+        fit.mean *= scale;
+        for (Spectrum& corner : fit.corners) corner *= scale;
+    }
+    return scale;
+}
+
+bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed) {
+    return all_arrives(
+        stage, light.tree, light.numbering, [&](ElementId e) { return light.reflected[light.numbering.number[e]]; },
+        seed);
+}
+
+namespace {
+
+/// k of every region: the mean over the method's leaves, by what they reflect.
+Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& light) {
+    EXI_CHECK(light.kept.empty() || light.kept.size() == light.numbering.leaves.size());
+    Field<RegionId, double> sent(scene.regions().size(), 0.0), kept(scene.regions().size(), 0.0);
+    for (std::size_t i = 0; i < light.kept.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const double power = light.tree.area(e) * mean(light.reflected[i]);
+        sent[light.tree.region(e)] += power;
+        kept[light.tree.region(e)] += light.kept[i] * power;
+    }
+    for (RegionId r : kept.ids()) kept[r] = sent[r] > 0 ? kept[r] / sent[r] : 1;
+    return kept;
+}
+
+}  // namespace
+
+void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+               const Spectrum& c) {
+    const Field<RegionId, double> kept = kept_by_region(scene, light);
+    Spectrum sent, first, gathered, again;  // W: in all; what arrives of direct light, and of E; E itself
+    const auto send = [&](RegionId region, const Spectrum& power, Spectrum& arriving) {
+        sent += power;
+        arriving += kept[region] * power;
+    };
+    for (RegionId r : scene.regions().ids()) send(r, scene.regions()[r].area * (c * scene.material(r).exitance), first);
+    for (ElementId e : direct.tree.leaves()) {
+        const RegionId r = direct.tree.region(e);
+        const Spectrum lit = (Spectrum(1.0) - c) * direct.fit[e].mean;
+        send(r, direct.tree.area(e) * (scene.material(r).reflectance * lit), first);
+    }
+    for (ElementId e : E.tree.leaves()) {
+        const RegionId r = E.tree.region(e);
+        // A linear or bilinear function has its mean at the centre of its element.
+        const Spectrum power = E.tree.area(e) * E.at({e, E.tree.centre(e)});
+        gathered += power;
+        send(r, scene.material(r).reflectance * power, again);
+    }
+    if (!is_kept(first + again, sent)) return;
+    const Spectrum scale = conserving_scale(first, gathered - again);
+    for (std::array<float, bands>& value : E.values)
+        for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(scale[b] * value[b]);
+}
+
+double rms_standard_error(const Stage& stage, const GlobalLight& light) {
+    double sum = 0;
+    for (std::size_t i = 0; i < light.standard_error.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const Spectrum& rho = stage.scene.material(light.tree.region(e)).reflectance;
+        sum += light.tree.area(e) * squared(rho * light.standard_error[i]) / static_cast<double>(bands);
+    }
+    return std::sqrt(sum / stage.area);
+}
+
+}  // namespace exitance

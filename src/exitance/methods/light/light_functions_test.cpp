@@ -1,0 +1,94 @@
+#include "exitance/methods/light/light_functions.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// A furnace, B = M / (1 - rho), as direct light, a method's light and gathered light on the same elements.
+struct Furnace {
+    static constexpr double rho = 0.5;
+    Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
+    Stage stage{scene};
+    DirectProjection direct{stage.make_elements({.edge = 0.5, .grading_levels = 0}), {}};
+    GlobalLight light;
+    ElementFunction gathered;
+
+    /// `kept`: how much of its light arrives; `wrong`: what the gathered light is off by.
+    Furnace(double kept, double wrong) {
+        light.tree = direct.tree, light.numbering = LeafNumbering(light.tree);
+        const std::size_t n = light.numbering.leaves.size();
+        light.kept.assign(n, kept);
+        light.reflected.assign(n, Spectrum(rho / (1 - rho)));
+        direct.fit.resize(direct.tree.size());
+        gathered.tree = direct.tree, gathered.first_value.resize(gathered.tree.size(), 0);
+        for (ElementId e : direct.tree.leaves()) {
+            direct.fit[e].mean = Spectrum(kept);  // of M = 1
+            gathered.first_value[e] = static_cast<std::uint32_t>(gathered.values.size());
+            for (int i = 0; i < 4; ++i) gathered.add_value(Spectrum(wrong * exact(kept)));
+        }
+    }
+    /// E_ind = k rho (E_dir + E_ind).
+    static double exact(double kept) { return kept * rho * kept / (1 - kept * rho); }
+
+    double after_keeping() {
+        keep_flux(gathered, scene, direct, light, Spectrum());
+        return static_cast<double>(gathered.values[0][0]);
+    }
+};
+
+TEST(KeepEmittedFlux, MakesProjectedLightWhatIsEmittedWhereAllArrives) {
+    Furnace furnace(0.99, 1);
+    EXPECT_NEAR(keep_emitted_flux(furnace.direct, furnace.stage, 1)[0], 1 / 0.99, 1e-12);
+    for (ElementId e : furnace.direct.tree.leaves()) EXPECT_NEAR(furnace.direct.fit[e].mean[0], 1, 1e-12);
+}
+
+TEST(KeepEmittedFlux, LeavesAloneWhatShinesIntoTheOpen) {
+    const Scene scene = built_scene("spiral");
+    const Stage stage(scene);
+    DirectProjection direct{stage.make_elements({.edge = 1, .grading_levels = 0}), {}};
+    direct.fit.resize(direct.tree.size());
+    for (ElementId e : direct.tree.leaves()) direct.fit[e].mean = Spectrum(0.1);
+    EXPECT_EQ(keep_emitted_flux(direct, stage, 1)[0], 1);
+}
+
+TEST(KeepFlux, MakesGatheredLightWhatArrivesOfItAndOfDirectLight) {
+    for (const double kept : {1.0, 0.99})
+        for (const double wrong : {0.99, 1.0, 1.02})
+            EXPECT_NEAR(Furnace(kept, wrong).after_keeping(), Furnace::exact(kept), 1e-6) << kept << " " << wrong;
+}
+
+TEST(KeepFlux, CountsTheShareOfDirectLightThatElementsGatherAsSent) {
+    Furnace furnace(1, 1.01);
+    // All of M is gathered in place of direct light: E = rho E + M.
+    for (std::array<float, bands>& value : furnace.gathered.values) value.fill(2.02f);
+    keep_flux(furnace.gathered, furnace.scene, furnace.direct, furnace.light, Spectrum(1.0));
+    EXPECT_NEAR(furnace.gathered.values[0][0], 2, 1e-6);
+}
+
+TEST(KeepFlux, LeavesAloneWhatMuchEscapesFromOrIsFarOff) {
+    EXPECT_NEAR(Furnace(0.9, 1.02).after_keeping(), 1.02 * Furnace::exact(0.9), 1e-6);
+    EXPECT_NEAR(Furnace(1, 1.2).after_keeping(), 1.2 * Furnace::exact(1), 1e-6);
+}
+
+TEST(DeliveredFunctions, AddUpToWhatRaysRead) {
+    Furnace furnace(1, 1);
+    for (ElementId e : furnace.direct.tree.leaves()) furnace.direct.fit[e].corners.fill(Spectrum(0.7));
+    const Spectrum weight(0.75), c(0.25);
+    const DeliveredLight rays(furnace.scene, furnace.gathered, furnace.direct, weight, c);
+    const auto parts = delivered_functions(furnace.scene, furnace.gathered, furnace.direct, weight, c);
+    for (ElementId e : furnace.direct.tree.leaves()) {
+        const Vec2 uv = {0.3, 0.6};
+        Spectrum sum;
+        for (const ElementFunction& part : parts) sum += part.at({e, uv});
+        const HitPoint hit = {furnace.direct.tree.region(e), furnace.direct.tree.patch(e).at(uv)};
+        Spectrum read;
+        rays.read({&hit, 1}, {&read, 1});
+        EXPECT_NEAR(sum[0], read[0], 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace exitance

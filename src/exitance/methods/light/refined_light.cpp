@@ -1,0 +1,62 @@
+#include "exitance/methods/light/refined_light.hpp"
+
+#include "exitance/basis/element_rule.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/methods/light/light_functions.hpp"
+#include "exitance/reconstruct/element_gather.hpp"
+
+namespace exitance {
+namespace {
+
+/// Mean of rho (E_dir + H b) - b over every leaf of the method, by leaf number, W/m^2; `parts` add up to b + c M.
+std::vector<Spectrum> mean_residual(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
+                                    const std::vector<ElementFunction>& parts, double share) {
+    std::vector<ElementGather> sums;
+    for (const ElementFunction& part : parts) sums.emplace_back(stage, part);
+    const ElementLocator locator(indirect.tree, stage.scene.regions().size());
+    std::vector<Spectrum> out(light.numbering.leaves.size());
+    parallel_ranges(out.size(), 8, [&](std::size_t begin, std::size_t end) {
+        ElementGather::Workspace workspace;
+        for (std::size_t i = begin; i < end; ++i) {
+            const ElementId e = light.numbering.leaves[i];
+            const RegionId region = light.tree.region(e);
+            const Normal& n = stage.scene.regions()[region].plane.n;
+            const Spectrum& rho = stage.scene.material(region).reflectance;
+            for (const auto& [uv, weight] : element_rule(light.tree, e, RuleOrder::nodes)) {
+                const Point x = light.tree.patch(e).at(uv);
+                if (stage.occluders.is_covered(x, n, region)) continue;
+                Spectrum arriving;
+                for (const ElementGather& sum : sums) arriving += sum(x, n, region, share, workspace);
+                out[i] += weight * (rho * (arriving - indirect.at(locator.find(region, x))));
+            }
+        }
+    });
+    return out;
+}
+
+}  // namespace
+
+std::vector<ElementFunction> refined_light(const Stage& stage, const GlobalLight& light,
+                                           const ElementFunction& indirect, const DirectProjection& direct,
+                                           const Spectrum& c, RayBudget rays, double share, std::uint64_t seed) {
+    std::vector<ElementFunction> out = delivered_functions(stage.scene, indirect, direct, Spectrum(1.0) - c, c);
+    const std::vector<Spectrum> r = mean_residual(stage, light, indirect, out, share);
+    const std::size_t regions = stage.scene.regions().size();
+    const ElementLocator locator(light.tree, regions);
+    const RayRows F(stage, light.tree, light.numbering, locator, rays, seed);
+    std::vector<Spectrum> e = r;
+    solve_radiosity(
+        {F, leaf_reflectances(stage.scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},
+        Relaxation::gmres, e, {.residual = 0.02, .max_iterations = 200});
+    ElementFunction& b = out.front();
+    for (ElementId leaf : b.tree.leaves()) {
+        const Point x = b.tree.patch(leaf).at(b.tree.centre(leaf));
+        const Spectrum& more = e[light.numbering.number[locator.find(b.tree.region(leaf), x).element]];
+        for (int i = 0; i < b.tree.patch(leaf).corner_count(); ++i)
+            for (std::size_t k = 0; k < bands; ++k)
+                b.values[b.first_value[leaf] + static_cast<std::size_t>(i)][k] += static_cast<float>(more[k]);
+    }
+    return out;
+}
+
+}  // namespace exitance

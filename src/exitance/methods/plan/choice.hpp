@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/solve/solve_options.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// Down to this error, relative RMS, sums over elements (ElementGather) find light where they suit as soon as links of
+/// polynomials do, and better beside edges.
+constexpr double sums_reach = 0.00125;
+
+/// The options with the method that solves in place of `auto`, its basis, and why that.
+struct MethodChoice {
+    SolveOptions options;
+    std::string why;  ///< Empty where the user chose.
+};
+
+/// By what is asked for, what stands in the scene, and the error.
+MethodChoice choose_method(const Stage& stage, const SolveOptions& options);
+
+}  // namespace exitance

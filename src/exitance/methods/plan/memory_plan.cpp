@@ -1,0 +1,53 @@
+#include "exitance/methods/plan/memory_plan.hpp"
+
+#include <fmt/format.h>
+
+#include "exitance/core/memory.hpp"
+
+namespace exitance {
+namespace {
+
+/// Bytes of an element, once for every vector and tree that it stands in, refinements and grading included; measured on
+/// rooms of 10^2 to 10^5 polygons and rounded up.
+constexpr double bytes_per_element = 6000;
+
+double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
+    const auto elements = static_cast<double>(predict_elements(pieces, knobs.solve_mesh.edge) +
+                                              predict_elements(pieces, knobs.gather_mesh.edge));
+    const bool galerkin = options.basis && is_galerkin(*options.basis);
+    // Links while they are sorted; entries with their sources. Half of all pairs see each other.
+    const double words_a_pair = galerkin                                           ? 15
+                                : options.form_factors == FormFactorKind::hemicube ? 2
+                                : options.form_factors == FormFactorKind::analytic ? 1
+                                                                                   : 0;
+    const double entries =
+        words_a_pair > 0 ? words_a_pair * elements * elements : 4 * elements * knobs.solve_rays.average;
+    return bytes_per_element * elements + 4 * entries;
+}
+
+}  // namespace
+
+Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
+    const double limit = static_cast<double>(*options.memory_limit_bytes);
+    const double used = static_cast<double>(peak_memory_bytes());
+    bool unchanged = true;
+    for (double before = 0; used + predicted_bytes(knobs, pieces, options) > limit; unchanged = false) {
+        const double now = predicted_bytes(knobs, pieces, options);
+        if (now == before)
+            return Error{
+                ErrorCode::limit,
+                fmt::format("{:.0f} MiB are in use and the coarsest mesh needs about {:.0f} MiB more, over the "
+                            "limit of {:.0f} MiB",
+                            used / 0x1p20, now / 0x1p20, limit / 0x1p20),
+                "--memory-limit", "raise the limit"};
+        before = now;
+        knobs.solve_mesh.edge *= 1.5;
+        knobs.gather_mesh.edge *= 1.5;
+        knobs.solve_mesh.grading_levels = std::max(0, knobs.solve_mesh.grading_levels - 1);
+        knobs.gather_mesh.grading_levels = std::max(0, knobs.gather_mesh.grading_levels - 1);
+        knobs.solve_rays.average = std::max(16.0, knobs.solve_rays.average / 1.5);
+    }
+    return unchanged;
+}
+
+}  // namespace exitance

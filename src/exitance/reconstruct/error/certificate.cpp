@@ -1,0 +1,275 @@
+#include "exitance/reconstruct/error/certificate.hpp"
+
+#include <bit>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+namespace {
+
+/// A place to measure the residual at, and its share in the mean over all surfaces.
+struct WeightedSample {
+    ElementTree::Place place;
+    double weight;
+};
+
+/// One point of the certificate: two independent estimates of the residual there.
+struct Sample {
+    RegionId region;
+    double weight = 0;
+    Spectrum r1, r2;          ///< The residual.
+    Spectrum local1, local2;  ///< Its part by the local pass, where known.
+    bool tells_local = false;
+    std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
+    std::uint32_t rays = 0;
+};
+
+/// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x expected error.
+/// A few lie on what is left out: should there be light, it is to be noticed.
+std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
+                                              const Field<ElementId, LocalPassReport::Leaf>* known, std::size_t count,
+                                              std::uint64_t seed) {
+    const std::vector<ElementId> leaves = tree.leaves();
+    double area = 0, error = 0;
+    for (ElementId e : leaves) {
+        area += tree.area(e);
+        error += known ? tree.area(e) * (*known)[e].expected_error : 0;
+    }
+    const double mean_error = error / area;
+    const auto density = [&](ElementId e) {
+        const double seldom = stage.is_left_out(tree.region(e)) ? 0.1 : 1;
+        return seldom * (mean_error > 0 ? 0.5 + 0.5 * (*known)[e].expected_error / mean_error : 1.0);
+    };
+    double total = 0;
+    for (ElementId e : leaves) total += tree.area(e) * density(e);
+    const double share_of_all = total / stage.area;  // 1 where nothing is left out
+    const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
+    std::vector<WeightedSample> out;
+    double before = 0;
+    std::size_t leaf = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
+        const auto share = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
+        while (leaf + 1 < leaves.size() && before + share() <= wanted) before += share(), ++leaf;
+        const ElementId e = leaves[leaf];
+        out.push_back({{e, tree.uniform(e, points(k, 1), points(k, 2))},
+                       share_of_all / (density(e) * static_cast<double>(count))});
+    }
+    return out;
+}
+
+/// The places given, again and again, `count` in all.
+std::vector<WeightedSample> in_turn(const std::vector<ElementTree::Place>& places, std::size_t count) {
+    std::vector<WeightedSample> out;
+    for (std::size_t k = 0; k < count; ++k) out.push_back({places[k % places.size()], 1 / static_cast<double>(count)});
+    return out;
+}
+
+/// b + rho H b + (rho H)^2 b + ..., on the coarse mesh.
+std::vector<Spectrum> respond(const RadiositySystem& system, double residual) {
+    std::vector<Spectrum> b(system.rhs.begin(), system.rhs.end());
+    solve_radiosity(system, Relaxation::gmres, b, {.residual = residual, .max_iterations = 200});
+    return b;
+}
+
+double largest(const std::vector<Spectrum>& values) {
+    double out = 1;
+    for (const Spectrum& v : values) out = std::max(out, max(v));
+    return out;
+}
+
+/// A bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit light.
+double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
+    const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
+    const std::vector<Spectrum> u = respond({H, rho, ones, area}, 0.01);
+    // The adjoint w = 1 + H rho w, by way of rho w = rho + rho H (rho w).
+    const std::vector<Spectrum> rho_w = respond({H, rho, rho, area}, 0.01);
+    std::vector<Spectrum> w(rho.size());
+    H.gather(rho_w, w);
+    for (Spectrum& v : w) v += Spectrum(1.0);
+    return std::sqrt(largest(u) * largest(w));
+}
+
+/// Where light is summed, one sample in so many tells the parts of the residual: that is another sum, for less to know.
+constexpr std::size_t local_every = 4;
+
+constexpr std::size_t batches = 32;   ///< Of samples, for the spread of their mean.
+constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
+
+/// The mean of batches, and how uncertain it is.
+struct BatchMean {
+    double mean = 0, standard_error = 0;
+
+    explicit BatchMean(const std::array<double, batches>& values) {
+        for (double v : values) mean += v / batches;
+        double spread = 0;
+        for (double v : values) spread += (v - mean) * (v - mean) / (batches * (batches - 1.0));
+        standard_error = std::sqrt(spread);
+    }
+};
+
+}  // namespace
+
+struct Certifier::Content {
+    const Stage& stage;
+    const GlobalLight& light;
+    const ElementFunction& indirect;
+    const ReflectedLight& b;
+    CertificateOptions options;
+    double mean_reflected, constant = 1;
+    ElementLocator coarse;
+    std::vector<Spectrum> rho;
+    std::vector<double> area;
+    RayRows H;  ///< Between the leaves of `light`.
+    std::size_t looks = 0;
+    std::vector<Sample> samples;  ///< Of all looks.
+
+    Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
+            const CertificateOptions& options_)
+        : stage(stage_),
+          light(light_),
+          indirect(indirect_),
+          b(b_),
+          options(options_),
+          mean_reflected(light.mean_reflected(stage.area)),
+          coarse(light.tree, stage.scene.regions().size()),
+          rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
+          area(leaf_areas(light.tree, light.numbering)),
+          H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1) {
+        if (mean_reflected > 0) constant = error_constant(H, rho, area);
+    }
+
+    void measure_residuals();
+    std::vector<Spectrum> late_response() const;
+    Certificate judge() const;
+};
+
+/// The residual at stratified points, twice each.
+void Certifier::Content::measure_residuals() {
+    // Where light is reflected often, a small mean of the residual makes a large error, and has to be told from noise.
+    const double often = std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, 8.0);
+    const double wanted =
+        often * 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(options.points)));
+    const auto rays_at = [&](ElementId leaf) {
+        const double known = options.leaves ? 0.05 * (*options.leaves)[leaf].rays : wanted;
+        return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
+    };
+    const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
+    const std::vector<WeightedSample> places =
+        options.places.empty() ? stratified_places(stage, indirect.tree, options.leaves, options.points, seed)
+                               : in_turn(options.places, options.points);
+    const std::size_t before = samples.size();
+    samples.resize(before + places.size());
+    parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
+        GatherWorkspace workspace;
+        ElementGather::Workspace sums;
+        DirectLight::Workspace exact;
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto& [place, weight] = places[k];
+            const RegionId region = indirect.tree.region(place.element);
+            const Point x = indirect.tree.patch(place.element).at(place.uv);
+            const Normal& n = stage.scene.regions()[region].plane.n;
+            const Spectrum& reflectance = stage.scene.material(region).reflectance;
+            Spectrum delivered = indirect.at(place);
+            if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
+            Sample& sample = samples[before + k];
+            sample.region = region, sample.weight = weight;
+            sample.leaf = light.numbering.number[coarse.find(region, x).element];
+            if (options.summed) {
+                const bool is_covered = stage.occluders.is_covered(x, n, region);
+                const auto sum = [&](std::span<const ElementGather> parts) {
+                    Spectrum arriving;
+                    for (const ElementGather& part : parts)
+                        if (!is_covered) arriving += part(x, n, region, options.summed->share, sums);
+                    return arriving;
+                };
+                sample.r1 = sample.r2 = reflectance * (sum(options.summed->delivered) - delivered);
+                if (!options.summed->gathered.empty() && k % local_every == 0) {
+                    sample.local1 = sample.local2 = reflectance * (sum(options.summed->gathered) - delivered);
+                    sample.tells_local = true;
+                }
+                continue;
+            }
+            const unsigned rays = rays_at(place.element);
+            const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
+                const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
+                cast_gather(stage, x, n, region, rays, key, workspace);
+                r = reflectance * (read_gather(b, workspace).irradiance - delivered);
+                sample.tells_local = options.gathered != nullptr;
+                if (options.gathered)
+                    local = reflectance * (read_gather(*options.gathered, workspace).irradiance - delivered);
+            };
+            measure(1, sample.r1, sample.local1);
+            measure(2, sample.r2, sample.local2);
+            sample.rays = 2 * rays;
+        }
+    });
+    ++looks;
+}
+
+/// The smooth part of the error: the coarse response to the mean residual of each region, less that residual itself. By
+/// leaf number of the coarse mesh.
+std::vector<Spectrum> Certifier::Content::late_response() const {
+    Field<RegionId, Spectrum> mean_residual(stage.scene.regions().size());
+    Field<RegionId, double> count(stage.scene.regions().size());
+    for (const Sample& s : samples) {
+        const double n = s.weight * static_cast<double>(options.points);
+        mean_residual[s.region] += 0.5 * n * (s.r1 + s.r2);
+        count[s.region] += n;
+    }
+    std::vector<Spectrum> rhs(rho.size());
+    for (std::size_t i = 0; i < rhs.size(); ++i) {
+        const RegionId region = light.tree.region(light.numbering.leaves[i]);
+        // A mean of few samples is mostly noise: it is drawn towards zero.
+        rhs[i] = mean_residual[region] / (count[region] + 4);
+    }
+    std::vector<Spectrum> response = respond({H, rho, rhs, area}, 0.02);
+    for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
+    return response;
+}
+
+Certificate Certifier::Content::judge() const {
+    Certificate out{.constant = constant, .mean_reflected = mean_reflected, .points = samples.size(), .rays = H.rays()};
+    const std::vector<Spectrum> response = late_response();
+    std::array<double, batches> residual_squared{}, error_squared{};
+    double local_squared = 0, method_squared = 0, told = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const Sample& s = samples[k];
+        const double weight = s.weight / static_cast<double>(looks);
+        const Spectrum& late = response[s.leaf];
+        residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
+        error_squared[k % batches] += weight * batches * mean((s.r1 + late) * (s.r2 + late));
+        if (s.tells_local) {
+            told += weight;
+            local_squared += weight * mean(s.local1 * s.local2);
+            method_squared += weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
+        }
+        out.rays += s.rays;
+    }
+    const BatchMean residual(residual_squared), error(error_squared);
+    const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
+    out.residual = std::sqrt(std::max(0.0, residual.mean)) / mean_reflected;
+    if (options.gathered) {
+        out.local = std::sqrt(std::max(0.0, local_squared / told)) / mean_reflected;
+        out.method = std::sqrt(std::max(0.0, method_squared / told)) / mean_reflected;
+    }
+    // Less than its own uncertainty cannot be claimed.
+    out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
+    out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
+    out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
+    return out;
+}
+
+Certifier::Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
+                     const ReflectedLight& b, const CertificateOptions& options)
+    : content_(std::make_unique<Content>(stage, light, indirect, b, options)) {}
+Certifier::~Certifier() = default;
+
+Certificate Certifier::look() {
+    if (content_->mean_reflected <= 0) return {};
+    content_->measure_residuals();
+    return content_->judge();
+}
+
+}  // namespace exitance

@@ -1,0 +1,115 @@
+#include "exitance/reconstruct/error/path_tracer.hpp"
+
+#include "exitance/form_factors/hemisphere.hpp"
+
+namespace exitance {
+
+PathTracer::PathTracer(const Stage& stage) : stage_(stage) {
+    for (const auto& [region, patch] : stage_.pieces) {
+        const Material& material = stage.scene.material(region);
+        if (!material.emits()) continue;
+        lights_.push_back({region, patch, stage.scene.regions()[region].plane.n, patch.area(), material.exitance});
+    }
+}
+
+Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream& random) const {
+    Spectrum sum, throughput(1.0);
+    std::optional<Vertex> y = follow(probe, cosine_direction(Frame(probe.n), a, b));
+    while (y) {
+        const Spectrum& rho = stage_.scene.material(y->region).reflectance;
+        const double survival = max(rho);
+        if (survival <= 0 || random.uniform() >= survival) return sum;
+        throughput *= rho / survival;
+        sum += throughput * shadow_ray(*y, random);
+        const Beams& beams = stage_.direct.beams();
+        if (!beams.empty()) sum += throughput * beams.irradiance({y->x, y->n, y->region});
+        const double u = random.uniform(), v = random.uniform();
+        const std::optional<Vertex> next = follow(*y, cosine_direction(Frame(y->n), u, v));
+        if (next) {
+            const Spectrum& exitance = stage_.scene.material(next->region).exitance;
+            if (max(exitance) > 0) sum += throughput * exitance * (1 - weight_of_shadow_ray(*y, *next));
+        }
+        y = next;
+    }
+    return sum;
+}
+
+/// Where a ray arrives; nothing when it is lost or meets a back.
+std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const Vec3& direction) const {
+    RayHit hit;
+    stage_.tracer.nearest(std::span(&from.x, 1), std::span(&direction, 1), from.region, std::span(&hit, 1));
+    if (hit.surface.is_none() || !hit.front) return std::nullopt;
+    const RegionId region = hit.region;
+    return Vertex{from.x + hit.distance * direction, stage_.scene.regions()[region].plane.n, region};
+}
+
+/// How likely each light is to be chosen at y, in proportion to what it would bring if nothing stood between.
+double PathTracer::chances(const Vertex& y, std::vector<double>& chance) const {
+    chance.resize(lights_.size());
+    double total = 0;
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const LightPiece& light = lights_[i];
+        const Vec3 w = light.patch.centre() - y.x;
+        const double radius2 = light.area, r2 = squared_norm(w) + radius2, r = std::sqrt(r2);
+        // Cosines are raised by the light's angular size, so that none that is seen in part has no chance.
+        const double spread = std::sqrt(radius2 / r2);
+        const double at_y = std::min(1.0, std::max(0.0, dot(y.n, w) / r) + spread);
+        const double at_light = dot(light.n, y.x - light.patch.origin) > 0
+                                    ? std::min(1.0, std::max(0.0, -dot(light.n, w) / r) + spread)
+                                    : 0;
+        total += chance[i] = mean(light.exitance) * light.area * at_y * at_light / r2;
+    }
+    return total;
+}
+
+/// The density, per solid angle, with which a shadow ray from y is aimed at `target` on a light.
+double PathTracer::shadow_density(const Vertex& y, const Vertex& target) const {
+    thread_local std::vector<double> chance;
+    const double total = chances(y, chance);
+    if (total <= 0) return 0;
+    const Vec3 w = target.x - y.x;
+    const double r2 = squared_norm(w), cosine = -dot(target.n, w) / std::sqrt(r2);
+    if (cosine <= 0) return 0;
+    double density = 0;
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        if (lights_[i].region != target.region) continue;
+        const Vec2 uv = lights_[i].patch.coordinates(target.x);
+        constexpr double slack = 1e-6;
+        const bool inside =
+            uv.x >= -slack && uv.y >= -slack &&
+            (lights_[i].patch.is_triangle() ? uv.x + uv.y <= 1 + slack : uv.x <= 1 + slack && uv.y <= 1 + slack);
+        if (inside) density = std::max(density, chance[i] / total * r2 / (lights_[i].area * cosine));
+    }
+    return density;
+}
+
+double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) const {
+    const double shadow = shadow_density(y, target);
+    const Vec3 w = target.x - y.x;
+    const double cosine = dot(y.n, w) / (pi * norm(w));
+    return shadow / (shadow + std::max(cosine, 1e-300));
+}
+
+/// Direct light at y by one shadow ray, weighted against the ray that the path takes anyway.
+Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
+    thread_local std::vector<double> chance;
+    if (lights_.empty()) return {};
+    const double total = chances(y, chance);
+    const double pick = random.uniform() * total, u = random.uniform(), v = random.uniform();
+    if (total <= 0) return {};
+    std::size_t i = 0;
+    for (double sum = chance[0]; i + 1 < lights_.size() && sum <= pick;) sum += chance[++i];
+    const LightPiece& light = lights_[i];
+    const Vertex target{light.patch.at(uniform_in_shape(light.patch.shape, u, v)), light.n, light.region};
+    const Vec3 w = target.x - y.x;
+    const double r2 = squared_norm(w), r = std::sqrt(r2);
+    const double at_y = dot(y.n, w) / r, at_light = -dot(light.n, w) / r;
+    if (at_y <= 0 || at_light <= 0 || light.region == y.region) return {};
+    const std::optional<Vertex> seen = follow(y, w);
+    if (!seen || seen->region != light.region) return {};
+    const double density = shadow_density(y, target);
+    if (density <= 0) return {};
+    return light.exitance * (at_y / pi / density * weight_of_shadow_ray(y, target));
+}
+
+}  // namespace exitance

@@ -1,0 +1,194 @@
+#include "exitance/reconstruct/pictures/picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/reconstruct/pictures/tile_light.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+/// A number in [-1, 1] with the density of a tent, from one that is uniform in [0, 1).
+double tent(double u) {
+    return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
+}
+
+/// Where a pixel's rays go, relative to its middle, in pixels; any power of two of them, from the first on, is
+/// stratified.
+std::vector<Vec2> places_about_pixel(int samples, std::uint64_t seed) {
+    if (samples == 1) return {{0, 0}};
+    const ScrambledSobol sobol(hash(seed, static_cast<std::uint64_t>(Stream::mesh)));
+    std::vector<Vec2> places;
+    for (int i = 0; i < samples; ++i) {
+        const auto index = static_cast<std::uint32_t>(i);
+        places.push_back({tent(sobol(index, 0)), tent(sobol(index, 1))});
+    }
+    return places;
+}
+
+/// Makes one tile of a picture after the other. One a thread.
+class TilePainter {
+  public:
+    TilePainter(const RadiosityFunction& light, const PictureOptions& options, std::span<const Vec2> places)
+        : scene_(light.solution().scene),
+          tracer_(light.stage().tracer),
+          options_(options),
+          rays_(options.camera, options.size),
+          places_(places),
+          light_(light, static_cast<std::uint32_t>(places.size()), options.gather, options.seed) {}
+
+    /// The tile whose upper left pixel is (x0, y0).
+    void paint(int x0, int y0, Picture& picture) {
+        const int x1 = std::min(x0 + tile_side, options_.size.width);
+        const int y1 = std::min(y0 + tile_side, options_.size.height);
+        trace(x0, x1, y0, y1);
+        spots_.clear(), points_.clear();
+        std::size_t pixel_in_tile = 0;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) {
+                const Spot pixel{{}, x - x0, y - y0, at(x, y)};
+                sort_by_region(pixel_in_tile++, pixel, picture.pixels[at(x, y)]);
+            }
+        light_.evaluate(points_, spots_);
+        for (const Spot& spot : spots_) add(spot, picture.pixels[spot.pixel]);
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) finish(picture.pixels[at(x, y)]);
+    }
+
+  private:
+    std::uint32_t at(int x, int y) const {
+        return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options_.size.width) +
+               static_cast<std::uint32_t>(x);
+    }
+
+    /// Traces the rays of all pixels, one pixel after the other.
+    void trace(int x0, int x1, int y0, int y1) {
+        origins_.clear(), directions_.clear(), ends_.clear();
+        Point origin;
+        Vec3 direction;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) {
+                for (const Vec2& place : places_) {
+                    if (!rays_.ray(x + 0.5 + place.x, y + 0.5 + place.y, origin, direction)) continue;
+                    origins_.push_back(origin), directions_.push_back(direction);
+                }
+                ends_.push_back(directions_.size());
+            }
+        hits_.resize(directions_.size());
+        if (options_.camera.projection == Projection::orthographic)
+            tracer_.nearest(origins_, directions_, RegionId(), hits_);
+        else
+            tracer_.nearest(directions_, options_.camera.eye, RegionId(), hits_);
+    }
+
+    /// What one pixel's rays have met: a spot for every region.
+    void sort_by_region(std::size_t pixel_in_tile, const Spot& pixel, Pixel& out) {
+        const std::size_t first = pixel_in_tile == 0 ? 0 : ends_[pixel_in_tile - 1], last = ends_[pixel_in_tile];
+        met_.clear();
+        for (std::size_t i = first; i < last; ++i) {
+            const RayHit& hit = hits_[i];
+            const bool front = !hit.surface.is_none() && hit.front;
+            met_.push_back(front ? hit.region : RegionId());
+            if (!hit.surface.is_none()) (hit.front ? out.front : out.back) += 1;
+        }
+        if (met_.size() == places_.size() && std::equal(met_.begin() + 1, met_.end(), met_.begin()))
+            out.region = met_.front();
+        for (std::size_t i = 0; i < met_.size(); ++i) {
+            if (met_[i].is_none()) continue;
+            const RegionId region = met_[i];
+            Spot spot = pixel;
+            spot.region = region, spot.first = static_cast<std::uint32_t>(points_.size());
+            for (std::size_t k = i; k < met_.size(); ++k) {
+                if (met_[k] != region) continue;
+                points_.push_back(origins_[first + k] + hits_[first + k].distance * directions_[first + k]);
+                met_[k] = RegionId(), ++spot.count;
+            }
+            spots_.push_back(spot);
+        }
+    }
+
+    void add(const Spot& spot, Pixel& pixel) const {
+        const Material& material = scene_.material(spot.region);
+        const Spectrum radiosity = material.exitance + material.reflectance * spot.irradiance;
+        pixel.irradiance += spot.count * spot.irradiance;
+        pixel.radiosity += spot.count * radiosity;
+        if (!material.emits()) return;
+        pixel.from_lamps += spot.count * radiosity;
+        pixel.emitting += static_cast<float>(spot.count);
+    }
+
+    void finish(Pixel& pixel) const {
+        const auto all = static_cast<float>(places_.size());
+        if (pixel.front > 0) pixel.radiosity *= 1 / pixel.front, pixel.irradiance *= 1 / pixel.front;
+        if (pixel.emitting > 0) pixel.from_lamps *= 1 / pixel.emitting;
+        pixel.front /= all, pixel.back /= all, pixel.emitting /= all;
+    }
+
+    const Scene& scene_;
+    const RayTracer& tracer_;
+    const PictureOptions& options_;
+    CameraRays rays_;
+    std::span<const Vec2> places_;
+    TileLight light_;
+    std::vector<Point> origins_, points_;
+    std::vector<Vec3> directions_;
+    std::vector<RayHit> hits_;
+    std::vector<std::size_t> ends_;  ///< Of every pixel.
+    std::vector<RegionId> met_;
+    std::vector<Spot> spots_;
+};
+
+}  // namespace
+
+Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
+                     const StopRequest& stop) {
+    progress.phase("render");
+    Picture picture{options.size, std::vector<Pixel>(options.size.pixels())};
+    const std::vector<Vec2> places = places_about_pixel(options.samples, options.seed);
+    const auto columns = static_cast<std::size_t>((options.size.width + tile_side - 1) / tile_side);
+    const std::size_t tiles = columns * static_cast<std::size_t>((options.size.height + tile_side - 1) / tile_side);
+    // A painter's memory serves several tiles; where a tile is long work, the threads are better off with one each.
+    const std::size_t at_once = options.gather > 0 ? 16 : 256, grain = options.gather > 0 ? 1 : 8;
+    for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
+        progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
+        parallel_ranges(std::min(at_once, tiles - first), grain, [&](std::size_t begin, std::size_t end) {
+            TilePainter painter(light, options, places);
+            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
+                painter.paint(static_cast<int>(i % columns) * tile_side, static_cast<int>(i / columns) * tile_side,
+                              picture);
+        });
+    }
+    return picture;
+}
+
+std::vector<bool> element_edges(const Solution& solution, const RayTracer& tracer, const Camera& camera,
+                                PictureSize size) {
+    const ElementLocator locator(solution.interpolant.tree, solution.scene.regions().size());
+    const CameraRays rays(camera, size);
+    std::vector<ElementId> seen(size.pixels());
+    const auto width = static_cast<std::size_t>(size.width);
+    parallel_for(static_cast<std::size_t>(size.height), 4, [&](std::size_t y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            Point origin;
+            Vec3 direction;
+            RayHit hit;
+            if (!rays.ray(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, origin, direction)) continue;
+            tracer.nearest(std::span(&direction, 1), origin, RegionId(), std::span(&hit, 1));
+            if (hit.surface.is_none() || !hit.front) continue;
+            const RegionId region = hit.region;
+            seen[y * width + x] = locator.find(region, origin + hit.distance * direction).element;
+        }
+    });
+    std::vector<bool> edges(seen.size());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const bool right = (i + 1) % width != 0 && seen[i] != seen[i + 1];
+        const bool below = i + width < seen.size() && seen[i] != seen[i + width];
+        edges[i] = right || below;
+    }
+    return edges;
+}
+
+}  // namespace exitance

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "exitance/scene/families/polygon_kit.hpp"
+
+namespace exitance {
+
+/// Values of a family's parameters, checked and complete.
+using FamilyValues = std::map<std::string, double>;
+
+// Analytic scenes and rooms.
+PolygonKit make_blocker(const FamilyValues& values);
+PolygonKit make_tube(const FamilyValues& values);
+PolygonKit make_furnace(const FamilyValues& values);
+PolygonKit make_complex(const FamilyValues& values);
+PolygonKit make_cornell(const FamilyValues& values);
+PolygonKit make_gcr1(const FamilyValues& values);
+PolygonKit make_gcr2(const FamilyValues& values);
+PolygonKit make_office(const FamilyValues& values);
+
+// Open scenes under one to four lights of the same power.
+PolygonKit make_flat(const FamilyValues& values);
+PolygonKit make_boxes(const FamilyValues& values);
+PolygonKit make_table(const FamilyValues& values);
+PolygonKit make_chair(const FamilyValues& values);
+PolygonKit make_float(const FamilyValues& values);
+PolygonKit make_spiral(const FamilyValues& values);
+
+/// A value as a file name carries it: 0.7 is 0p7.
+std::string in_a_name(double value);
+
+}  // namespace exitance

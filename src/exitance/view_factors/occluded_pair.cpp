@@ -1,0 +1,328 @@
+#include "exitance/view_factors/occluded_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/form_factors/pair_form_factor.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr int deepest = 20;                ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
+constexpr double dominating = 0.03;        ///< An entry above it makes its row's error.
+constexpr double dominating_share = 0.25;  ///< Of the tolerance, for such an entry.
+constexpr double near_share = 0.5;  ///< Of the difference of two rules that the better one may leave, at an edge.
+
+double cross_area(std::span<const Vec2> corners) {
+    double twice = 0;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        twice += cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    return 0.5 * twice;
+}
+
+Vec2 middle_of(std::span<const Vec2> corners) {
+    Vec2 sum{};
+    for (Vec2 p : corners) sum = sum + p;
+    return (1.0 / static_cast<double>(corners.size())) * sum;
+}
+
+double diameter(std::span<const Vec2> corners) {
+    double squared = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            squared = std::max(squared, dot(corners[i] - corners[j], corners[i] - corners[j]));
+    return std::sqrt(squared);
+}
+
+double squared_distance(const Point& x, const Point& a, const Point& b) {
+    const Vec3 e = b - a, d = x - a;
+    const double length = dot(e, e), t = length > 0 ? std::clamp(dot(d, e) / length, 0.0, 1.0) : 0;
+    return dot(d - t * e, d - t * e);
+}
+
+/// From a point to a convex polygon with normal n, metres.
+double distance(const Point& x, std::span<const Point> polygon, const Normal& n) {
+    double nearest = HUGE_VAL;
+    bool above = true;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point &a = polygon[i], &b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        above &= dot(cross(b - a, x - a), n) >= 0;
+        nearest = std::min(nearest, squared_distance(x, a, b));
+    }
+    return above ? std::abs(dot(n, x - polygon[0])) : std::sqrt(nearest);
+}
+
+}  // namespace
+
+/// What the points placed so far see.
+void OccludedExchange::look_from_nodes() {
+    evaluations += nodes_.size();
+    factors_.resize(nodes_.size()), seen_.resize(nodes_.size());
+    visible_(nodes_, lasts_, factors_, seen_);
+}
+
+void OccludedExchange::Glance::take(double F, Seen seen) {
+    ++count, dark += seen == Seen::nothing, lit += seen == Seen::all;
+    black += seen <= Seen::nothing_past_several;
+    lowest = std::min(lowest, F), highest = std::max(highest, F);
+}
+
+/// Looks at cells with two Gauss points a side.
+void OccludedExchange::look_at_cells(std::span<Cell* const> cells) {
+    nodes_.clear(), weights_.clear(), lasts_.clear();
+    for (const Cell* cell : cells) place_nodes(*cell, 2), lasts_.push_back(nodes_.size());
+    look_from_nodes();
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        Cell& cell = *cells[i];
+        cell.area = std::max(0.0, cross_area(cell.corners()));
+        cell.glance = {};
+        cell.two_points = 0;
+        for (; k < lasts_[i]; ++k) {
+            cell.two_points += weights_[k] * factors_[k];
+            cell.glance.take(factors_[k], seen_[k]);
+        }
+    }
+}
+
+/// Looks from the middles of those cells that two points a side may settle.
+void OccludedExchange::look_from_middles() {
+    nodes_.clear(), weights_.clear(), lasts_.clear();
+    for (const Task& task : tasks_)
+        if (task.cell.glance.black == 0)
+            nodes_.push_back(middle_of(task.cell.corners())), lasts_.push_back(nodes_.size());
+    look_from_nodes();
+    std::size_t k = 0;
+    for (Task& task : tasks_)
+        if (task.cell.glance.black == 0) task.cell.middle = factors_[k++];
+}
+
+/// The halves of a cell: across the longest edge, and for a quadrilateral across the edge opposite to it.
+void OccludedExchange::halve(const Task& task) {
+    const Cell& cell = task.cell;
+    std::size_t longest = 0;
+    double most = 0;
+    for (std::size_t i = 0; i < cell.count; ++i) {
+        const Vec2 e = cell.corner[(i + 1) % cell.count] - cell.corner[i];
+        if (dot(e, e) > most) most = dot(e, e), longest = i;
+    }
+    const auto at = [&](std::size_t i) { return cell.corner[(longest + i) % cell.count]; };
+    const Vec2 p = 0.5 * (at(0) + at(1));
+    Task one{{}, 0, 0.5 * task.allowed, 0, {}, task.depth + 1}, two = one;
+    if (cell.count == 3) {
+        one.cell.add(p), one.cell.add(at(1)), one.cell.add(at(2));
+        two.cell.add(p), two.cell.add(at(2)), two.cell.add(at(0));
+    } else {
+        const Vec2 q = 0.5 * (at(2) + at(3));
+        one.cell.add(p), one.cell.add(at(1)), one.cell.add(at(2)), one.cell.add(q);
+        two.cell.add(p), two.cell.add(q), two.cell.add(at(3)), two.cell.add(at(0));
+    }
+    halves_.push_back(one), halves_.push_back(two);
+}
+
+/// A lower bound: boxes of slanting faces reach far beyond them, so that the source is asked itself.
+double OccludedExchange::distance_to_source(const Cell& cell) const {
+    const Vec2 middle = middle_of(cell.corners());
+    double radius = 0, height = HUGE_VAL;
+    for (Vec2 p : cell.corners()) {
+        radius = std::max(radius, dot(p - middle, p - middle));
+        height = std::min(height, pair_.source_plane.signed_distance(frame_.at(p)));
+    }
+    const double apart = distance(frame_.at(middle), pair_.source, pair_.source_plane.n) - std::sqrt(radius);
+    return std::max({apart, height, 0.0});
+}
+
+/// No point of a cell d from the source has a larger form factor than this.
+double OccludedExchange::brightest(double d) const {
+    return source_area_ < pi * d * d ? source_area_ / (pi * d * d) : 1;
+}
+
+/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points
+/// a side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
+double OccludedExchange::convergence(const Cell& cell, double d) const {
+    const double g = d / diameter(cell.corners());
+    return 1 + 2 * g + 2 * std::sqrt(g + g * g);
+}
+
+/// A cell that sees all of the source: as many Gauss points as its distance asks for.
+double OccludedExchange::integrate_smooth(const Cell& cell, double d, double allowed) {
+    const double rho = convergence(cell, d);
+    const double whole = cell.area * brightest(d);
+    const double wanted = std::max(allowed, 1e-16 * whole);
+    const double digits = whole > wanted ? std::log(whole / wanted) : 0;
+    const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
+    if (points == 2 && cell.count == 4) return cell.two_points;
+    if (points > 8) {  // too near for Gauss points: the contour integral of the cell itself
+        std::array<Point, 4> corners;
+        for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
+        return exchange_area(std::span(corners).first(cell.count), pair_.source,
+                             std::clamp(allowed / whole, 1e-12, 1e-3));
+    }
+    nodes_.clear(), weights_.clear();
+    place_nodes(cell, points);
+    double sum = 0;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) sum += weights_[k] * visible_.unoccluded(nodes_[k]);
+    return sum;
+}
+
+/// Does a blocker's edge pass over the cell within its size? What is seen changes within the edge's height over the
+/// receiver then, perhaps between the points of a rule, which agree with each other and are wrong.
+bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
+    const Vec2 flat = middle_of(cell.corners());
+    const Point middle = frame_.at(flat);
+    double squared = 0;
+    for (Vec2 p : cell.corners()) squared = std::max(squared, dot(p - flat, p - flat));
+    const double slack = nearest_line * size_;
+    for (const ConvexBlocker* blocker : pair_.blockers)
+        for (const ConvexBlocker::Edge& e : blocker->edges) {
+            const Point &a = blocker->points[e.a], &b = blocker->points[e.b];
+            if (frame_.height(a) <= slack && frame_.height(b) <= slack) continue;
+            if (squared_distance(middle, a, b) < 1.5 * squared) return true;
+        }
+    return false;
+}
+
+/// Does a look at a cell tell its integral? The difference of two rules, d, is the error of the lesser one, the middle
+/// alone; where bends are of one kind the better one errs by about d^2 / 7 of the value. They need a second witness, as
+/// bends of opposite sign cancel in d: exp(a s) on [-1, 1] errs by a^4 / 270 and varies by v = a / sqrt 3 at the
+/// points, and whatever varies may err a little. Factors are from 45,000 cells of a room with blocks: as many are
+/// settled so as need be, and of 140 one errs by more than its allowance.
+bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
+    const Cell& cell = task.cell;
+    if (cell.glance.black > 0 || (dominates_ && is_under_an_edge(cell))) return false;
+    const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
+    const double far = 2 * cell.area * brightest(task.distance), middle = std::max(cell.middle, 1e-300);
+    const double most = std::max(cell.glance.highest / middle - 1, 1 - cell.glance.lowest / middle),
+                 varies = 3 * most * most, d = std::abs(cell.two_points - cell.area * middle);
+    const bool is_triangle = cell.count == 3;  // three points of a triangle are but of degree 2
+    double error = 0;
+    if (matters_)
+        error = (is_triangle ? 0.2 : 0.03) * d + cell.two_points * (varies * varies / 270 + 0.005 * most);
+    else
+        error = ((is_triangle ? 0.05 : 0.005) + 2 * d / std::max(cell.two_points, 1e-300)) * d +
+                cell.two_points * (varies * varies / 2700 + 0.001 * most);
+    return error + far * step * step <= task.allowed;
+}
+
+/// How much of the difference of two rules the better one may err by. Past several blockers the visible part may bend
+/// within a cell, where three edges meet in one line of sight.
+double OccludedExchange::share_left(const Task& task) const {
+    if (dominates_ && is_under_an_edge(task.cell)) return near_share;
+    if (matters_ || relative_ < 1e-5) return 0.1;
+    return visible_.seen_edges().size() > 1 ? 0.1 : 0.03;
+}
+
+/// Applies a rule to the cells of all tasks.
+void OccludedExchange::apply(int points) {
+    nodes_.clear(), weights_.clear(), lasts_.clear();
+    for (const Task& task : tasks_) place_nodes(task.cell, points), lasts_.push_back(nodes_.size());
+    look_from_nodes();
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+        tasks_[i].sum = 0;
+        tasks_[i].glance = {};
+        for (; k < lasts_[i]; ++k) {
+            tasks_[i].sum += weights_[k] * factors_[k];
+            tasks_[i].glance.take(factors_[k], seen_[k]);
+        }
+    }
+}
+
+/// A rising row of rules until two agree, else halves. The better one's error is a small share of their difference, but
+/// no less than the source's distance lets expect. Shares are from cells of rooms with blocks: of 150 cells accepted
+/// one errs by more than its allowance, of 2300 one by ten times that.
+double OccludedExchange::integrate_tasks() {
+    const bool fine = relative_ < 1e-5 || dominates_;
+    double total = 0;
+    while (!tasks_.empty()) {
+        if (fine) {
+            apply(3);
+        } else {
+            look_from_middles();
+            std::erase_if(tasks_, [&](const Task& task) {
+                const bool settled = is_settled_by_two_points(task);
+                if (settled) total += task.cell.two_points;
+                return settled;
+            });
+        }
+        for (int points : fine ? std::array{5, 8} : std::array{3, 4}) {
+            befores_.clear();
+            for (const Task& task : tasks_) befores_.push_back(task.sum);
+            apply(points);
+            std::size_t i = 0;
+            std::erase_if(tasks_, [&](const Task& task) {
+                const double before = befores_[i++];
+                if (task.glance.black == task.glance.count) return true;
+                const Cell& cell = task.cell;
+                const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
+                const double far = 2 * cell.area * brightest(task.distance);
+                const bool good =
+                    share_left(task) * std::abs(task.sum - before) + far * std::pow(step, points) <= task.allowed;
+                if (good) total += task.sum;
+                return good;
+            });
+            if (!fine) break;
+        }
+        halves_.clear();
+        for (const Task& task : tasks_) {
+            if (task.depth >= deepest || evaluations > enough_)
+                total += task.sum;
+            else
+                halve(task);
+        }
+        looking_.clear();
+        for (Task& half : halves_) looking_.push_back(&half.cell);
+        look_at_cells(looking_);
+        for (Task& half : halves_) half.distance = distance_to_source(half.cell), half.sum = half.cell.two_points;
+        tasks_.swap(halves_);
+    }
+    return total;
+}
+
+double OccludedExchange::operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded) {
+    unoccluded = false;
+    pair_ = pair;
+    relative_ = demand.relative;
+    frame_ = PlaneFrame(pair.receiver[0], pair.receiver_plane.n);
+    Part whole;
+    for (const Point& p : pair.receiver) whole.add(frame_.flat(p));
+    const auto outlook = visible_.set(frame_, whole.corners(), pair.source, pair.blockers);
+    if (outlook == VisibleFromMany::Outlook::hidden) return 0;
+    if (outlook == VisibleFromMany::Outlook::clear) return unoccluded = true, 0;
+    size_ = diameter(whole.corners());
+    cells_.clear();
+    cut_into_cells(whole, 0);
+    looking_.clear();
+    for (Cell& cell : cells_) looking_.push_back(&cell);
+    look_at_cells(looking_);
+
+    bool all = true;
+    double estimate = 0;
+    for (const Cell& cell : cells_) {
+        all &= cell.complete && cell.glance.lit == cell.glance.count;
+        estimate += cell.two_points;
+    }
+    if (all) return unoccluded = true, 0;
+
+    matters_ = estimate > demand.large;
+    dominates_ = estimate > dominating * norm(area_vector(pair.receiver));
+    const double allowed = std::max((dominates_ ? dominating_share : 1) * demand.relative * estimate, demand.absolute);
+    source_area_ = norm(area_vector(pair.source));
+    const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
+    double total = 0;
+    tasks_.clear();
+    for (const Cell& cell : cells_) {
+        if (cell.complete && cell.glance.dark == cell.glance.count) continue;
+        const double d = distance_to_source(cell);
+        if (cell.complete && cell.glance.lit == cell.glance.count)
+            total += integrate_smooth(cell, d, 0.3 * share);
+        else if (cell.area * brightest(d) < 0.3 * share)
+            total += cell.two_points;
+        else
+            tasks_.push_back({cell, d, share, cell.two_points, cell.glance, 0});
+    }
+    enough_ = evaluations + cells_.size() * (relative_ < 1e-5 ? 1000 : 50) * (1 + 1000 / cells_.size());
+    return total + integrate_tasks();
+}
+
+}  // namespace exitance

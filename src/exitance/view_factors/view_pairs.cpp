@@ -1,0 +1,139 @@
+#include "exitance/view_factors/view_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/geometry/triangulation.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_corners = 12;  ///< Of a convex piece.
+
+ViewFace make_face(const Scene& scene, SurfaceId s) {
+    const Surface& surface = scene.surfaces()[s];
+    ViewFace face{
+        scene.outline(s), {surface.normal, dot(surface.normal, scene.outline(s)[0])}, surface.area, {}, {}, 0, false};
+    for (const Point& p : face.outline) face.box.add(p);
+    face.diameter = face.box.diagonal();
+    for (const auto& piece : convex_pieces(face.outline, surface.normal))
+        for (std::size_t first = 1; first + 1 < piece.size(); first += most_corners - 2) {
+            std::vector<Point>& part = face.pieces.emplace_back();
+            part.push_back(face.outline[piece[0]]);
+            for (std::size_t k = first; k < piece.size() && k < first + most_corners - 1; ++k)
+                part.push_back(face.outline[piece[k]]);
+        }
+    face.is_quad = face.pieces.size() == 1 && face.outline.size() <= 4;
+    return face;
+}
+
+/// A box-to-box shaft: planes parallel to an axis that have both boxes on one side. Source: [Haines91].
+class Shaft {
+  public:
+    Shaft(const Box& a, const Box& b) {
+        both_ = a;
+        both_.add(b);
+        for (std::size_t s = 0; s < 3; ++s) {
+            const std::size_t t = (s + 1) % 3;
+            for (int corner = 0; corner < 4; ++corner) {
+                const bool up_s = corner & 1, up_t = corner & 2;
+                const auto at = [&](const Box& box, std::size_t axis, bool up) {
+                    return up ? box.hi[axis] : box.lo[axis];
+                };
+                const double ds = at(b, s, up_s) - at(a, s, up_s), dt = at(b, t, up_t) - at(a, t, up_t);
+                // The normal across this corner's line that points away from both boxes, if there is one.
+                const double sign = dt * (up_s ? 1 : -1) > 0 ? 1 : -1, ns = sign * dt, nt = -sign * ds;
+                if (ns * (up_s ? 1 : -1) <= 0 || nt * (up_t ? 1 : -1) <= 0) continue;
+                sides_[count_++] = {s, t, ns, nt, ns * at(a, s, up_s) + nt * at(a, t, up_t)};
+            }
+        }
+    }
+    bool misses(const Box& box) const {
+        for (std::size_t s = 0; s < 3; ++s)
+            if (box.lo[s] >= both_.hi[s] || box.hi[s] <= both_.lo[s]) return true;
+        for (std::size_t k = 0; k < count_; ++k) {
+            const Side& side = sides_[k];
+            const double nearest =
+                side.ns * (side.ns > 0 ? box.lo : box.hi)[side.s] + side.nt * (side.nt > 0 ? box.lo : box.hi)[side.t];
+            if (nearest >= side.offset) return true;
+        }
+        return false;
+    }
+
+  private:
+    struct Side {
+        std::size_t s, t;
+        double ns, nt, offset;
+    };
+    Box both_;
+    std::array<Side, 12> sides_;
+    std::size_t count_ = 0;
+};
+
+}  // namespace
+
+ViewPairs::ViewPairs(const Scene& scene)
+    : occluders_(scene), slack_(std::max(1e-8 * scene.size(), occluders_.rounding())) {
+    for (SurfaceId s : scene.surfaces().ids()) faces_.push_back(make_face(scene, s));
+    blockers_ = make_convex_blockers(occluders_, slack_);
+    for (const ConvexBlocker& b : blockers_) {
+        Box box;
+        for (const Point& p : b.points) box.add(p);
+        boxes_.push_back(box);
+    }
+    sides_.resize(faces_.size() * blockers_.size());
+    standing_.resize(sides_.size());
+    parallel_for(faces_.size(), 16, [&](std::size_t i) {
+        for (std::size_t b = 0; b < blockers_.size(); ++b) {
+            sides_[i * blockers_.size() + b] = sides(blockers_[b], faces_[i].outline, slack_);
+            standing_[i * blockers_.size() + b] = standing(blockers_[b], faces_[i].plane);
+        }
+    });
+}
+
+std::uint8_t ViewPairs::standing(const ConvexBlocker& blocker, const Plane& plane) const {
+    std::uint8_t bits = 0;
+    for (const Point& p : blocker.points) {
+        const double d = plane.signed_distance(p);
+        bits |= d > slack_ ? in_front : d < -slack_ ? behind : 0;
+    }
+    return bits;
+}
+
+bool ViewPairs::face_each_other(std::size_t i, std::size_t j, bool& cut) const {
+    const ViewFace &a = faces_[i], &b = faces_[j];
+    bool any = false, all = true;
+    for (const Point& p : b.outline) {
+        const double d = a.plane.signed_distance(p);
+        any |= d > slack_, all &= d >= -slack_;
+    }
+    if (!any) return false;
+    any = false;
+    for (const Point& p : a.outline) {
+        const double d = b.plane.signed_distance(p);
+        any |= d > slack_, all &= d >= -slack_;
+    }
+    cut = !all;
+    return any;
+}
+
+void ViewPairs::find_blockers(std::size_t face, std::vector<std::uint32_t>& found) const {
+    found.clear();
+    for (std::uint32_t b = 0; b < blockers_.size(); ++b)
+        if (standing_[face * blockers_.size() + b] & in_front) found.push_back(b);
+}
+
+void ViewPairs::find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> before_i,
+                              std::vector<std::uint32_t>& found) const {
+    found.clear();
+    const std::uint32_t* sides_i = sides_.data() + i * blockers_.size();  // of nothing, where there are no blockers
+    const std::uint32_t* sides_j = sides_.data() + j * blockers_.size();
+    for (std::uint32_t b : before_i)
+        if ((sides_i[b] & sides_j[b]) == 0 && (standing_[j * blockers_.size() + b] & in_front)) found.push_back(b);
+    if (found.empty()) return;
+    const Shaft shaft(faces_[i].box, faces_[j].box);
+    std::erase_if(found, [&](std::uint32_t b) { return shaft.misses(boxes_[b]); });
+}
+
+}  // namespace exitance

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/visibility/convex_blockers.hpp"
+#include "exitance/visibility/occluders.hpp"
+
+namespace exitance {
+
+/// One face of a scene, ready to receive and to send.
+struct ViewFace {
+    std::span<const Point> outline;
+    Plane plane;
+    double area = 0;  ///< m^2
+    Box box;
+    std::vector<std::vector<Point>> pieces;  ///< Convex, of at most 12 corners.
+    double diameter = 0;                     ///< Metres.
+    bool is_quad = false;                    ///< Convex, three or four corners.
+};
+
+/// All faces of a scene and what may stand between any two of them. Immutable once made, shared by all rows.
+class ViewPairs {
+  public:
+    /// Where a blocker stands to a plane, as bits.
+    enum Standing : std::uint8_t { in_front = 1, behind = 2 };
+
+    /// O(faces x blockers) time, five bytes a pair of them.
+    explicit ViewPairs(const Scene& scene);
+
+    const std::vector<ViewFace>& faces() const { return faces_; }
+    const std::vector<ConvexBlocker>& blockers() const { return blockers_; }
+    /// Metres: what lies nearer to a plane than this lies in it.
+    double slack() const { return slack_; }
+
+    /// Is some of each in front of the other? `cut` when only some of one is.
+    bool face_each_other(std::size_t i, std::size_t j, bool& cut) const;
+    /// Blockers with some part in front of a face.
+    void find_blockers(std::size_t face, std::vector<std::uint32_t>& found) const;
+    /// Those of them that may hide some of j from some of i: not kept apart from both by one of their own faces, and
+    /// not outside the shaft between the boxes.
+    void find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> before_i,
+                       std::vector<std::uint32_t>& found) const;
+    /// Does a blocker cross the plane of a face?
+    bool crosses(std::size_t face, std::uint32_t b) const {
+        return standing_[face * blockers_.size() + b] == (in_front | behind);
+    }
+    std::uint8_t standing(const ConvexBlocker& blocker, const Plane& plane) const;
+
+  private:
+    Occluders occluders_;
+    double slack_;
+    std::vector<ViewFace> faces_;
+    std::vector<ConvexBlocker> blockers_;
+    std::vector<Box> boxes_;
+    std::vector<std::uint32_t> sides_;    ///< A row a face, a column a blocker.
+    std::vector<std::uint8_t> standing_;  ///< Likewise.
+};
+
+}  // namespace exitance

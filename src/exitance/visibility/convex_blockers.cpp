@@ -1,0 +1,239 @@
+#include "exitance/visibility/convex_blockers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace exitance {
+namespace {
+
+using Place = std::array<std::int64_t, 3>;
+
+/// Regions whose borders are single convex loops, joined along shared edges.
+class Bodies {
+  public:
+    Bodies(const Occluders& occluders, double slack) : occluders_(occluders), slack_(slack) {
+        const Scene& scene = occluders.scene();
+        parent_.resize(scene.regions().size());
+        std::iota(parent_.begin(), parent_.end(), 0u);
+        spoilt_.assign(parent_.size(), false);
+        for (RegionId r : scene.regions().ids()) add_edges(r);
+        match_edges();
+    }
+
+    /// Groups of regions that close a convex body, in the order of their first regions.
+    std::vector<ConvexBlocker> solids(std::vector<bool>& used) {
+        std::map<std::uint32_t, std::vector<RegionId>> groups;
+        for (std::uint32_t r = 0; r < parent_.size(); ++r) groups[root(r)].push_back(RegionId(r));
+        std::vector<ConvexBlocker> found;
+        for (const auto& [first, group] : groups) {
+            const bool sound = std::none_of(group.begin(), group.end(), [&](RegionId r) { return spoilt_[r.value]; });
+            if (!sound || group.size() < 4 || group.size() > ConvexBlocker::most_faces) continue;
+            ConvexBlocker body = make_body(group);
+            if (!is_convex_body(body)) continue;
+            for (RegionId r : group) used[r.value] = true;
+            found.push_back(std::move(body));
+        }
+        return found;
+    }
+
+  private:
+    struct Side {
+        Place from, to;
+        std::uint32_t region;
+    };
+
+    Place place(const Point& p) const {
+        const double grid = 4 * slack_;
+        return {std::llround(p.x / grid), std::llround(p.y / grid), std::llround(p.z / grid)};
+    }
+
+    void add_edges(RegionId r) {
+        const Region& region = occluders_.scene().regions()[r];
+        const IdRange<PieceId> pieces = occluders_.pieces(r);
+        if (pieces.size() != 1 || region.loops.size() != 1) {
+            spoilt_[r.value] = true;
+            return;
+        }
+        const std::span<const Point> loop = occluders_.corners(pieces.front());
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            sides_.push_back({place(loop[i]), place(loop[(i + 1) % loop.size()]), r.value});
+    }
+
+    /// Every edge of a closed body is run through once each way; a region with any other edge spoils its group.
+    void match_edges() {
+        std::map<std::pair<Place, Place>, std::vector<std::uint32_t>> by_ends;
+        for (const Side& side : sides_) by_ends[{side.from, side.to}].push_back(side.region);
+        for (const auto& [ends, regions] : by_ends) {
+            const auto back = by_ends.find({ends.second, ends.first});
+            const bool matched = regions.size() == 1 && back != by_ends.end() && back->second.size() == 1;
+            for (std::uint32_t r : regions) {
+                if (!matched) spoilt_[r] = true;
+                if (back != by_ends.end())
+                    for (std::uint32_t other : back->second) parent_[root(other)] = root(r);
+            }
+        }
+    }
+
+    std::uint32_t root(std::uint32_t r) {
+        while (parent_[r] != r) r = parent_[r] = parent_[parent_[r]];
+        return r;
+    }
+
+    ConvexBlocker make_body(const std::vector<RegionId>& group) const {
+        ConvexBlocker body;
+        std::map<Place, std::uint32_t> numbers;
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::int32_t> faces_of_edges;
+        for (RegionId r : group) {
+            const auto face = static_cast<std::int32_t>(body.faces.size());
+            const PieceId piece = occluders_.pieces(r).front();
+            body.faces.push_back(occluders_.pieces()[piece].plane);
+            std::vector<std::uint32_t>& loop = body.loops.emplace_back();
+            for (const Point& p : occluders_.corners(piece)) {
+                const auto [known, is_new] =
+                    numbers.try_emplace(place(p), static_cast<std::uint32_t>(body.points.size()));
+                if (is_new) body.points.push_back(p);
+                loop.push_back(known->second);
+            }
+            for (std::size_t i = 0; i < loop.size(); ++i) faces_of_edges[{loop[i], loop[(i + 1) % loop.size()]}] = face;
+        }
+        for (const auto& [ends, face] : faces_of_edges)
+            if (ends.first < ends.second) {
+                const auto back = faces_of_edges.find({ends.second, ends.first});
+                if (back != faces_of_edges.end()) body.edges.push_back({ends.first, ends.second, face, back->second});
+            }
+        return body;
+    }
+
+    bool is_convex_body(const ConvexBlocker& body) const {
+        std::size_t sides = 0;
+        for (const auto& loop : body.loops) sides += loop.size();
+        if (2 * body.edges.size() != sides || body.points.size() + body.faces.size() != body.edges.size() + 2)
+            return false;
+        for (const Plane& face : body.faces)
+            for (const Point& p : body.points)
+                if (face.signed_distance(p) > slack_) return false;
+        return true;
+    }
+
+    const Occluders& occluders_;
+    double slack_;
+    std::vector<std::uint32_t> parent_;
+    std::vector<bool> spoilt_;
+    std::vector<Side> sides_;
+};
+
+}  // namespace
+
+ConvexBlocker make_sheet(std::span<const Point> outline, const Plane& plane) {
+    ConvexBlocker sheet;
+    sheet.points.assign(outline.begin(), outline.end());
+    sheet.faces.push_back(plane);
+    const auto count = static_cast<std::uint32_t>(outline.size());
+    std::vector<std::uint32_t>& loop = sheet.loops.emplace_back();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        loop.push_back(i);
+        sheet.edges.push_back({i, (i + 1) % count, 0, ConvexBlocker::no_face});
+    }
+    return sheet;
+}
+
+bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, ConvexBlocker& part) {
+    part = {};
+    std::vector<double> height;
+    bool any_in = false, any_out = false;
+    for (const Point& p : body.points) {
+        const double d = plane.signed_distance(p);
+        height.push_back(std::abs(d) <= slack ? 0 : d);
+        any_in |= height.back() > 0, any_out |= height.back() < 0;
+    }
+    if (!any_in) return true;
+    if (!any_out) return part = body, true;
+    if (body.faces.size() + 1 >= ConvexBlocker::most_faces) return false;
+
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;  // of a corner, or where an edge is cut
+    const auto number = [&](std::uint32_t a, std::uint32_t b) {
+        const auto [known, is_new] =
+            numbers.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(part.points.size()));
+        if (is_new) {
+            const auto [low, high] = std::minmax(a, b);
+            const double t = low == high ? 0 : height[low] / (height[low] - height[high]);
+            part.points.push_back(body.points[low] + t * (body.points[high] - body.points[low]));
+        }
+        return known->second;
+    };
+    std::map<std::uint32_t, std::uint32_t> border;  // of the new face: from each of its corners to the next
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int32_t> left_of;
+    const auto add_face = [&](const Plane& face, const std::vector<std::uint32_t>& loop) {
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            left_of[{loop[i], loop[(i + 1) % loop.size()]}] = static_cast<std::int32_t>(part.faces.size());
+        part.faces.push_back(face);
+        part.loops.push_back(loop);
+    };
+    for (std::size_t k = 0; k < body.faces.size(); ++k) {
+        std::vector<std::uint32_t> loop;
+        std::vector<bool> lies_on;
+        const std::vector<std::uint32_t>& whole = body.loops[k];
+        for (std::size_t i = 0; i < whole.size(); ++i) {
+            const std::uint32_t a = whole[i], b = whole[(i + 1) % whole.size()];
+            if (height[a] >= 0) loop.push_back(number(a, a)), lies_on.push_back(height[a] == 0);
+            if (height[a] * height[b] < 0) loop.push_back(number(a, b)), lies_on.push_back(true);
+        }
+        if (std::find(lies_on.begin(), lies_on.end(), false) == lies_on.end()) continue;
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const std::size_t next = (i + 1) % loop.size();
+            if (lies_on[i] && lies_on[next]) border[loop[next]] = loop[i];
+        }
+        add_face(body.faces[k], loop);
+    }
+    std::vector<std::uint32_t> cap;
+    if (border.size() < 3) return false;
+    for (std::uint32_t at = border.begin()->first; cap.size() < border.size(); at = border[at]) {
+        if (!border.contains(at)) return false;
+        cap.push_back(at);
+    }
+    if (border[cap.back()] != cap.front()) return false;
+    add_face({-plane.n, -plane.offset}, cap);
+    std::size_t sides = 0;
+    for (const auto& loop : part.loops) sides += loop.size();
+    for (const auto& [ends, face] : left_of) {
+        const auto back = left_of.find({ends.second, ends.first});
+        if (back == left_of.end()) return false;
+        if (ends.first < ends.second) part.edges.push_back({ends.first, ends.second, face, back->second});
+    }
+    return 2 * part.edges.size() == sides && part.points.size() + part.faces.size() == part.edges.size() + 2;
+}
+
+std::vector<ConvexBlocker> make_convex_blockers(const Occluders& occluders, double slack) {
+    const Scene& scene = occluders.scene();
+    std::vector<bool> used(scene.regions().size(), false);
+    std::vector<ConvexBlocker> blockers = Bodies(occluders, slack).solids(used);
+    std::vector<Point> corners;
+    for (SurfaceId s : scene.surfaces().ids())
+        for (const Point& p : scene.outline(s)) corners.push_back(p);
+    for (PieceId p : occluders.pieces().ids()) {
+        const ConvexPiece& piece = occluders.pieces()[p];
+        if (used[piece.region.value]) continue;
+        ConvexBlocker sheet = make_sheet(occluders.corners(p), piece.plane);
+        if (sides(sheet, corners, slack) == 0) blockers.push_back(std::move(sheet));
+    }
+    return blockers;
+}
+
+std::uint32_t sides(const ConvexBlocker& blocker, std::span<const Point> polygon, double slack) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
+        bool in_front = true, behind = true;
+        for (const Point& p : polygon) {
+            const double d = blocker.faces[k].signed_distance(p);
+            in_front &= d >= -slack, behind &= d <= slack;
+        }
+        if (in_front) bits |= 1u << k;
+        if (behind && !blocker.is_solid()) bits |= 2u;
+    }
+    return bits;
+}
+
+}  // namespace exitance

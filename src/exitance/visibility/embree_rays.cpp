@@ -1,0 +1,280 @@
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "exitance/core/check.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/geometry/triangulation.hpp"
+#include "exitance/scene/other_side.hpp"
+#include "exitance/visibility/rays.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t width = 16;  ///< Rays a packet; Embree cuts it down where the machine is narrower.
+constexpr double lift = 0x1p-20;   ///< Of the scene's size: 16 roundings of a coordinate in single precision.
+constexpr int retries = 8;         ///< Ways past a ray's own region; one is rarely needed.
+
+/// Releases what Embree counts references to.
+template <class Handle, void (*release)(Handle)>
+class Owned {
+  public:
+    explicit Owned(Handle handle) : handle_(handle) { EXI_CHECK(handle != nullptr); }
+    ~Owned() { release(handle_); }
+    Owned(const Owned&) = delete;
+    Owned& operator=(const Owned&) = delete;
+    operator Handle() const { return handle_; }
+
+  private:
+    Handle handle_;
+};
+
+struct Float3 {
+    float x, y, z;
+};
+
+Float3 to_float(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// What a ray needs to know of a surface that it hits, side by side in memory.
+struct Face {
+    Normal normal;
+    Point corner;
+    RegionId region;
+};
+
+RTCIntersectContext make_context() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+}
+
+template <class Rays>
+void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& direction, float near, float far) {
+    rays.org_x[lane] = origin.x, rays.org_y[lane] = origin.y, rays.org_z[lane] = origin.z;
+    rays.dir_x[lane] = direction.x, rays.dir_y[lane] = direction.y, rays.dir_z[lane] = direction.z;
+    rays.tnear[lane] = near, rays.tfar[lane] = far;
+    rays.time[lane] = 0, rays.mask[lane] = 0xffffffffu, rays.id[lane] = 0, rays.flags[lane] = 0;
+}
+
+}  // namespace
+
+struct RayTracer::Content {
+    const Scene* scene;
+    Point centre;  ///< Embree's coordinates are relative to it,
+    double scale;  ///< and times this power of two, so that a scene of any size is about 1 wide.
+    double lift_off;
+    Owned<RTCDevice, rtcReleaseDevice> device;
+    Owned<RTCScene, rtcReleaseScene> rtc;
+    std::vector<SurfaceId> surface_of;  ///< Of every triangle.
+    Field<SurfaceId, Face> faces;
+    Field<SurfaceId, SurfaceId> other_side;  ///< Of sheets; empty where there are none.
+
+    explicit Content(const Scene& s)
+        : scene(&s),
+          centre(s.box().centre()),
+          scale(std::exp2(-std::ilogb(s.size()))),
+          lift_off(lift * s.size()),
+          device(rtcNewDevice(nullptr)),
+          rtc(rtcNewScene(device)),
+          faces(s.surfaces().size()),
+          other_side(other_sides_of_surfaces(s)) {
+        std::vector<Float3> corners;
+        std::vector<std::array<std::uint32_t, 3>> triangles;
+        for (SurfaceId id : s.surfaces().ids()) {
+            const std::span<const Point> outline = s.outline(id);
+            faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
+            const auto first = static_cast<std::uint32_t>(corners.size());
+            for (const Point& p : outline) corners.push_back(local(p));
+            for (const auto& t : triangulate(outline, s.surfaces()[id].normal)) {
+                triangles.push_back({first + t[0], first + t[1], first + t[2]});
+                surface_of.push_back(id);
+            }
+        }
+        const Owned<RTCGeometry, rtcReleaseGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+        void* vertex_buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                      sizeof(Float3), corners.size());
+        void* index_buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                     sizeof(triangles[0]), triangles.size());
+        std::copy(corners.begin(), corners.end(), static_cast<Float3*>(vertex_buffer));
+        std::copy(triangles.begin(), triangles.end(), static_cast<std::array<std::uint32_t, 3>*>(index_buffer));
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(rtc, geometry);
+        rtcSetSceneFlags(rtc, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(rtc, RTC_BUILD_QUALITY_MEDIUM);
+        // The order of a leaf's triangles, and with it which of two equally near ones is met, follows from how many
+        // threads build; one always builds the same.
+        run_alone([&] { rtcJoinCommitScene(rtc); });
+    }
+
+    Float3 local(const Point& p) const { return to_float(scale * (p - centre)); }
+    Float3 local_direction(const Vec3& d) const { return to_float(scale * d); }
+    Vec3 offset(RegionId region) const {
+        return region.is_none() ? Vec3() : lift_off * scene->regions()[region].plane.n;
+    }
+
+    /// Fills a hit from a lane; false if the ray met its own region and has to go on from there.
+    bool read(const RTCRayHit16& packet, std::size_t lane, const Point& origin, const Vec3& direction, RegionId own,
+              RayHit& hit) const {
+        hit = RayHit();
+        if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return true;
+        hit.surface = surface_of[packet.hit.primID[lane]];
+        // Of a sheet's two sides Embree finds either; a ray meets the one that faces it.
+        if (other_side.size() > 0 && !other_side[hit.surface].is_none() &&
+            dot(faces[hit.surface].normal, direction) > 0)
+            hit.surface = other_side[hit.surface];
+        const Face& face = faces[hit.surface];
+        if (face.region == own && !own.is_none()) return false;
+        hit.region = face.region;
+        const double slope = dot(face.normal, direction);
+        const double distance = dot(face.normal, face.corner - origin) / slope;
+        const double found = packet.ray.tfar[lane];
+        // In the surface's plane the quotient means nothing; there what Embree found is as good as it gets.
+        hit.distance = std::abs(distance - found) <= 1e-3 * found ? distance : found;
+        hit.front = slope < 0;
+        return true;
+    }
+
+    template <class Ends>
+    std::size_t occluded(std::span<bool> blocked, const Ends& ends) const;
+
+    /// Goes on past the ray's own region, where rounding let it be met.
+    void retry(const Point& origin, const Vec3& direction, RegionId own, float past, RayHit& hit) const {
+        for (int attempt = 0; attempt < retries; ++attempt) {
+            alignas(64) RTCRayHit16 packet;
+            alignas(64) std::array<int, width> valid{};
+            valid[0] = -1;
+            past = std::nextafter(past * (1 + 0x1p-20f), HUGE_VALF);
+            set_ray(packet.ray, 0, local(origin + offset(own)), local_direction(direction), past, HUGE_VALF);
+            packet.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
+            RTCIntersectContext context = make_context();
+            rtcIntersect16(valid.data(), rtc, &context, &packet);
+            if (read(packet, 0, origin, direction, own, hit)) return;
+            past = packet.ray.tfar[0];
+        }
+        hit = RayHit();
+    }
+};
+
+RayTracer::RayTracer(const Scene& scene) : content_(std::make_unique<const Content>(scene)) {}
+RayTracer::~RayTracer() = default;
+RayTracer::RayTracer(RayTracer&&) noexcept = default;
+RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
+
+std::size_t RayTracer::triangle_count() const {
+    return content_->surface_of.size();
+}
+
+std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,
+                               std::span<RayHit> hits) const {
+    EXI_CHECK(origins.size() == directions.size() || origins.size() == 1);
+    EXI_CHECK(hits.size() == directions.size());
+    const bool shared = origins.size() == 1;
+    const Vec3 lifted = content_->offset(own);
+    RTCIntersectContext context = make_context();
+    alignas(64) RTCRayHit16 packet;
+    alignas(64) std::array<int, width> valid;
+    valid.fill(-1);
+    // What is alike for all packets is written once: Embree changes the far end and the hit only.
+    const Float3 start = shared ? content_->local(origins[0] + lifted) : Float3();
+    for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, start, {}, 0, HUGE_VALF);
+    for (std::size_t first = 0; first < directions.size(); first += width) {
+        const std::size_t count = std::min(width, directions.size() - first);
+        std::fill(valid.begin() + static_cast<std::ptrdiff_t>(count), valid.end(), 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Float3 direction = content_->local_direction(directions[first + i]);
+            packet.ray.dir_x[i] = direction.x, packet.ray.dir_y[i] = direction.y, packet.ray.dir_z[i] = direction.z;
+            packet.ray.tfar[i] = HUGE_VALF;
+            packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        for (std::size_t i = 0; i < count && !shared; ++i) {
+            const Float3 origin = content_->local(origins[first + i] + lifted);
+            packet.ray.org_x[i] = origin.x, packet.ray.org_y[i] = origin.y, packet.ray.org_z[i] = origin.z;
+        }
+        rtcIntersect16(valid.data(), content_->rtc, &context, &packet);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Point& origin = origins[shared ? 0 : first + i];
+            const Vec3& direction = directions[first + i];
+            if (!content_->read(packet, i, origin, direction, own, hits[first + i]))
+                content_->retry(origin, direction, own, packet.ray.tfar[i], hits[first + i]);
+        }
+    }
+    return directions.size();
+}
+
+std::size_t RayTracer::nearest(std::span<const Vec3> directions, const Point& origin, RegionId own,
+                               std::span<RayHit> hits) const {
+    return nearest(std::span(&origin, 1), directions, own, hits);
+}
+
+/// ends(i): where ray i begins and ends, off its surfaces.
+template <class Ends>
+std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& ends) const {
+    RTCIntersectContext context = make_context();
+    alignas(64) RTCRay16 packet;
+    alignas(64) std::array<int, width> valid;
+    for (std::size_t first = 0; first < blocked.size(); first += width) {
+        const std::size_t count = std::min(width, blocked.size() - first);
+        for (std::size_t i = 0; i < width; ++i) {
+            valid[i] = i < count ? -1 : 0;
+            if (i >= count) continue;
+            const auto [a, b] = ends(first + i);
+            set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
+        }
+        rtcOccluded16(valid.data(), rtc, &context, &packet);
+        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+    }
+    return blocked.size();
+}
+
+std::size_t RayTracer::occluded(std::span<const Point> from, std::span<const Point> to, RegionId receiver,
+                                RegionId source, std::span<bool> blocked) const {
+    EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
+    const Vec3 near = content_->offset(receiver), far = content_->offset(source);
+    return content_->occluded(blocked, [&](std::size_t i) { return std::pair{from[i] + near, to[i] + far}; });
+}
+
+std::size_t RayTracer::occluded(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
+                                std::span<bool> blocked) const {
+    EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
+    return content_->occluded(blocked, [&](std::size_t i) {
+        return std::pair{from[i].at + content_->offset(from[i].region), to[i].at + content_->offset(to[i].region)};
+    });
+}
+
+RayEnds RayTracer::ray_ends(std::span<const Point> points, RegionId region) const {
+    EXI_CHECK(points.size() == RayEnds::size);
+    const Vec3 lifted = content_->offset(region);
+    RayEnds ends;
+    for (std::size_t k = 0; k < RayEnds::size; ++k) {
+        const Float3 p = content_->local(points[k] + lifted);
+        ends.x[k] = p.x, ends.y[k] = p.y, ends.z[k] = p.z;
+    }
+    return ends;
+}
+
+std::uint32_t RayTracer::occluded(const RayEnds& from, const RayEnds& to) const {
+    static_assert(RayEnds::size == width);
+    RTCIntersectContext context = make_context();
+    alignas(64) RTCRay16 packet;
+    alignas(64) std::array<int, width> valid;
+    for (std::size_t k = 0; k < width; ++k) {
+        packet.org_x[k] = from.x[k], packet.org_y[k] = from.y[k], packet.org_z[k] = from.z[k];
+        packet.dir_x[k] = to.x[k] - from.x[k], packet.dir_y[k] = to.y[k] - from.y[k];
+        packet.dir_z[k] = to.z[k] - from.z[k];
+        packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
+        packet.mask[k] = 0xffffffffu, packet.id[k] = 0, packet.flags[k] = 0;
+        valid[k] = -1;
+    }
+    rtcOccluded16(valid.data(), content_->rtc, &context, &packet);
+    std::uint32_t blocked = 0;
+    for (std::size_t k = 0; k < width; ++k) blocked |= static_cast<std::uint32_t>(packet.tfar[k] < 0) << k;
+    return blocked;
+}
+
+}  // namespace exitance

@@ -1,0 +1,152 @@
+#include "exitance/visibility/occluders.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/geometry/polygon.hpp"
+#include "exitance/geometry/triangulation.hpp"
+#include "exitance/scene/other_side.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double coplanar_share = 1e-6;  ///< Of the scene's size: planes nearer than this are one plane.
+
+Box box_of(std::span<const Point> corners) {
+    Box box;
+    for (const Point& p : corners) box.add(p);
+    return box;
+}
+
+}  // namespace
+
+Occluders::Occluders(const Scene& scene) : scene_(&scene), other_side_(other_sides_of_regions(scene)) {
+    const Box& b = scene.box();
+    const double reach = std::max(
+        {std::abs(b.lo.x), std::abs(b.lo.y), std::abs(b.lo.z), std::abs(b.hi.x), std::abs(b.hi.y), std::abs(b.hi.z)});
+    rounding_ = 16 * std::numeric_limits<double>::epsilon() * reach;
+    of_region_.resize(scene.regions().size());
+    std::vector<Point> part;
+    for (RegionId r : scene.regions().ids()) {
+        const Region& region = scene.regions()[r];
+        const std::size_t first = pieces_.size();
+        const double tolerance = 1e-12 * region.area;  // collinear corners of coarse input
+        if (region.loops.size() == 1 && is_convex(region.loops[0], region.plane.n, tolerance)) {
+            add_piece(region.loops[0], r, region.surfaces[0], region.plane);
+        } else {
+            for (SurfaceId s : region.surfaces) {
+                const std::span<const Point> outline = scene.outline(s);
+                for (const std::vector<std::uint32_t>& piece : convex_pieces(outline, scene.surfaces()[s].normal)) {
+                    part.clear();
+                    for (std::uint32_t i : piece) part.push_back(outline[i]);
+                    const Normal& n = scene.surfaces()[s].normal;
+                    add_piece(part, r, s, {n, dot(n, part[0])});
+                }
+            }
+        }
+        of_region_[r] = {first, pieces_.size()};
+    }
+    make_trees();
+}
+
+/// Which pieces have all of the scene on one side of their planes, up to rounding. Most have some corner of the
+/// scene's box, or of the large pieces before them, on either side; the others are compared with everything.
+std::vector<std::uint8_t> Occluders::find_outer() const {
+    std::vector<std::uint8_t> outer(pieces_.size(), false);
+    if (pieces_.empty()) return outer;
+    // Corners farthest out along many directions: if any two lie on different sides, so does the scene.
+    std::vector<Point> far;
+    for (int k = 0; k < 26; ++k) {
+        const int code = k < 13 ? k : k + 1;  // all of {-1, 0, 1}^3 but the middle
+        const Vec3 along{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
+        far.push_back(*std::max_element(corners_.begin(), corners_.end(),
+                                        [&](const Point& p, const Point& q) { return dot(along, p) < dot(along, q); }));
+    }
+    const auto crosses = [&](const Plane& plane, std::span<const Point> points) {
+        double low = 0, high = 0;
+        for (const Point& p : points) {
+            const double h = plane.signed_distance(p);
+            low = std::min(low, h), high = std::max(high, h);
+            if (low < -rounding_ && high > rounding_) return true;
+        }
+        return false;
+    };
+    parallel_for(pieces_.size(), 64, [&](std::size_t i) {
+        const Plane& plane = pieces_[PieceId(i)].plane;
+        outer[i] = !crosses(plane, far) && !crosses(plane, corners_);
+    });
+    return outer;
+}
+
+void Occluders::make_trees() {
+    const std::vector<std::uint8_t> is_outer = find_outer();
+    std::vector<std::pair<double, std::uint32_t>> by_area;
+    for (PieceId p : pieces_.ids()) {
+        if (is_outer[p.value])
+            outer_.pieces.push_back(p);
+        else
+            by_area.push_back({-squared_norm(area_vector(corners(p))), p.value});
+    }
+    const auto large = std::min(by_area.size(), static_cast<std::size_t>(4 * std::sqrt(by_area.size())));
+    std::nth_element(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(large), by_area.end());
+    std::vector<bool> is_large(pieces_.size());
+    for (std::size_t i = 0; i < large; ++i) is_large[by_area[i].second] = true;
+    for (PieceId p : pieces_.ids())
+        if (!is_outer[p.value]) trees_[is_large[p.value] ? 0 : 1].pieces.push_back(p);
+    for (Tree* tree : {&trees_[0], &trees_[1], &outer_}) {
+        std::vector<Box> boxes;
+        boxes.reserve(tree->pieces.size());
+        for (PieceId p : tree->pieces) boxes.push_back(box_of(corners(p)));
+        tree->bvh = Bvh(boxes);
+    }
+}
+
+void Occluders::add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane) {
+    ConvexPiece piece{static_cast<std::uint32_t>(corners_.size()),
+                      static_cast<std::uint32_t>(corners.size()),
+                      region,
+                      surface,
+                      plane,
+                      0};
+    // Small things stay apart from what they stand on: the tolerance shrinks with them.
+    piece.thickness = std::max(rounding_, std::min(coplanar_share * scene_->size(), 1e-3 * box_of(corners).diagonal()));
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    pieces_.add(piece);
+}
+
+bool Occluders::is_back_of(RegionId a, RegionId b) const {
+    const Region &front = scene_->regions()[a], &back = scene_->regions()[b];
+    if (std::abs(front.area - back.area) > 1e-6 * front.area || front.loops.empty() || back.loops.empty()) return false;
+    const Box p = box_of(front.loops[0]), q = box_of(back.loops[0]);
+    const double tolerance = 1e-6 * p.diagonal() + rounding_;
+    return norm(p.lo - q.lo) <= tolerance && norm(p.hi - q.hi) <= tolerance;
+}
+
+bool Occluders::is_covered(const Point& x, const Normal& n, RegionId own) const {
+    const double reach = coplanar_share * scene_->size() + rounding_;
+    Box near;
+    near.add(x - Vec3{reach, reach, reach});
+    near.add(x + Vec3{reach, reach, reach});
+    const auto covers = [&](PieceId p) {
+        const ConvexPiece& piece = pieces_[p];
+        if (is_own(piece.region, own)) return false;
+        const double facing = dot(piece.plane.n, n);
+        const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // of the piece above x
+        if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return false;
+        if (facing > 0 && height <= rounding_) return false;
+        if (!contains(corners(p), piece.plane.n, x)) return false;
+        return facing > 0 || own.is_none() || !is_back_of(own, piece.region);
+    };
+    for (const Tree* tree : {&trees_[0], &trees_[1], &outer_})
+        if (tree->bvh.visit_box(near, [&](std::uint32_t i) { return covers(tree->pieces[i]); })) return true;
+    return false;
+}
+
+std::size_t Occluders::memory_bytes() const {
+    return trees_[0].bvh.memory_bytes() + trees_[1].bvh.memory_bytes() + outer_.bvh.memory_bytes() +
+           pieces_.size() * sizeof(PieceId) + corners_.capacity() * sizeof(Point) +
+           pieces_.size() * sizeof(ConvexPiece) + of_region_.size() * sizeof(IdRange<PieceId>);
+}
+
+}  // namespace exitance

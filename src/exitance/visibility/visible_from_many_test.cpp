@@ -1,0 +1,138 @@
+#include "exitance/visibility/visible_from_many.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "exitance/core/random.hpp"
+#include "support/blockers.hpp"
+
+namespace exitance {
+namespace {
+
+using test::box;
+using test::sheet;
+
+using Outline = std::vector<Point>;
+
+/// Looks down from z = 2 on the plane z = 0.
+const Outline ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
+const PlaneFrame floor_frame({0.3, -0.2, 0}, {0, 0, 1});
+
+std::vector<Vec2> corners_of(const Outline& receiver) {
+    std::vector<Vec2> out;
+    for (const Point& p : receiver) out.push_back(floor_frame.flat(p));
+    return out;
+}
+Outline floor_square(double x, double y, double half) {
+    return {{x - half, y - half, 0}, {x + half, y - half, 0}, {x + half, y + half, 0}, {x - half, y + half, 0}};
+}
+
+/// Compares points of a square of the floor with points by themselves.
+void compare(double x, double y, double half, std::span<const ConvexBlocker* const> blockers, RandomStream& random,
+             const std::string& what, const Outline& source = ceiling) {
+    const std::vector<Vec2> receiver = corners_of(floor_square(x, y, half));
+    VisibleFromMany many;
+    VisibleSource alone;
+    const auto outlook = many.set(floor_frame, receiver, source, blockers);
+    alone.set(source, blockers);
+    std::vector<Vec2> points;
+    for (int k = 0; k < 21; ++k)
+        points.push_back(
+            floor_frame.flat({x + half * (2 * random.uniform() - 1), y + half * (2 * random.uniform() - 1), 0}));
+    std::vector<double> F(points.size());
+    std::vector<Seen> seen(points.size());
+    if (outlook == VisibleFromMany::Outlook::partly) many(points, std::array{points.size()}, F, seen);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        Seen how;
+        const double exact = alone(floor_frame.at(points[k]), floor_frame.n, how);
+        if (outlook == VisibleFromMany::Outlook::hidden) {
+            EXPECT_EQ(exact, 0) << what;
+        } else if (outlook == VisibleFromMany::Outlook::clear) {
+            EXPECT_EQ(how, Seen::all) << what;
+        } else {
+            EXPECT_NEAR(F[k], exact, 2e-14) << what << ' ' << x << ' ' << y << ' ' << half;
+            EXPECT_EQ(seen[k], how) << what << ' ' << F[k];
+            if (blockers.size() > SightTables::most_blockers || source.size() > SightTables::most_corners) continue;
+            // Fewer than five points take registers of four: the same bits, whatever the others are.
+            double by_itself = 0;
+            many(std::span(points).subspan(k, 1), std::array{std::size_t{1}}, std::span(&by_itself, 1),
+                 std::span(&how, 1));
+            EXPECT_EQ(F[k], by_itself) << what;
+            EXPECT_EQ(seen[k], how) << what;
+        }
+    }
+}
+
+TEST(VisibleFromMany, AgreesWithSinglePoints) {
+    const ConvexBlocker a = box({-0.3, -0.2, 0.5}, {0.2, 0.4, 1.1}), b = box({0.3, -0.6, 0.7}, {0.8, 0.1, 0.9});
+    const ConvexBlocker c = sheet({{-0.9, -0.5, 1.2}, {-0.4, -0.6, 1.3}, {-0.5, 0.3, 1.1}});
+    const ConvexBlocker d = box({-0.5, -0.3, 1.2}, {0.4, 0.5, 1.4}, {0.2, -0.1, 0});
+    const ConvexBlocker standing = box({0.1, 0.2, 0}, {0.5, 0.6, 0.8});
+    const ConvexBlocker upright = sheet({{0.2, -0.7, 0.1}, {0.2, 0.8, 0.1}, {0.2, 0.8, 0.9}, {0.2, -0.7, 0.9}});
+    const std::vector<std::vector<const ConvexBlocker*>> cases = {{&a},
+                                                                  {&b},
+                                                                  {&c},
+                                                                  {&d},
+                                                                  {&standing},
+                                                                  {&upright},
+                                                                  {&a, &b},
+                                                                  {&a, &d},
+                                                                  {&c, &d},
+                                                                  {&a, &upright},
+                                                                  {&a, &c, &d},
+                                                                  {&a, &b, &c, &d},
+                                                                  {&standing, &d},
+                                                                  {&standing, &upright, &b},
+                                                                  {&a, &b, &c, &d, &standing, &upright}};
+    RandomStream random(2, Stream::mesh);
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        for (int k = 0; k < 100; ++k) {
+            const double half = std::pow(10, -2 * random.uniform());
+            compare(2 * random.uniform() - 1, 2 * random.uniform() - 1, half, cases[i], random,
+                    "case " + std::to_string(i));
+        }
+}
+
+TEST(VisibleFromMany, IsSureOfEdgesThatFallTogether) {
+    // A block that hangs from the ceiling's border, two that touch, and one beside another of equal height.
+    const ConvexBlocker hanging = box({0.4, -0.5, 1.2}, {1, 0.5, 2}), left = box({-0.4, -0.3, 0.6}, {0, 0.3, 1});
+    const ConvexBlocker right = box({0, -0.3, 0.6}, {0.4, 0.3, 1}), above = box({-0.4, -0.3, 1}, {0, 0.3, 1.3});
+    const std::vector<std::vector<const ConvexBlocker*>> cases = {
+        {&hanging}, {&left, &right}, {&left, &above}, {&left, &right, &above}, {&hanging, &right}};
+    RandomStream random(3, Stream::mesh);
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        for (int k = 0; k < 50; ++k)
+            compare(2 * random.uniform() - 1, 2 * random.uniform() - 1, 0.2 * random.uniform(), cases[i], random,
+                    "case " + std::to_string(i));
+}
+
+TEST(VisibleFromMany, TakesSourcesOfManyCorners) {
+    Outline disc;
+    constexpr int corners = 40;
+    for (int k = corners; k-- > 0;) {
+        const double t = 2 * pi * k / corners;
+        disc.push_back({std::cos(t), std::sin(t), 2});
+    }
+    const ConvexBlocker a = box({-0.3, -0.2, 0.5}, {0.2, 0.4, 1.1}), b = box({0.3, -0.6, 0.7}, {0.8, 0.1, 0.9});
+    const std::vector<const ConvexBlocker*> both = {&a, &b};
+    RandomStream random(4, Stream::mesh);
+    for (int k = 0; k < 30; ++k)
+        compare(2 * random.uniform() - 1, 2 * random.uniform() - 1, 0.5 * random.uniform(), both, random, "disc", disc);
+}
+
+TEST(VisibleFromMany, KnowsWhenOneBlockerHidesAllAndWhenNoneHidesAny) {
+    const ConvexBlocker body = box({-2, -2, 0.9}, {2, 2, 1.1});
+    const std::array<const ConvexBlocker*, 1> blockers = {&body};
+    VisibleFromMany many;
+    EXPECT_EQ(many.set(floor_frame, corners_of(floor_square(0, 0, 0.5)), ceiling, blockers),
+              VisibleFromMany::Outlook::hidden);
+    EXPECT_EQ(many.set(floor_frame, corners_of(floor_square(3, 0, 0.5)), ceiling, blockers),
+              VisibleFromMany::Outlook::partly);
+    EXPECT_EQ(many.set(floor_frame, corners_of(floor_square(9, 0, 0.5)), ceiling, blockers),
+              VisibleFromMany::Outlook::clear);
+}
+
+}  // namespace
+}  // namespace exitance

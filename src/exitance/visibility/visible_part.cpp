@@ -1,0 +1,259 @@
+#include "exitance/visibility/visible_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/visibility/edge_sum.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double on_plane = 1e-14;  ///< Sine of an angle that rounding alone may make.
+constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle are points.
+
+using Workspace = VisibilityWorkspace;
+
+/// The part of a convex polygon with heights[i] >= 0; the cut runs through the same place from either side.
+void cut_above(std::span<const Vec3> polygon, std::span<const double> heights, std::vector<Vec3>& out) {
+    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+        const std::size_t j = i + 1 == m ? 0 : i + 1;
+        const double a = heights[i], b = heights[j];
+        if (a >= 0) out.push_back(polygon[i]);
+        if ((a > 0 && b < 0) || (a < 0 && b > 0)) {
+            const bool forward = a < b;
+            const Vec3 &p = forward ? polygon[i] : polygon[j], &q = forward ? polygon[j] : polygon[i];
+            const double hp = forward ? a : b, hq = forward ? b : a;
+            out.push_back(p + (hp / (hp - hq)) * (q - p));
+        }
+    }
+}
+
+/// Keeps the part of `polygon` where n . R >= offset.
+void clip_in_place(std::vector<Vec3>& polygon, const Normal& n, double offset, Workspace& scratch) {
+    bool any_below = false;
+    scratch.heights.clear();
+    for (const Vec3& r : polygon) {
+        scratch.heights.push_back(dot(n, r) - offset);
+        any_below |= scratch.heights.back() < 0;
+    }
+    if (!any_below) return;
+    scratch.side.clear();
+    cut_above(polygon, scratch.heights, scratch.side);
+    if (scratch.side.size() < 3) scratch.side.clear();
+    std::swap(polygon, scratch.side);
+}
+
+/// The source as seen from x and above its horizon, in scratch.source; empty when nothing of it can be seen.
+void look_at_source(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+    scratch.source.clear();
+    const ConvexPiece& piece = occluders.pieces()[source];
+    const std::span<const Point> corners = occluders.corners(source);
+    if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
+    for (const Point& p : corners) scratch.source.push_back(p - at.x);
+    clip_in_place(scratch.source, at.n, 0, scratch);
+}
+
+/// The planes of the pyramid from x over the source, in scratch.source_pyramid.
+void make_pyramid(Workspace& scratch) {
+    scratch.source_pyramid.clear();
+    for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {
+        const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
+        const Vec3 inward = cross(b - a, a);
+        const double length = norm(inward);
+        if (length > no_width * norm(a) * norm(b)) scratch.source_pyramid.push_back(inward / length);
+    }
+}
+
+/// The pyramid from x over the source, between the planes of both, in scratch.region.
+void make_region(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+    const double slack = occluders.rounding();
+    const auto above = [&](const Vec3& n, double height) { return Plane{n, dot(n, at.x) + height}; };
+    scratch.region.clear();
+    const Normal& ns = occluders.pieces()[source].plane.n;
+    scratch.region.add(above(ns, dot(ns, scratch.source[0]) + slack));
+    scratch.region.add(above(at.n, slack));
+    for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
+}
+
+/// Adds the planes of the pyramid over a convex polygon (relative to x); false if the polygon is seen edge-on.
+bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratch) {
+    const std::size_t first = scratch.planes.size();
+    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+        const Vec3 &a = polygon[i], &b = polygon[i + 1 == m ? 0 : i + 1];
+        const Vec3 normal = cross(b - a, a);
+        const double squared = squared_norm(normal), reach = squared_norm(a) * squared_norm(b);
+        if (squared > no_width * no_width * reach)
+            scratch.planes.push_back(normal * (std::copysign(1.0, facing) / std::sqrt(squared)));
+    }
+    if (scratch.planes.size() < first + 3) {
+        scratch.planes.resize(first);
+        return false;
+    }
+    return true;
+}
+
+/// Does the pyramid over an occluder miss the source, or hide all of it?
+enum class Hides { nothing, some, everything };
+Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
+    bool everything = true;
+    for (const Vec3& plane : planes) {
+        bool any_in = false;
+        for (const Vec3& r : source) {
+            const double h = dot(plane, r), noise = on_plane * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
+            any_in |= h > noise;
+            everything &= h >= -noise;
+        }
+        if (!any_in) return Hides::nothing;
+    }
+    return everything ? Hides::everything : Hides::some;
+}
+
+/// The solid angle of a small polygon (relative to x) whose plane passes x at the given distance; rough for large ones.
+double rough_solid_angle(std::span<const Vec3> polygon, double distance_of_plane) {
+    Vec3 twice_area, sum;
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+        twice_area += cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+    for (const Vec3& r : polygon) sum += r;
+    const double distance = norm(sum) / static_cast<double>(polygon.size());
+    return 0.5 * std::abs(distance_of_plane) * norm(twice_area) / (distance * distance * distance);
+}
+
+/// Does a region of several pieces (a wall with a door, say) hide all of the source by itself?
+bool region_hides_everything(const Occluders& occluders, const Receiver& at, RegionId region, Workspace& scratch) {
+    if (std::find(scratch.uncovering.begin(), scratch.uncovering.end(), region) != scratch.uncovering.end())
+        return false;
+    scratch.cover.begin(occluders.scene().regions()[region], occluders.rounding());
+    bool all_cross = true;
+    for (const Vec3& r : scratch.source) all_cross = all_cross && scratch.cover.add(at.x, at.x + r);
+    if (all_cross && scratch.cover.covers()) return true;
+    scratch.uncovering.push_back(region);
+    return false;
+}
+
+/// What a candidate hides: the pyramid over its part between the planes of the source and the receiver, added to the
+/// shadows if it hides some of the source.
+Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate,
+                 Workspace& scratch) {
+    const ConvexPiece& piece = occluders.pieces()[candidate];
+    if (occluders.is_own(piece.region, at.own) || piece.region == source.region) return Hides::nothing;
+    const std::span<const Point> corners = occluders.corners(candidate);
+    const double facing = dot(piece.plane.n, at.x - corners[0]);
+    if (std::abs(facing) <= occluders.rounding()) return Hides::nothing;  // seen edge-on
+    const double source_height = dot(source.plane.n, scratch.source[0]);
+    double highest = -HUGE_VAL, lowest = HUGE_VAL, nearest = -HUGE_VAL, farthest = HUGE_VAL;
+    scratch.clipped.clear();
+    for (const Point& p : corners) {
+        const Vec3 r = p - at.x;
+        const double over_horizon = dot(at.n, r), over_source = dot(source.plane.n, r) - source_height;
+        highest = std::max(highest, over_horizon), lowest = std::min(lowest, over_horizon);
+        nearest = std::max(nearest, over_source), farthest = std::min(farthest, over_source);
+        scratch.clipped.push_back(r);
+    }
+    if (highest <= occluders.rounding() || nearest <= piece.thickness) return Hides::nothing;
+    for (const Vec3& inward : scratch.source_pyramid) {
+        double inmost = -HUGE_VAL;
+        for (const Vec3& r : scratch.clipped) inmost = std::max(inmost, dot(inward, r));
+        if (inmost <= 0) return Hides::nothing;
+    }
+    if (farthest < 0) clip_in_place(scratch.clipped, source.plane.n, source_height, scratch);
+    if (lowest < 0) clip_in_place(scratch.clipped, at.n, 0, scratch);
+    if (scratch.clipped.size() < 3) return Hides::nothing;
+    const std::size_t first = scratch.planes.size();
+    if (!add_pyramid(scratch.clipped, facing, scratch)) return Hides::nothing;
+    const Hides hides = compare(scratch.source, std::span(scratch.planes).subspan(first));
+    if (hides == Hides::nothing) scratch.planes.resize(first);
+    if (hides != Hides::some) return hides;
+    if (occluders.pieces(piece.region).size() > 1 && region_hides_everything(occluders, at, piece.region, scratch))
+        return Hides::everything;
+    scratch.shadows.push_back(
+        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(scratch.planes.size() - first),
+         rough_solid_angle(scratch.clipped, facing), static_cast<std::uint32_t>(scratch.outlines.size()), facing < 0});
+    scratch.outlines.corners.insert(scratch.outlines.corners.end(), scratch.clipped.begin(), scratch.clipped.end());
+    scratch.outlines.close();
+    return hides;
+}
+
+/// Cuts what is lit by the shadows from the given one on; false if nothing is left.
+bool cut_lit(std::size_t first, Workspace& scratch) {
+    // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
+    std::sort(scratch.shadows.begin() + static_cast<std::ptrdiff_t>(first), scratch.shadows.end(),
+              [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
+                  return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
+              });
+    if (first == 0) scratch.lit.begin(scratch.source);
+    for (std::size_t k = first; k < scratch.shadows.size(); ++k) {
+        const Workspace::Shadow& shadow = scratch.shadows[k];
+        const std::span<const Vec3> planes = std::span(scratch.planes).subspan(shadow.first_plane, shadow.plane_count);
+        if (!scratch.lit.cut(planes, scratch.lit.bounds(scratch.outlines[shadow.outline]))) return false;
+    }
+    return true;
+}
+
+/// The form factor to what the shadows leave, the first `cut` of which have cut the source already.
+double finish(const Normal& n, std::size_t cut, Workspace& scratch, VisiblePartMethod method) {
+    if (scratch.shadows.empty()) return std::max(0.0, contour_sum(n, scratch.source));
+    if (method == VisiblePartMethod::edge_sums) {
+        const double f = edge_sum(n, scratch);
+        if (!std::isnan(f)) return std::clamp(f, 0.0, 1.0);
+        cut = 0;
+    }
+    return cut_lit(cut, scratch) ? scratch.lit.form_factor(n) : 0;
+}
+
+void begin(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+    look_at_source(occluders, at, source, scratch);
+    scratch.planes.clear();
+    scratch.shadows.clear();
+    scratch.outlines.clear();
+    scratch.uncovering.clear();
+}
+
+}  // namespace
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
+                           VisiblePartMethod method) {
+    begin(occluders, at, source, scratch);
+    if (scratch.source.empty()) return 0;
+    const bool in_scene = !at.own.is_none();  // what lies on the scene's hull stands between none of its points
+    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, method);
+    make_pyramid(scratch);
+    const ConvexPiece& emitter = occluders.pieces()[source];
+    PieceId& likely = scratch.last_blocker(occluders, source);
+    const auto hides_everything = [&](PieceId p) {
+        const bool hides = add_shadow(occluders, at, emitter, p, scratch) == Hides::everything;
+        if (hides) likely = p;
+        return hides;
+    };
+    if (!likely.is_none()) {
+        if (hides_everything(likely)) return 0;
+        scratch.planes.clear();
+        scratch.shadows.clear();
+        scratch.outlines.clear();
+    }
+    make_region(occluders, at, source, scratch);
+    const auto visit = [&](Occluders::Size size) {  // from the receiver on: near walls hide most
+        return in_scene ? occluders.visit_inner(size, scratch.region, hides_everything, scratch.source[0])
+                        : occluders.visit_region(size, scratch.region, hides_everything, scratch.source[0]);
+    };
+    if (visit(Occluders::Size::large)) return 0;
+    const std::size_t large = scratch.shadows.size();
+    if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
+    if (visit(Occluders::Size::small)) return 0;
+    return finish(at.n, large > 1 ? large : 0, scratch, method);
+}
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch,
+                           VisiblePartMethod method) {
+    begin(occluders, at, source, scratch);
+    if (scratch.source.empty()) return 0;
+    if (candidates.empty()) return finish(at.n, 0, scratch, method);
+    make_pyramid(scratch);
+    const ConvexPiece& emitter = occluders.pieces()[source];
+    for (PieceId p : candidates)
+        if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
+    return finish(at.n, 0, scratch, method);
+}
+
+}  // namespace exitance

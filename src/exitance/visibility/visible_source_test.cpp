@@ -1,0 +1,135 @@
+#include "exitance/visibility/visible_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/visibility/visible_from_four.hpp"
+#include "support/blockers.hpp"
+
+namespace exitance {
+namespace {
+
+using test::box;
+using test::sheet;
+
+using Outline = std::vector<Point>;
+
+/// Looks down from z = 2 on the plane z = 0.
+const Outline ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
+constexpr Normal up = {0, 0, 1};
+
+Outline level_square(double x, double y, double z, double half) {
+    return {{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}};
+}
+double seen(const Point& x, const Normal& n, const Outline& source, const std::vector<const ConvexBlocker*>& blockers,
+            Seen& how) {
+    VisibleSource visible;
+    visible.set(source, blockers);
+    return visible(x, n, how);
+}
+
+TEST(VisibleSource, ASheetHidesItsShadow) {
+    const ConvexBlocker plate = sheet(level_square(0.1, 0, 1, 0.2));
+    Seen how;
+    const double F = seen({0, 0, 0}, up, ceiling, {&plate}, how);
+    EXPECT_EQ(how, Seen::part);
+    Outline shadow = level_square(0.2, 0, 2, 0.4);  // twice as far, twice as large
+    std::reverse(shadow.begin(), shadow.end());
+    EXPECT_NEAR(F, point_to_polygon({0, 0, 0}, up, ceiling) - point_to_polygon({0, 0, 0}, up, shadow), 1e-15);
+}
+
+TEST(VisibleSource, KnowsWhenOneBlockerHidesAllAndWhenSeveralDo) {
+    const ConvexBlocker whole = sheet(level_square(0, 0, 1, 0.6));
+    const ConvexBlocker left = sheet(level_square(-0.5, 0, 1, 0.55)), right = sheet(level_square(0.5, 0, 1, 0.55));
+    const ConvexBlocker aside = sheet(level_square(3, 0, 1, 0.5));
+    Seen how;
+    EXPECT_EQ(seen({0, 0, 0}, up, ceiling, {&whole}, how), 0);
+    EXPECT_EQ(how, Seen::nothing);
+    EXPECT_EQ(seen({0, 0, 0}, up, ceiling, {&left, &right}, how), 0);
+    EXPECT_EQ(how, Seen::nothing_past_several);
+    EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, {&aside}, how), point_to_polygon({0, 0, 0}, up, ceiling), 1e-15);
+    EXPECT_EQ(how, Seen::all);
+}
+
+TEST(VisibleSource, ABodyHidesWhatItsFacesHideTogether) {
+    const ConvexBlocker body = box({-0.3, -0.2, 0.5}, {0.2, 0.4, 1.1});
+    std::vector<ConvexBlocker> faces;
+    std::vector<const ConvexBlocker*> all;
+    for (std::size_t f = 0; f < 6; ++f) {
+        Outline outline;
+        for (std::uint32_t c : body.loops[f]) outline.push_back(body.points[c]);
+        faces.push_back(sheet(outline));
+    }
+    for (const ConvexBlocker& f : faces) all.push_back(&f);
+    RandomStream random(1, Stream::mesh);
+    for (int k = 0; k < 200; ++k) {
+        const Point x = {3 * random.uniform() - 1.5, 3 * random.uniform() - 1.5, 0};
+        Seen one, six;
+        EXPECT_NEAR(seen(x, up, ceiling, {&body}, one), seen(x, up, ceiling, all, six), 1e-14);
+    }
+}
+
+TEST(VisibleSource, CertifiesPairsThatOneBodyHides) {
+    const ConvexBlocker body = box({-2, -2, 0.9}, {2, 2, 1.1});
+    VisibleSource visible;
+    const std::array<const ConvexBlocker*, 1> blockers = {&body};
+    visible.set(ceiling, blockers);
+    EXPECT_TRUE(visible.is_hidden_from(level_square(0, 0, 0, 0.5)));
+    EXPECT_FALSE(visible.is_hidden_from(level_square(3, 0, 0, 0.5)));
+}
+
+TEST(VisibleFromFour, AgreesWithSinglePointsWheneverItAnswers) {
+    const ConvexBlocker a = box({-0.3, -0.2, 0.5}, {0.2, 0.4, 1.1}), b = box({0.3, -0.6, 0.7}, {0.8, 0.1, 0.9});
+    const ConvexBlocker c = sheet({{-0.9, -0.5, 1.2}, {-0.4, -0.6, 1.3}, {-0.5, 0.3, 1.1}});
+    const std::vector<const ConvexBlocker*> blockers = {&a, &b, &c};
+    RandomStream random(2, Stream::mesh);
+    VisibleFromFour four;
+    int answered = 0;
+    for (int k = 0; k < 2000; ++k) {
+        const Point middle = {3 * random.uniform() - 1.5, 3 * random.uniform() - 1.5, 0};
+        std::array<Point, 4> x;
+        for (Point& p : x) p = middle + 0.02 * Vec3{random.uniform(), random.uniform(), 0};
+        std::array<double, 4> F;
+        Seen together;
+        if (!four(ceiling, blockers, x, up, F, together)) continue;
+        ++answered;
+        for (std::size_t i = 0; i < 4; ++i) {
+            Seen alone;
+            EXPECT_NEAR(F[i], seen(x[i], up, ceiling, blockers, alone), 1e-14);
+            EXPECT_EQ(together, alone);
+        }
+    }
+    EXPECT_GT(answered, 1000);
+}
+
+Outline outline_of(const nlohmann::json& json) {
+    Outline outline;
+    for (const auto& v : json) outline.push_back({v[0], v[1], v[2]});
+    return outline;
+}
+
+TEST(VisibleSource, ReproducesThePublishedPoints) {
+    std::ifstream file(std::string(EXITANCE_SHARED_DIR) + "/reference/view_factors.json");
+    const nlohmann::json table = nlohmann::json::parse(file, nullptr, false);
+    if (table.is_discarded()) return;
+    for (const auto& c : table["cases"]) {
+        if (c["group"] != "point-occluded") continue;
+        std::vector<ConvexBlocker> sheets;
+        std::vector<const ConvexBlocker*> blockers;
+        for (const auto& o : c["occluders"]) sheets.push_back(sheet(outline_of(o)));
+        for (const ConvexBlocker& s : sheets) blockers.push_back(&s);
+        const auto &p = c["point"], &n = c["normal"];
+        Seen how;
+        const double F = seen({p[0], p[1], p[2]}, {n[0], n[1], n[2]}, outline_of(c["polygon"]), blockers, how);
+        EXPECT_NEAR(F, c["F"].get<double>(), 1e-14) << c["id"];
+    }
+}
+
+}  // namespace
+}  // namespace exitance
