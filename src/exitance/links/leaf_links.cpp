@@ -81,8 +81,8 @@ void link_leaf(const LinkSites& sites, const LeafOfPiece& receiver, std::span<co
         if (pair.view == View::none) continue;
         if (max(sites.stage().scene.material(tree.region(source.leaf)).reflectance) <= 0) continue;
         pair.receiver = receiver.leaf, pair.source = source.leaf;
-        LinkJudge::Result result = judge.judge(pair, views.pool());
-        if (result.verdict == LinkJudge::Verdict::drop) continue;
+        LinkDecision result = judge.judge(pair, views.pool());
+        if (result.verdict == LinkDecision::Verdict::drop) continue;
         if (result.near) {
             result.link.block = static_cast<std::uint32_t>(block.blocks.size());
             block.blocks.insert(block.blocks.end(), judge.block().begin(), judge.block().end());

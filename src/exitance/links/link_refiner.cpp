@@ -9,11 +9,11 @@
 
 namespace exitance {
 
-LinkRefiner::Found::Found(const LinkJudge::Result& result, bool is_open)
+LinkRefiner::Found::Found(const LinkDecision& result, bool is_open)
     : link(result.link),
       squared_error(static_cast<float>(result.squared_error)),
       light(static_cast<float>(result.light)),
-      missed(static_cast<float>(result.missed)),
+      undersampling(static_cast<float>(result.undersampling)),
       near(result.near),
       open(is_open),
       cuts_receiver(result.cuts_receiver) {
@@ -63,7 +63,7 @@ void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalFie
 }  // namespace
 
 struct LinkRefiner::ReceivedLight {
-    LinkJudge::Departure departure{};
+    Departure departure{};
     std::array<double, 9> shadowed{}, variance{};
 
     /// `shadow`: light at the nodes where something stands in between, then its variance; null: none.
@@ -143,12 +143,12 @@ std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const L
     for (const Found& found : links_) {
         const float growth = growth_of[found.link.source];
         if (growth < 0 || static_cast<double>(growth * growth * found.squared_error) > allowed ||
-            static_cast<double>(growth * found.missed) > tolerance.error) {
+            static_cast<double>(growth * found.undersampling) > tolerance.error) {
             stale.push_back(pair_of(found));
             continue;
         }
         Found& still = links_[kept++] = found;
-        still.light *= growth, still.missed *= growth, still.squared_error *= growth * growth;
+        still.light *= growth, still.undersampling *= growth, still.squared_error *= growth * growth;
         for (float& d : still.departure) d *= growth;
         if (still.near) {
             const auto block = blocks_.begin() + found.link.block;
@@ -206,9 +206,9 @@ LinkRefiner::Block LinkRefiner::judge_block(std::span<const LinkPair> pairs, Lin
     Block out;
     for (LinkPair pair : pairs) {
         note_source(tree_.region(pair.source).value);
-        LinkJudge::Result result = judge.judge(pair, pool);
-        if (result.verdict == LinkJudge::Verdict::drop) continue;
-        if (result.verdict == LinkJudge::Verdict::cut_source) {
+        LinkDecision result = judge.judge(pair, pool);
+        if (result.verdict == LinkDecision::Verdict::drop) continue;
+        if (result.verdict == LinkDecision::Verdict::cut_source) {
             const auto candidates = pair.view == View::mixed ? judge.candidates() : std::span<const PieceId>();
             pair.first = static_cast<std::uint32_t>(out.candidates.size());
             pair.count = static_cast<std::uint32_t>(candidates.size());

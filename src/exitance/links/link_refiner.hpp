@@ -74,12 +74,12 @@ class LinkRefiner {
   private:
     /// A link, and what refining needs to know of it.
     struct Found {
-        Found(const LinkJudge::Result& result, bool is_open);
+        Found(const LinkDecision& result, bool is_open);
         Found() = default;
 
         Link link;
         std::array<float, 5> departure{};
-        float squared_error = 0, light = 0, missed = 0;
+        float squared_error = 0, light = 0, undersampling = 0;
         std::uint32_t shadow = none;  ///< Where shadowed light and its variance at the nodes stand in shadows_.
         bool near = false;            ///< Has it a block?
         bool open = false;            ///< Is its view certain?

@@ -73,7 +73,7 @@ class Hierarchy {
         const double first = (somewhere ? 16 : 1) * first_error(demand);
         LinkTolerance tolerance = tolerance_of(first);
         tolerance.oracle = input_.options.oracle;
-        tolerance.hidden = hidden();
+        tolerance.residual_weight = residual_weight();
         tolerance.corrected = !light_.delivers;
         tolerance.strongest = first_strength(first);
         constexpr int most_rounds = 8;
@@ -210,7 +210,7 @@ class Hierarchy {
     }
 
     /// Bilinear sources hide most from near receivers, all with one sign. Where rays correct it, that does not matter.
-    double hidden() const {
+    double residual_weight() const {
         constexpr double little = 0.5, by_bilinear = 1.5;
         return light_.delivers && basis_.order() == 2 ? by_bilinear : little;
     }
