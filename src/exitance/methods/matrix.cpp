@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "exitance/methods/constant_elements.hpp"
-#include "exitance/methods/hierarchy.hpp"
+#include "exitance/methods/hierarchical/galerkin.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/transport/hemicube_rows.hpp"
 #include "exitance/transport/linear_rows.hpp"

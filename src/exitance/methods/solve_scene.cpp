@@ -6,7 +6,7 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/methods/hierarchy.hpp"
+#include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/light/refined_light.hpp"

@@ -1,4 +1,4 @@
-#include "exitance/methods/linked_by_rays.hpp"
+#include "exitance/methods/hierarchical/linked_by_rays.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "exitance/methods/linked_system.hpp"
+#include "exitance/methods/hierarchical/linked_system.hpp"
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/solve/conserving_transport.hpp"

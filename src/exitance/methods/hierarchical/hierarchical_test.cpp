@@ -1,4 +1,4 @@
-#include "exitance/methods/hierarchy.hpp"
+#include "exitance/methods/hierarchical/hierarchical.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "exitance/basis/nodal_basis.hpp"
+#include "exitance/methods/methods.hpp"
+
+namespace exitance {
+
+/// Galerkin's method of order 1 to 3, whose basis is that of haar, multiwavelet2 or multiwavelet3, without a hierarchy:
+/// every leaf of the direct projection is linked to every leaf, once (`leaf_links`); E_ind is delivered, or gathered,
+/// by the rule of `solve_hierarchical`. O(leaves^2). Source: [Zatz93].
+GlobalLight solve_galerkin(const MethodInput& input, HierarchyBasis kind);
+
+}  // namespace exitance

@@ -1,0 +1,49 @@
+#include "exitance/methods/hierarchical/hand_over.hpp"
+
+#include <cmath>
+
+#include "exitance/mesh/adaptive.hpp"
+
+namespace exitance {
+namespace {
+
+/// Cuts leaves, for the sake of what is handed on, until linear functions hold what quadratic ones have found.
+void cut_for_delivery(Hierarchy& h, const NodalLight& E) {
+    constexpr double share = 0.3;  // of the error that links may have
+    const double allowed = share * h.input.knobs.link_error * h.light_norm() / std::sqrt(h.input.stage.area);
+    ElementTree& tree = h.light.tree;
+    std::vector<ElementId> active = tree.leaves();
+    constexpr int most_levels = 3;
+    for (int level = 0; level < most_levels && !active.empty(); ++level) {
+        const std::vector<ElementId> rough = rough_elements(h.sites, E, active, allowed);
+        for (ElementId e : rough) refine_element(tree, e);
+        active.clear();
+        for (ElementId e : rough)
+            for (ElementId child : tree.children(e)) active.push_back(child);
+    }
+    h.light.numbering = LeafNumbering(tree);
+    h.light.kept.clear();  // was of other leaves
+}
+
+}  // namespace
+
+void hand_over(Hierarchy& h) {
+    GlobalLight& light = h.light;
+    // The mesh below the elements that are held is that of direct light.
+    const std::size_t element_bytes = light.tree.memory_bytes() * h.sites.size() / light.tree.size() +
+                                      h.sites.memory_bytes() + h.reflected_direct_below.memory_bytes() +
+                                      h.refiner.field_bytes() + 2 * h.radiosity.memory_bytes();
+    const NodalField F_b = h.gather();
+    const NodalLight E = [&](ElementId e) { return h.indirect_light(F_b, e); };
+    if (h.basis.order() > 2 && (light.delivers || h.input.options.smoothing)) cut_for_delivery(h, E);
+    write_nodal_light(h.sites, E, h.input.direct, light);
+    light.links = h.system.size();
+    if (h.input.options.keep_links) light.kept_links = h.system.links().list();
+    light.link_memory_bytes = h.system.memory_bytes();
+    light.element_memory_bytes = element_bytes;
+    light.elements_by_level = h.sites.count_by_level();
+    light.rays += h.rays();
+    light.form_factors = h.refiner.form_factors();
+}
+
+}  // namespace exitance

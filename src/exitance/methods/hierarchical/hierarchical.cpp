@@ -1,0 +1,117 @@
+#include "exitance/methods/hierarchical/hierarchical.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exitance/methods/hierarchical/hand_over.hpp"
+#include "exitance/methods/hierarchical/link_rounds.hpp"
+#include "exitance/methods/hierarchical/linked_by_rays.hpp"
+#include "exitance/methods/hierarchical/ray_correction.hpp"
+#include "exitance/methods/plan/choice.hpp"
+#include "exitance/reconstruct/element_gather.hpp"
+#include "exitance/transport/open_share.hpp"
+
+namespace exitance {
+namespace {
+
+/// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error.
+bool wants_clusters(const MethodInput& input) {
+    constexpr std::size_t many_pieces = 500;
+    const SolveOptions& o = input.options;
+    return o.clusters.value_or(input.direct.tree.roots().size() > many_pieces && o.oracle == LinkOracle::transport);
+}
+
+/// Clusters read elements before links come to them; and from the means of flatlets nothing below is read.
+LinkSites::Held held_by(const MethodInput& input, HierarchyBasis kind) {
+    const bool has_means = kind == HierarchyBasis::flatlet2 || kind == HierarchyBasis::flatlet3;
+    return wants_clusters(input) || has_means ? LinkSites::Held::all : LinkSites::Held::roots;
+}
+
+/// Does what was asked for say how links are to be found or judged, or deliver what they hold?
+bool asks_for_judged_links(const SolveOptions& o) {
+    return o.basis || o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing ||
+           !o.triage || o.visibility != VisibilityKind::automatic || o.clusters || o.min_area;
+}
+
+/// Are links alone asked for, or do polynomials give the light as exactly as it has to be? That the scene decides, not
+/// how far its links are refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather) are
+/// surer where surfaces meet, unless very little error is asked for.
+bool links_deliver(const Hierarchy& h) {
+    const MethodInput& input = h.input;
+    if (input.options.smoothing == false) return true;
+    if (!h.is_polynomial) return false;
+    const bool sums = ElementGather::suits(input.stage) && input.options.error_target() > sums_reach;
+    if (sums && !input.options.epsilon) return false;
+    const LeafNumbering numbering(h.light.tree);
+    const ElementLocator locator(h.light.tree, input.stage.scene.regions().size());
+    std::vector<Spectrum> light;
+    for (ElementId e : numbering.leaves) light.push_back(h.material(e).reflectance * input.direct.fit[e].mean);
+    return is_mostly_open(input.stage, h.light.tree, numbering, locator, light, input.options.seed);
+}
+
+/// In a closed scene nothing of what is reflected may be lost.
+void conserve(Hierarchy& h) {
+    const ElementLocator locator(h.light.tree, h.input.stage.scene.regions().size());
+    if (!is_closed(h.input.stage, h.light.tree, h.light.numbering, locator, h.input.options.seed)) return;
+    h.input.progress.phase("solve");
+    h.relax(true);
+    h.input.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(h.system.scale()) - 1)));
+}
+
+/// Radiosity over the links of a hierarchy, whatever its basis: what the methods hierarchical and wavelet share.
+///
+/// Where light is gathered from the elements afterwards, rays find the links (`solve_linked_by_rays`). Where the basis
+/// holds polynomials and most light passes in the open, or where something about links is asked for, they are judged
+/// one by one (`refine_links`); E_ind of polynomials is then delivered as the links give it, else rays correct the
+/// means. O(rays log rays); or O(k log k + links) for k pieces under clusters, O(k^2 + links) without. Source:
+/// [Hanrahan91], [Gortler93], [Smits94].
+GlobalLight solve_over_links(const MethodInput& input, HierarchyBasis kind) {
+    if (!asks_for_judged_links(input.options)) {
+        const bool is_polynomial = kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
+        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, is_polynomial)) return std::move(*light);
+    }
+    Hierarchy h(input, kind, held_by(input, kind));
+    if (wants_clusters(input)) h.make_clusters();
+    h.light.delivers = links_deliver(h);
+    h.project_direct();
+    if (!refine_links(h)) return std::move(h.light);
+    if (h.light.delivers)
+        conserve(h);
+    else if (!input.stop.requested())
+        correct_by_rays(h);
+    hand_over(h);
+    return std::move(h.light);
+}
+
+}  // namespace
+
+bool links_outgrow_memory(std::size_t pieces, const SolveOptions& options) {
+    constexpr double see_each_other = 0.5;
+    const double pairs = see_each_other * std::pow(static_cast<double>(pieces), 2);
+    return options.memory_limit_bytes &&
+           pairs * LinkRefiner::bytes_a_link > static_cast<double>(*options.memory_limit_bytes);
+}
+
+/// Hierarchical radiosity [Hanrahan91]: constant elements, links between levels.
+GlobalLight solve_hierarchical(const MethodInput& input) {
+    return solve_over_links(input, HierarchyBasis::haar);
+}
+
+/// Wavelet radiosity [Gortler93]: the same with the basis asked for, multiwavelets of order 2 when none is.
+GlobalLight solve_wavelet(const MethodInput& input) {
+    switch (input.options.basis.value_or(BasisKind::multiwavelet2)) {
+        case BasisKind::haar:
+            return solve_over_links(input, HierarchyBasis::haar);
+        case BasisKind::flatlet2:
+            return solve_over_links(input, HierarchyBasis::flatlet2);
+        case BasisKind::flatlet3:
+            return solve_over_links(input, HierarchyBasis::flatlet3);
+        case BasisKind::multiwavelet3:
+            return solve_over_links(input, HierarchyBasis::multiwavelet3);
+        default:
+            return solve_over_links(input, HierarchyBasis::multiwavelet2);
+    }
+}
+
+}  // namespace exitance

@@ -1,0 +1,185 @@
+#include "exitance/methods/hierarchical/link_rounds.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exitance/accuracy/tolerance_law.hpp"
+#include "exitance/core/memory.hpp"
+#include "exitance/mesh/element_tree_archive.hpp"
+#include "exitance/methods/hierarchical/link_importance.hpp"
+
+namespace exitance {
+namespace {
+
+/// Errors in the first round's tolerance, in shares of the demand. The fewer links there are in a sum, which is where
+/// little is asked for and where orders are high, the larger a single one's may be.
+double first_error(const Hierarchy& h, double demand) {
+    constexpr double fine = 0.00225, delivering = 0.3, of_order_three = 1.4;
+    const double few = std::clamp(std::sqrt(h.input.knobs.link_error / fine), 1.0, 2.0);
+    return (h.light.delivers ? delivering : h.basis.order() == 3 ? of_order_three : 1) * few * demand;
+}
+
+/// Where links are judged by their strength, what they may have in the first round; it falls with the error.
+double first_strength(const Hierarchy& h, double error) {
+    constexpr double of_form_factors = 10, of_light = 0.1;
+    return h.input.options.oracle == LinkOracle::form_factor ? of_form_factors * error / h.light_norm()
+                                                             : of_light * error * std::sqrt(h.input.stage.area);
+}
+
+/// Weight of what a source's polynomial leaves out: bilinear sources miss most beside near receivers, all with one
+/// sign. Where rays correct it, that does not matter.
+double residual_weight(const Hierarchy& h) {
+    constexpr double usual = 0.5, of_bilinear = 1.5;
+    return h.light.delivers && h.basis.order() == 2 ? of_bilinear : usual;
+}
+
+/// Ratio of the links' error to what the method's is to be: where rays correct the means of leaves, links tell only how
+/// light varies within them, and it is gathered once more; where links deliver it, no gather takes a share of the error
+/// asked for.
+double share_of_links(const Hierarchy& h) {
+    constexpr double rays_correct = 8, without_gather = 1.7;
+    if (h.light.delivers) return h.input.options.epsilon ? 1 : without_gather;
+    return h.input.options.smoothing ? 1 : rays_correct;
+}
+
+/// As many links as there is room for.
+std::size_t most_links(const Hierarchy& h) {
+    constexpr std::size_t unasked = 8'000'000'000;  // bytes
+    const std::size_t used = peak_memory_bytes(), limit = h.input.options.memory_limit_bytes.value_or(used + unasked);
+    constexpr std::size_t others_share = 2;  // meshes, gathers, files
+    constexpr std::size_t fields = 7;        // of light, and of what is solved for
+    const std::size_t taken = used + fields * h.radiosity.memory_bytes();
+    return (limit - std::min(limit, taken)) / (others_share * LinkRefiner::bytes_a_link);
+}
+
+/// Weight of an error that is alike all over the receivers: it comes back from every reflection, if rays do not
+/// correct it.
+double systematic_weight(const Hierarchy& h) {
+    if (!h.light.delivers) return 1;
+    constexpr double within_a_sum = 2, most_reflections = 10;
+    double reflected = 0;
+    for (ElementId e : h.light.tree.roots()) reflected += h.light.tree.area(e) * mean(h.material(e).reflectance);
+    return within_a_sum * std::min(most_reflections, 1 / (1 - reflected / h.input.stage.area));
+}
+
+/// The rounds of one solve.
+class Rounds {
+  public:
+    explicit Rounds(Hierarchy& h)
+        : h_(h), of_links_(first_exponent(h.light.delivers)), of_receivers_(first_exponent(h.light.delivers)) {
+        // Light is reflected once, at first; then it is all of it, unless rays correct what links miss.
+        if (!h.light.delivers && !has_importance_) h.refiner.keep_light();
+        constexpr double before_importance = 16;  // the first round does not know it
+        const double first =
+            (has_importance_ ? before_importance : 1) * first_error(h, h.input.knobs.link_error * h.light_norm());
+        tolerance_ = link_tolerance(h, first);
+        tolerance_.oracle = h.input.options.oracle;
+        tolerance_.residual_weight = residual_weight(h);
+        tolerance_.corrected = !h.light.delivers;
+        tolerance_.strongest = first_strength(h, first);
+    }
+
+    bool run() {
+        constexpr int most_rounds = 8;
+        const auto state = [&](auto& a) { archive_state(a); };
+        SafePoints safe_points = h_.input.safe_points;
+        safe_points.resume(state);
+        for (; round_ < most_rounds; ++round_) {
+            safe_points.pass(state);
+            h_.input.progress.phase("link");
+            const double judged_by = h_.light_norm();
+            h_.refine(tolerance_);
+            if (tolerance_.gives_up && h_.input.stop.requested()) return false;
+            relax();
+            // What links miss grows with the light, of which the first round knows but one reflection. Where rays
+            // correct it, that does not matter.
+            const double growth = h_.light.delivers ? h_.light_norm() / judged_by : 1;
+            const double by_link = growth * h_.link_error(), by_receiver = growth * h_.refiner.interpolation_error();
+            if (is_good_enough(by_link, by_receiver)) break;
+            lower_tolerances(by_link, by_receiver);
+            if (!h_.light.delivers && !has_importance_) h_.radiosity = h_.reflected_direct;
+        }
+        return true;
+    }
+
+  private:
+    /// Where links deliver light, what falls first is how much of it comes back from reflections.
+    static double first_exponent(bool delivers) { return delivers ? 0.8 : 1.7; }
+
+    template <class Archive>
+    void archive_state(Archive& a) {
+        a(round_, tolerance_, h_.light.tree, h_.light.report);
+        of_links_.archive_state(a), of_receivers_.archive_state(a);
+        h_.sites.archive_state(a);
+        for (NodalField* field : {&h_.reflected_direct, &h_.radiosity}) field->archive_state(a);
+        h_.refiner.archive_state(a);
+        if (h_.far) h_.far->archive_state(a);
+    }
+
+    void relax() {
+        h_.input.progress.phase("solve");
+        h_.light.numbering = LeafNumbering(h_.light.tree);
+        h_.system.set_links(h_.refiner.make_links(), h_.far ? std::optional(h_.far->make_links()) : std::nullopt);
+        h_.relax();
+        if (has_importance_) h_.refiner.set_importance(find_link_importance(h_));
+    }
+
+    bool is_good_enough(double by_link, double by_receiver) {
+        constexpr double accepted_excess =
+            1.15;  // when rays correct the result: one more round costs more than it gains
+        const double error = std::hypot(by_link, by_receiver), norm = h_.light_norm();
+        demand_ = h_.input.knobs.link_error * share_of_links(h_) * norm;
+        h_.input.progress.note(
+            fmt::format("{} links, {} of clusters ({:.0f}% of their light in the open), {} elements, {} rays; "
+                        "their error {:.3f}% "
+                        "of {:.3f}%",
+                        h_.refiner.size(), h_.far ? h_.far->size() : 0, 100 * h_.open_share(), h_.light.tree.size(),
+                        h_.rays(), 100 * error / norm, 100 * demand_ / norm));
+        h_.light.limited_by_memory = h_.refiner.is_limited();
+        if (h_.input.stop.requested() || h_.light.limited_by_memory) return true;
+        const bool knows_all_light = round_ > 0 || (!has_importance_ && !h_.light.delivers);
+        return knows_all_light && error <= (h_.light.delivers ? 1 : accepted_excess) * demand_;
+    }
+
+    /// Each of the two may have half of what is allowed, squared, and what the other leaves.
+    void lower_tolerances(double by_link, double by_receiver) {
+        const auto beside = [&](double other) {
+            return std::sqrt(demand_ * demand_ - std::min(other * other, 0.5 * demand_ * demand_));
+        };
+        const double links = of_links_.factor(by_link, beside(by_receiver)),
+                     receivers = of_receivers_.factor(by_receiver, beside(by_link));
+        tolerance_.error *= links, tolerance_.interpolation *= receivers;
+        tolerance_.strongest *= std::min(links, receivers);
+    }
+
+    Hierarchy& h_;
+    const bool has_importance_ = !h_.input.options.importance.empty();
+    LinkTolerance tolerance_;
+    ToleranceLaw of_links_, of_receivers_;
+    int round_ = 0;
+    double demand_ = 0;  ///< On the error of all links together, W/m^2 m.
+};
+
+}  // namespace
+
+LinkTolerance link_tolerance(const Hierarchy& h, double error) {
+    constexpr double least_area_share = 1e-7;  // of all surfaces
+    const SolveOptions& o = h.input.options;
+    return {.error = error,
+            .interpolation = error,
+            .systematic = systematic_weight(h),
+            .most_links = most_links(h),
+            .least_area = o.min_area.value_or(least_area_share * h.input.stage.area),
+            .fractional = o.visibility == VisibilityKind::fractional,
+            .quadrature = o.visibility == VisibilityKind::quadrature,
+            .gives_up = h.input.may_give_up,
+            .triage = o.triage,
+            .seed = o.seed};
+}
+
+bool refine_links(Hierarchy& hierarchy) {
+    return Rounds(hierarchy).run();
+}
+
+}  // namespace exitance
