@@ -9,26 +9,15 @@
 
 namespace exitance {
 
-LinkRefiner::Found::Found(const LinkDecision& result, bool is_open)
-    : link(result.link),
-      squared_error(static_cast<float>(result.squared_error)),
-      light(static_cast<float>(result.light)),
-      undersampling(static_cast<float>(result.undersampling)),
-      near(result.near),
-      open(is_open),
-      cuts_receiver(result.cuts_receiver) {
-    for (std::size_t c = 0; c < departure.size(); ++c) departure[c] = static_cast<float>(result.departure[c]);
-}
-
 struct LinkRefiner::Block {
-    std::vector<Found> links;
+    std::vector<FoundLink> links;
     std::vector<float> blocks, shadows;
     std::vector<LinkPair> cut;        ///< Their sources are to be cut.
     std::vector<PieceId> candidates;  ///< Of those.
     std::size_t rays = 0, form_factors = 0;
 
     std::size_t bytes() const {
-        return links.size() * sizeof(Found) + (blocks.size() + shadows.size()) * 4 + cut.size() * sizeof(LinkPair) +
+        return links.size() * sizeof(FoundLink) + (blocks.size() + shadows.size()) * 4 + cut.size() * sizeof(LinkPair) +
                candidates.size() * 4;
     }
 };
@@ -39,13 +28,6 @@ namespace {
 std::size_t block_size_for(std::size_t pairs) {
     constexpr std::size_t tasks = 512, least = 8, most = 128;
     return std::clamp(pairs / tasks, least, most);
-}
-
-template <class Departure>
-double mean_square(const Departure& d) {
-    double sum = 0;
-    for (double v : d) sum += v * v;
-    return sum / static_cast<double>(d.size());
 }
 
 /// An element takes its parent's function.
@@ -62,33 +44,7 @@ void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalFie
 
 }  // namespace
 
-struct LinkRefiner::ReceivedLight {
-    Departure departure{};
-    std::array<double, 9> shadowed{}, variance{};
-
-    /// `shadow`: light at the nodes where something stands in between, then its variance; null: none.
-    void add(const Found& link, const float* shadow, std::size_t nodes) {
-        for (std::size_t c = 0; c < departure.size(); ++c) departure[c] += static_cast<double>(link.departure[c]);
-        for (std::size_t k = 0; shadow && k < nodes; ++k) {
-            shadowed[k] += static_cast<double>(shadow[k]);
-            variance[k] += static_cast<double>(shadow[nodes + k]);
-        }
-    }
-
-    /// Of interpolation, mean square: the departure from a polynomial, and where shadowed light varies over the
-    /// receiver by more than the rays' errors, a part of that, (W/m^2)^2.
-    double squared_error(const LinkSites& sites, ElementId e) const {
-        double mean = 0, square = 0, noise = 0;
-        for (std::size_t k = 0; k < sites.nodes(); ++k) {
-            const double w = sites.weight(e, k);
-            mean += w * shadowed[k], square += w * shadowed[k] * shadowed[k], noise += w * variance[k];
-        }
-        const double share = sites.nodes() > 4 ? 0.75 : 0.5;  // quadratics overshoot beside shadows
-        return mean_square(departure) + share * share * std::max(0.0, square - mean * mean - noise);
-    }
-};
-
-LinkPair LinkRefiner::pair_of(const Found& found) {
+LinkPair LinkRefiner::pair_of(const FoundLink& found) {
     return {found.link.receiver, found.link.source, found.open ? View::open : View::mixed};
 }
 
@@ -109,29 +65,27 @@ void LinkRefiner::judge_all_pieces(const NodalField& b, const LinkTolerance& tol
 
 double LinkRefiner::growth(const NodalField& b, ElementId source) const {
     if (light_stays_) return 1;
-    double now = 0, then = 0;
+    double now = 0, then = 0, changed = 0;
     const std::size_t n = sites_.nodes();
     for (std::size_t k = 0; k < n; ++k)
         now += sites_.weight(source, k) * squared(b.node(source, k)),
             then += sites_.weight(source, k) * squared(judged_.node(source, k));
     if (then <= 0) return now > 0 ? -1 : 1;
     const double growth = std::sqrt(now / then);
-    double changed = 0;
     for (std::size_t k = 0; k < n; ++k)
         changed += sites_.weight(source, k) * squared(b.node(source, k) - growth * judged_.node(source, k));
-    constexpr double hardly = 0.1;  // of what there is: less than the errors of links are known by
-    return changed <= hardly * hardly * now ? growth : -1;
+    constexpr double negligible_change = 0.1;  // of what there is: links' errors are known less well
+    return changed <= negligible_change * negligible_change * now ? growth : -1;
 }
 
 /// Links that are surely good enough still stay: what they carry and what they miss have grown like their source's
 /// light. Returns the others, as pairs.
 std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const LinkTolerance& tolerance) {
     // With a stricter tolerance a link would have been judged by better rules: what it misses has to be well below.
-    constexpr double surely = 0.3;
-    const double allowed = surely * surely * tolerance.error * tolerance.error;
-    const bool may_keep = tolerance.oracle == LinkOracle::transport && importance_.empty();
+    constexpr double kept_share = 0.3;
+    const double allowed = kept_share * kept_share * tolerance.error * tolerance.error;
     Field<ElementId, float> growth_of(tree_.size(), -1.0f);
-    if (may_keep)
+    if (tolerance.oracle == LinkOracle::transport && importance_.empty())
         parallel_for(tree_.size(), 256, [&](std::size_t i) {
             const ElementId e(i);
             if (sites_.holds(e)) growth_of[e] = static_cast<float>(growth(b, e));
@@ -140,14 +94,14 @@ std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const L
     std::vector<LinkPair> stale;
     std::vector<float> blocks, shadows;
     std::size_t kept = 0;
-    for (const Found& found : links_) {
+    for (const FoundLink& found : links_) {
         const float growth = growth_of[found.link.source];
         if (growth < 0 || static_cast<double>(growth * growth * found.squared_error) > allowed ||
             static_cast<double>(growth * found.undersampling) > tolerance.error) {
             stale.push_back(pair_of(found));
             continue;
         }
-        Found& still = links_[kept++] = found;
+        FoundLink& still = links_[kept++] = found;
         still.light *= growth, still.undersampling *= growth, still.squared_error *= growth * growth;
         for (float& d : still.departure) d *= growth;
         if (still.near) {
@@ -232,9 +186,9 @@ LinkRefiner::Block LinkRefiner::judge_block(std::span<const LinkPair> pairs, Lin
 }
 
 void LinkRefiner::add_links_of(const Block& block) {
-    for (Found found : block.links) {
+    for (FoundLink found : block.links) {
         if (found.near) found.link.block += static_cast<std::uint32_t>(blocks_.size());
-        if (found.shadow != none) found.shadow += static_cast<std::uint32_t>(shadows_.size());
+        if (found.shadow != FoundLink::none) found.shadow += static_cast<std::uint32_t>(shadows_.size());
         links_.push_back(found);
     }
     blocks_.insert(blocks_.end(), block.blocks.begin(), block.blocks.end());
@@ -299,7 +253,7 @@ Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers
     Field<ElementId, std::uint8_t> too_much(tree_.size(), 0), gained(tree_.size(), nothing);
     std::vector<ElementId> gaining;
     for (; receivers.known < links_.size(); ++receivers.known) {
-        const Found& found = links_[receivers.known];
+        const FoundLink& found = links_[receivers.known];
         receivers.light[found.link.receiver].add(found, shadow_of(found), sites_.nodes());
         std::uint8_t& here = gained[found.link.receiver];
         if (here == nothing) gaining.push_back(found.link.receiver);
@@ -331,7 +285,7 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     // A link that hardly departs stays; all such ones of a receiver together are a share of what is allowed.
     const double negligible = 0.03 * tolerance.interpolation;
     enum : std::uint8_t { untouched, left, handed_on };
-    const auto fate_of = [&](const Found& found) -> std::uint8_t {
+    const auto fate_of = [&](const FoundLink& found) -> std::uint8_t {
         const ElementId p = found.link.receiver;
         if (!too_much[p]) return untouched;
         if (found.cuts_receiver) return handed_on;
@@ -419,7 +373,7 @@ void LinkRefiner::sum_up() {
         }
     };
     const Sums sums = parallel_sum<Sums>(links_.size(), [&](std::size_t i) {
-        const Found& found = links_[i];
+        const FoundLink& found = links_[i];
         const double light = static_cast<double>(found.light);
         return Sums{static_cast<double>(found.squared_error), light, found.open ? light : 0};
     });

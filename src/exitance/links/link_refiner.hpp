@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "exitance/core/progress.hpp"
-#include "exitance/links/error/link_judge.hpp"
+#include "exitance/links/received_light.hpp"
 
 namespace exitance {
 
@@ -72,27 +72,11 @@ class LinkRefiner {
     std::size_t form_factors() const { return form_factors_; }
 
   private:
-    /// A link, and what refining needs to know of it.
-    struct Found {
-        Found(const LinkDecision& result, bool is_open);
-        Found() = default;
-
-        Link link;
-        std::array<float, 5> departure{};
-        float squared_error = 0, light = 0, undersampling = 0;
-        std::uint32_t shadow = none;  ///< Where shadowed light and its variance at the nodes stand in shadows_.
-        bool near = false;            ///< Has it a block?
-        bool open = false;            ///< Is its view certain?
-        bool cuts_receiver = false;   ///< Whatever its other links bring.
-    };
-    static constexpr std::uint32_t none = 0xffffffffu;
-    /// What all links of a receiver bring to it.
-    struct ReceivedLight;
     /// What a block of pairs came to.
     struct Block;
-    static LinkPair pair_of(const Found& found);
-    const float* shadow_of(const Found& found) const {
-        return found.shadow == none ? nullptr : &shadows_[found.shadow];
+    static LinkPair pair_of(const FoundLink& found);
+    const float* shadow_of(const FoundLink& found) const {
+        return found.shadow == FoundLink::none ? nullptr : &shadows_[found.shadow];
     }
     void judge_all_pieces(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop);
     void judge_again(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop);
@@ -121,7 +105,7 @@ class LinkRefiner {
     double weight(ElementId receiver) const { return importance_.empty() ? 1 : importance_[receiver]; }
     Field<ElementId, double> roughness_;  ///< Of elements that are held.
     Field<ElementId, double> importance_;
-    std::vector<Found> links_;
+    std::vector<FoundLink> links_;
     std::vector<float> blocks_, shadows_;
     NodalField judged_;         ///< The light that links were judged by last, unless it stays.
     double interpolation_ = 0;  ///< Squared.
