@@ -194,9 +194,9 @@ void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
                "auto: a bar on a terminal, a line every ten seconds otherwise");
 }
 
-void declare_bent(CLI::App& app, BentFaces& bent) {
+void declare_faults(CLI::App& app, Faults& faults) {
     app.add_flag_callback(
-        "--split-bent", [&bent] { bent = BentFaces::split; }, "Faces that are out of plane become triangles");
+        "--strict", [&faults] { faults = Faults::refuse; }, "Faults of the scene are errors; else they are repaired");
 }
 
 /// on or off, into a bool or an optional one.
@@ -274,7 +274,7 @@ void declare_limits(CLI::App& app, SolveArguments& arguments) {
 void declare(CLI::App& app, SolveArguments& arguments) {
     SolveOptions& o = arguments.options;
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
-    declare_bent(app, arguments.bent);
+    declare_faults(app, arguments.faults);
     app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
     add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
     add_choice(app, "--basis", basis_names, o.basis,
@@ -386,7 +386,7 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 
 void declare(CLI::App& app, CheckArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
-    declare_bent(app, arguments.bent);
+    declare_faults(app, arguments.faults);
     app.add_option("--picture", arguments.picture, "Picture of the scene that marks what was found (.png)")
         ->type_name("FILE");
     declare_json(app, arguments);
@@ -400,6 +400,7 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
 
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
+    declare_faults(app, arguments.faults);
     app.add_option("-o,--output", arguments.output, "Matrix to write: .csv, or .vf as View3D does")
         ->type_name("FILE")
         ->required();

@@ -35,7 +35,7 @@ struct SolveArguments : CommonArguments {
     std::optional<double> checkpoint_every;  ///< Seconds.
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
-    BentFaces bent = BentFaces::refuse;
+    Faults faults = Faults::repair;
 };
 
 struct ProbeArguments : CommonArguments {
@@ -82,7 +82,7 @@ struct RenderArguments : CommonArguments {
 
 struct CheckArguments : CommonArguments {
     std::string scene, picture;
-    BentFaces bent = BentFaces::refuse;
+    Faults faults = Faults::repair;
 };
 
 struct GenerateArguments : CommonArguments {
@@ -92,6 +92,7 @@ struct GenerateArguments : CommonArguments {
 
 struct ViewFactorArguments : CommonArguments {
     std::string scene, output;
+    Faults faults = Faults::repair;
     double tolerance = 1e-4;  ///< Relative error of every entry above 1e-6.
     int threads = 0;
 };

@@ -29,10 +29,10 @@ std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std:
     return count == 0 ? "" : fmt::format("{} {}\n{}", count, count == 1 ? singular : plural, lines);
 }
 
+/// What is not an error: those go to the error stream.
 std::string report(const CheckedScene& checked, const Shell& shell) {
     using Kind = Finding::Kind;
-    std::string text = group(checked.findings, Kind::error, "error", "errors") +
-                       group(checked.findings, Kind::warning, "warning", "warnings") +
+    std::string text = group(checked.findings, Kind::warning, "warning", "warnings") +
                        group(checked.findings, Kind::repair, "repair", "repairs");
     if (!checked.scene) return text + "The scene cannot be used.\n";
     const Scene& scene = *checked.scene;
@@ -58,7 +58,7 @@ ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
     if (!arguments.picture.empty() && ending(arguments.picture) != ".png")
         return terminal.fail(
             {ErrorCode::usage, "the picture is written as .png", arguments.picture, "name it something.png"});
-    CheckedScene checked = load_scene(arguments.scene, arguments.bent);
+    CheckedScene checked = load_scene(arguments.scene, arguments.faults);
     Shell shell;
     if (checked.scene) {
         shell = inspect_shell(*checked.scene);
@@ -72,7 +72,8 @@ ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
         const Result<void> written = write_png(arguments.picture, image, {{"Software", "exitance"}});
         if (!written) return terminal.fail(written.error());
     }
-    return checked.scene ? ExitCode::done : terminal.fail(checked);
+    if (checked.scene) return ExitCode::done;
+    return arguments.json ? terminal.fail(checked) : terminal.fail_with_all(checked);
 }
 
 }  // namespace exitance

@@ -146,7 +146,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     Tracing tracing(arguments.trace, terminal.progress());
 
     Stopwatch reading;
-    const CheckedScene checked = load_scene(arguments.scene, arguments.bent);
+    const CheckedScene checked = load_scene(arguments.scene, arguments.faults);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     const double read_seconds = reading.seconds();

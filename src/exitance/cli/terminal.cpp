@@ -50,12 +50,19 @@ void Terminal::show(const std::vector<Finding>& findings) {
 }
 
 ExitCode Terminal::fail(const CheckedScene& checked) {
-    // The first error is the scene's own; the others are worth knowing before the file is mended.
+    // Its message says how many more there are.
     const ExitCode code = fail(checked.scene.error());
-    std::size_t more = 0;
-    for (const Finding& finding : checked.findings) more += finding.kind == Finding::Kind::error;
-    if (more > 1) note(fmt::format("{} more errors; `exitance check` shows them all", more - 1));
+    std::size_t errors = 0;
+    for (const Finding& finding : checked.findings) errors += finding.kind == Finding::Kind::error;
+    if (errors > 1) note("`exitance check` shows them all");
     return code;
+}
+
+ExitCode Terminal::fail_with_all(const CheckedScene& checked) {
+    for (const Finding& finding : checked.findings)
+        if (finding.kind == Finding::Kind::error)
+            fail(Error{ErrorCode::bad_input, finding.message, place(finding), finding.hint});
+    return exit_code(checked.scene.error().code);
 }
 
 ExitCode Terminal::finish(ExitCode code) {

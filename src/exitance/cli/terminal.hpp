@@ -25,6 +25,8 @@ class Terminal {
     void show(const std::vector<Finding>& findings);
     /// Why a scene cannot be used.
     ExitCode fail(const CheckedScene& checked);
+    /// The same, with every error.
+    ExitCode fail_with_all(const CheckedScene& checked);
 
     ProgressDisplay& progress() { return progress_; }
 

@@ -48,7 +48,7 @@ double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Work
 Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) const {
     if (own.is_none()) return {x, n, own};
     const Plane& plane = occluders_->scene().regions()[own].plane;
-    return {x - plane.signed_distance(x) * plane.n, n, own};
+    return {x - (plane.signed_distance(x) - occluders_->lift(own)) * plane.n, n, own};
 }
 
 Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {

@@ -47,7 +47,10 @@ void Locator::look_at(SurfaceId s, const Point& p, const Normal& n, Candidate& b
     // Distances that differ by the rounding of a text file's digits are equal.
     const double gain = best.distance - found.distance, rounding = 1e-4 * tolerance_;
     if (std::abs(gain) <= rounding) {
-        if (found.holds != best.holds ? found.holds : s < best.surface) best = found;
+        const auto level = [&](SurfaceId f) { return scene_->regions()[scene_->surfaces()[f].region].level; };
+        const bool is_on_top = best.surface.is_none() || level(s) > level(best.surface) ||
+                               (level(s) == level(best.surface) && s < best.surface);
+        if (found.holds != best.holds ? found.holds : is_on_top) best = found;
     } else if (gain > 0) {
         best = found;
     }

@@ -27,6 +27,13 @@ struct Material {
     bool emits() const { return max(exitance) > 0; }
 };
 
+/// What takes the place of a reflectance from 1 to `whitest_reflectance`, at which light would never die out. That some
+/// programs write 1.0001 for white is rounding; more is an error.
+constexpr double mended_reflectance = 0.95, whitest_reflectance = 1.001;
+
+/// Bands that reflect all light are mended. Returns whether any was.
+bool mend_reflectance(Spectrum& reflectance);
+
 /// Emitted radiance L_e (W/(m^2 sr)) as exitance M = pi L_e (W/m^2). The one place where radiance becomes exitance.
 inline Spectrum exitance_of_radiance(const Spectrum& radiance) {
     return pi * radiance;
@@ -57,7 +64,12 @@ struct Region {
     /// Border loops, T-vertices and collinear corners removed: outer loops counter-clockwise seen from the front, holes
     /// clockwise. Metres.
     std::vector<std::vector<Point>> loops;
+    /// How many regions of the same plane and orientation lie under parts of it: of two such faces the one that comes
+    /// later in the file is on top. At most `most_stacked`.
+    std::uint8_t level = 0;
 };
+
+constexpr std::uint8_t most_stacked = 7;
 
 /// What was found out about an input, for people: `exitance check` prints these.
 struct Finding {
@@ -91,7 +103,6 @@ struct SceneDescription {
     std::vector<Face> faces;
     std::vector<PunctualLight> lights;
     std::vector<SceneCamera> cameras;
-    bool split_bent = false;  ///< Faces out of plane become triangles, rather than errors.
 };
 
 /// Polygons with materials, checked and joined to regions. Immutable once made.

@@ -93,7 +93,8 @@ TEST(Regions, FloorsCutWithTVerticesAreJoinedUnderAFarPoint) {
         sketch.add({{0, 0, 5}, {1, 0, 5}, {0, 0, far}});
         const auto s = sketch.light().make();
         ASSERT_TRUE(s.scene);
-        EXPECT_EQ(s.scene->regions().size(), floors + 2u) << far;
+        const bool is_needle = far > 1e7;  // left out, but its corner has made the scene as large
+        EXPECT_EQ(s.scene->regions().size(), floors + (is_needle ? 1u : 2u)) << far;
     }
 }
 
@@ -235,9 +236,9 @@ TEST(Checks, FacesWithoutAreaAreLeftOutAndSaid) {
                        .make();
     ASSERT_TRUE(s.scene);
     EXPECT_EQ(s.scene->surfaces().size(), 2u);
-    ASSERT_EQ(count(s, Finding::Kind::repair), 2);
+    ASSERT_EQ(count(s, Finding::Kind::repair), 1);
     EXPECT_EQ(s.findings[0].line, 2);
-    EXPECT_EQ(s.findings[1].line, 3);
+    EXPECT_TRUE(s.findings[0].message.ends_with("(and 1 more faces without area)")) << s.findings[0].message;
 }
 
 TEST(Checks, ABowTieIsAnErrorWhetherItsPartsCancelOrNot) {
@@ -250,23 +251,70 @@ TEST(Checks, ABowTieIsAnErrorWhetherItsPartsCancelOrNot) {
     }
 }
 
-TEST(Checks, AClearlyBentFaceIsAnErrorThatSaysByHowMuch) {
-    const auto s = Sketch().add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.04}, {0, 1, 0}}).light().make();
-    ASSERT_FALSE(s.scene);
-    EXPECT_NE(s.scene.error().message.find("0.01 m out of plane"), std::string::npos) << s.scene.error().message;
-}
-
-TEST(Checks, BentFacesMayBeSplitIntoTriangles) {
+TEST(Checks, BentFacesAreSplitIntoTrianglesAndSaidOnce) {
     Sketch sketch;
-    sketch.add({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).light();
-    EXPECT_NE(sketch.make().scene.error().hint.find("--split-bent"), std::string::npos);
-    sketch.d.split_bent = true;
-    const auto s = sketch.make();
+    sketch.add({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).add({{5, 0, 0}, {6, 0, 0}, {6, 1, 0.04}, {5, 1, 0}});
+    const auto s = sketch.light().make();
     ASSERT_TRUE(s.scene);
-    EXPECT_EQ(s.scene->surfaces().size(), 3u);
+    EXPECT_EQ(s.scene->surfaces().size(), 5u);
     EXPECT_EQ(s.scene->surfaces()[SurfaceId(1)].line, 1);
     ASSERT_EQ(count(s, Finding::Kind::repair), 1);
-    EXPECT_NE(s.findings[0].message.find("0.05 m"), std::string::npos) << s.findings[0].message;
+    EXPECT_EQ(s.findings[0].line, 1);
+    EXPECT_NE(s.findings[0].message.find("0.05 m out of plane"), std::string::npos) << s.findings[0].message;
+    EXPECT_NE(s.findings[0].message.find("(and 1 more faces out of plane)"), std::string::npos);
+}
+
+TEST(Checks, ANeedleThatSinglePrecisionCannotResolveIsLeftOut) {
+    const auto s = Sketch().rectangle(0, 0, 1, 1).add({{0, 0, 1}, {0.23, 0, 1}, {0.1, 1e-8, 1}}).light().make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 2u);
+    EXPECT_EQ(count(s, Finding::Kind::repair), 1);
+    EXPECT_EQ(Sketch().add({{0, 0, 1}, {0.23, 0, 1}, {0.1, 1e-6, 1}}).light().make().scene->surfaces().size(), 2u);
+}
+
+TEST(Checks, AHoleThatTurnsLikeItsRimIsAHole) {
+    const std::vector<Point> rim{{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}};
+    const std::vector<Point> hole{{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}};
+    for (const bool turned : {false, true})
+        for (std::size_t start = 0; start < 10; ++start) {
+            std::vector<Point> outline = rim;
+            outline.push_back(rim[0]);
+            for (std::size_t i = 0; i <= 4; ++i) outline.push_back(hole[turned ? i % 4 : (8 - i) % 4]);
+            std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(start), outline.end());
+            const auto s = Sketch().add(outline).light().make();
+            ASSERT_TRUE(s.scene) << s.scene.error().message;
+            EXPECT_NEAR(region(s, 0).area, 10, 1e-12);
+            EXPECT_NEAR(s.scene->surfaces()[SurfaceId(0)].area, 10, 1e-12);
+            EXPECT_EQ(count(s, Finding::Kind::repair), turned ? 1 : 0);
+        }
+}
+
+TEST(Checks, AFaceThatCrossesItselfByRoundingIsMended) {
+    const auto s = Sketch().add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1e-6, 0}, {0, 1, 0}}).light().make();
+    ASSERT_TRUE(s.scene) << s.scene.error().message;
+    ASSERT_EQ(count(s, Finding::Kind::repair), 1);
+    EXPECT_NE(s.findings[0].message.find("by rounding"), std::string::npos);
+}
+
+TEST(Checks, WhiteBecomesLessAndMoreThanWhiteIsAnError) {
+    Sketch sketch = Sketch().rectangle(0, 0, 1, 1).light();
+    sketch.d.materials[0].reflectance[1] = 1;
+    const auto s = sketch.make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->materials()[MaterialId(0)].reflectance[1], 0.95);
+    EXPECT_EQ(s.scene->materials()[MaterialId(0)].reflectance[0], 0.5);
+    EXPECT_EQ(count(s, Finding::Kind::repair), 1);
+    sketch.d.materials[0].reflectance[1] = 1.002;
+    EXPECT_FALSE(sketch.make().scene);
+}
+
+TEST(Checks, OfFacesInOnePlaneTheLaterOneIsOnTop) {
+    const auto s = Sketch().rectangle(0, 0, 4, 4).rectangle(1, 1, 3, 3, 2).rectangle(2, 2, 3.5, 3.5).light().make();
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(s.scene->regions().size(), 4u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(region(s, i).level, i);
+    EXPECT_EQ(region(s, 3).level, 0);
+    EXPECT_EQ(count(s, Finding::Kind::warning), 1);
 }
 
 TEST(Checks, FindingsThatReadAlikeAreToldOnce) {
@@ -276,12 +324,13 @@ TEST(Checks, FindingsThatReadAlikeAreToldOnce) {
     const auto s = sketch.make();
     ASSERT_TRUE(s.scene);
     ASSERT_EQ(count(s, Finding::Kind::repair), 1);
-    EXPECT_NE(s.findings[0].message.find("(and 2 more like this)"), std::string::npos) << s.findings[0].message;
+    EXPECT_NE(s.findings[0].message.find("(and 2 more faces without area)"), std::string::npos)
+        << s.findings[0].message;
 }
 
 TEST(Checks, EveryErrorIsFoundNotJustTheFirst) {
     Sketch sketch;
-    sketch.add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.4}, {0, 1, 0}})
+    sketch.add({{0, 0, 0}, {1, 0, 0}, {1e30, 1, 0}, {0, 1, 0}})
         .add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.5, 0}})
         .light();
     sketch.d.materials[0].reflectance[1] = 1.25;
@@ -313,7 +362,8 @@ TEST(Checks, EveryFaceThatCoversOneLargerIsWarnedOf) {
     for (int i = 0; i < 9; ++i) sketch.rectangle(i, 0, i + 0.5, 1);  // all on the last
     const auto s = sketch.light().rectangle(-1, -1, 10, 2, 2).make();
     ASSERT_TRUE(s.scene);
-    EXPECT_EQ(count(s, Finding::Kind::warning), 9);
+    ASSERT_EQ(count(s, Finding::Kind::warning), 1);
+    EXPECT_TRUE(s.findings[0].message.ends_with("(and 8 more faces that cover an earlier one)"));
 }
 
 TEST(Checks, AHeapOfFacesInOnePlaneIsNotComparedInFull) {

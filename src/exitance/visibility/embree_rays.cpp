@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t width = 16;  ///< Rays a packet; Embree cuts it down where the machine is narrower.
 constexpr double lift = 0x1p-20;   ///< Of the scene's size: 16 roundings of a coordinate in single precision.
-constexpr int retries = 8;         ///< Ways past a ray's own region; one is rarely needed.
+constexpr double stack_step = lift / 2;
+constexpr int retries = 8;  ///< Ways past a ray's own region; one is rarely needed.
 
 /// Releases what Embree counts references to.
 template <class Handle, void (*release)(Handle)>
@@ -90,7 +91,9 @@ struct RayTracer::Content {
             const std::span<const Point> outline = s.outline(id);
             faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
             const auto first = static_cast<std::uint32_t>(corners.size());
-            for (const Point& p : outline) corners.push_back(local(p));
+            // What lies on others in its plane is met before them.
+            const Vec3 lifted = (stack_step * s.size() * s.regions()[faces[id].region].level) * faces[id].normal;
+            for (const Point& p : outline) corners.push_back(local(p + lifted));
             for (const auto& t : triangulate(outline, s.surfaces()[id].normal)) {
                 triangles.push_back({first + t[0], first + t[1], first + t[2]});
                 surface_of.push_back(id);
@@ -115,7 +118,9 @@ struct RayTracer::Content {
     Float3 local(const Point& p) const { return to_float(scale * (p - centre)); }
     Float3 local_direction(const Vec3& d) const { return to_float(scale * d); }
     Vec3 offset(RegionId region) const {
-        return region.is_none() ? Vec3() : lift_off * scene->regions()[region].plane.n;
+        if (region.is_none()) return Vec3();
+        const Region& own = scene->regions()[region];
+        return (lift_off + stack_step * scene->size() * own.level) * own.plane.n;
     }
 
     /// Fills a hit from a lane; false if the ray met its own region and has to go on from there.

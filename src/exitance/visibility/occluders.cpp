@@ -13,6 +13,12 @@ namespace {
 
 constexpr double coplanar_share = 1e-6;  ///< Of the scene's size: planes nearer than this are one plane.
 
+/// How far a piece stands off its plane for what lies under it, metres: what lies on one another within the thickness
+/// is one place for everything else.
+double stack_height(std::uint8_t level, double thickness) {
+    return level * thickness / (2 * most_stacked);
+}
+
 Box box_of(std::span<const Point> corners) {
     Box box;
     for (const Point& p : corners) box.add(p);
@@ -111,7 +117,9 @@ void Occluders::add_piece(std::span<const Point> corners, RegionId region, Surfa
                       0};
     // Small things stay apart from what they stand on: the tolerance shrinks with them.
     piece.thickness = std::max(rounding_, std::min(coplanar_share * scene_->size(), 1e-3 * box_of(corners).diagonal()));
-    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    const Vec3 lifted = stack_height(scene_->regions()[region].level, piece.thickness) * plane.n;
+    for (const Point& p : corners) corners_.push_back(p + lifted);
+    piece.plane.offset += dot(lifted, plane.n);
     pieces_.add(piece);
 }
 
@@ -123,7 +131,12 @@ bool Occluders::is_back_of(RegionId a, RegionId b) const {
     return norm(p.lo - q.lo) <= tolerance && norm(p.hi - q.hi) <= tolerance;
 }
 
-bool Occluders::is_covered(const Point& x, const Normal& n, RegionId own) const {
+double Occluders::lift(RegionId r) const {
+    return stack_height(scene_->regions()[r].level, pieces_[*of_region_[r].begin()].thickness);
+}
+
+bool Occluders::is_covered(const Point& place, const Normal& n, RegionId own) const {
+    const Point x = own.is_none() ? place : place + lift(own) * n;
     const double reach = coplanar_share * scene_->size() + rounding_;
     Box near;
     near.add(x - Vec3{reach, reach, reach});

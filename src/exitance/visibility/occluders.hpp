@@ -34,6 +34,8 @@ class Occluders {
         return std::span(corners_).subspan(pieces_[p].first_corner, pieces_[p].corner_count);
     }
     IdRange<PieceId> pieces(RegionId r) const { return of_region_[r]; }
+    /// How far a region's pieces stand off its plane because they lie on others in it (Region::level), metres.
+    double lift(RegionId r) const;
 
     /// The pieces in two trees: the largest few (4 sqrt(n) by area: walls, floors, ceilings) and the others. What is
     /// hidden at all is hidden by a large one as a rule, and these are found at once.

@@ -50,6 +50,9 @@ class MtlReader {
     Material material_;
     bool open_ = false, has_reflectance_ = false;
     int line_ = 0;
+    std::size_t white_materials_ = 0;
+    int white_line_ = 0;  ///< Of the first of these,
+    std::string white_name_;
 };
 
 void MtlReader::read() {
@@ -61,6 +64,12 @@ void MtlReader::read() {
             read_values(std::string(key), key == "Kd" ? &Material::reflectance : &Material::exitance);
     }
     end_material();
+    if (white_materials_ > 0)
+        find(Finding::Kind::repair, white_line_,
+             fmt::format("material '{}'{} has a reflectance Kd of 1: {} takes its place", shown(white_name_),
+                         white_materials_ > 1 ? fmt::format(" (and {} more)", white_materials_ - 1) : "",
+                         mended_reflectance),
+             "nothing reflects all light; at 1 it would never die out");
 }
 
 void MtlReader::start_material() {
@@ -105,7 +114,7 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
                      "give one or three");
     for (std::size_t b = 0; b < values.size(); ++b) {
         const double v = values[b];
-        if (reflectance && !(v >= 0 && v < 1))
+        if (reflectance && !(v >= 0 && v <= whitest_reflectance))
             return error(fmt::format("material '{}': reflectance Kd of {} is {:g}, not in [0, 1)",
                                      shown(material_.name), band_name(b, values.size()), v),
                          "a reflectance is at least 0 and below 1, or light would never die out");
@@ -115,6 +124,8 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
                          "emitted radiance is 0 or more, W/(m^2 sr)");
     }
     material_.*value = reflectance ? spread(values) : exitance_of_radiance(spread(values));
+    if (reflectance && mend_reflectance(material_.reflectance) && white_materials_++ == 0)
+        white_line_ = lines_.number(), white_name_ = material_.name;
 }
 
 bool MtlReader::read_number(const std::string& key, std::string_view word, std::vector<double>& out) {

@@ -97,7 +97,7 @@ TEST_F(ObjFiles, EveryErrorOfAMaterialNamesItBandValueAndLine) {
         write("bad.mtl", "newmtl red\n" + lines);
         return first_error("mtllib bad.mtl\nusemtl red\n" + points + "f 1 2 3\n");
     };
-    EXPECT_EQ(error_of_material("Kd 1 1 1\n"), "bad.mtl:2: material 'red': reflectance Kd of red is 1, not in [0, 1)");
+    EXPECT_EQ(error_of_material("Kd 2 1 1\n"), "bad.mtl:2: material 'red': reflectance Kd of red is 2, not in [0, 1)");
     EXPECT_EQ(error_of_material("\nKd 0.5 0.5 1.2\n"),
               "bad.mtl:3: material 'red': reflectance Kd of blue is 1.2, not in [0, 1)");
     EXPECT_EQ(error_of_material("Kd -0.5\n"),

@@ -18,8 +18,7 @@ CheckedScene refused(ErrorCode code, const std::string& path, std::string messag
 
 /// Findings of the reader and of the checks together. A file with errors is still looked at in full, but not warned
 /// about light that may be among what could not be read.
-CheckedScene checked(ReadScene read, BentFaces bent) {
-    read.description.split_bent = bent == BentFaces::split;
+CheckedScene checked(ReadScene read) {
     const bool broken = has_errors(read.findings);
     if (broken && read.description.faces.empty()) {
         sort_findings(read.findings);
@@ -32,6 +31,15 @@ CheckedScene checked(ReadScene read, BentFaces bent) {
     sort_findings(out.findings);
     if (broken) out.scene = error_of(out.findings);
     return out;
+}
+
+/// Repairs become errors.
+CheckedScene refuse_repairs(CheckedScene scene) {
+    for (Finding& finding : scene.findings)
+        if (finding.kind == Finding::Kind::repair) finding.kind = Finding::Kind::error;
+    sort_findings(scene.findings);
+    if (has_errors(scene.findings)) scene.scene = error_of(scene.findings);
+    return scene;
 }
 
 /// For files under other names: the container's first bytes.
@@ -53,11 +61,12 @@ Reader reader_of(const std::string& path) {
 
 }  // namespace
 
-CheckedScene load_scene(const std::string& path, BentFaces bent) {
+CheckedScene load_scene(const std::string& path, Faults faults) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
         return refused(ErrorCode::cannot_read, path, "there is no such file", "");
-    if (const Reader read = reader_of(path)) return checked(read(path), bent);
+    if (const Reader read = reader_of(path))
+        return faults == Faults::refuse ? refuse_repairs(checked(read(path))) : checked(read(path));
     return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
                    "known endings: .obj, .gltf, .glb, .rad");
 }

@@ -6,15 +6,15 @@
 
 namespace exitance {
 
-/// What becomes of faces that are no polygons of a plane, as modelling programs write quads.
-enum class BentFaces : std::uint8_t {
+/// What becomes of faults that have a safe repair.
+enum class Faults : std::uint8_t {
+    repair,  ///< They are repaired, and said.
     refuse,  ///< They are errors.
-    split,   ///< Into triangles, each a surface of its own, and said.
 };
 
 /// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb, .rad). Every error of the file is
 /// among the findings. An unreadable file has the code cannot_read, everything else that is wrong bad_input.
-CheckedScene load_scene(const std::string& path, BentFaces bent = BentFaces::refuse);
+CheckedScene load_scene(const std::string& path, Faults faults = Faults::repair);
 
 /// What a scene file says, not yet checked; nothing, where it is of no known kind or cannot be read.
 SceneDescription read_description(const std::string& path);

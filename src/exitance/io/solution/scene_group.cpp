@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/io/solution/solution_groups.hpp"
@@ -227,6 +228,9 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
            {"1", "faces of a region"});
     region("region_loop_count", std::uint32_t(), [](const Region& r) { return r.loops.size(); },
            {"1", "border loops of a region"});
+    if (std::any_of(regions.begin(), regions.end(), [](const Region& r) { return r.level > 0; }))
+        region("region_level", std::uint8_t(), [](const Region& r) { return r.level; },
+               {"1", "regions of the same plane that lie under parts of a region, one on another"});
     file.write(in("region_plane"), planes, 4, {"1", "plane of a region: unit normal n, and n . x in metres"});
     file.write(in("region_face"), members, 1, {"1", "faces of the regions, one region after the other"});
     file.write(in("loop_corner_count"), loop_corners, 1, {"1", "corners of a border loop"});
@@ -264,6 +268,8 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     const auto region_of = in.indices("face_region", region_count, face_count);
     const auto region_material = in.indices("region_material", material_count, region_count);
     const auto plane = in.read<double>("region_plane", 4, region_count);
+    std::vector<std::uint8_t> level(region_count);
+    if (file.has(group + "/region_level")) level = in.read<std::uint8_t>("region_level", 1, region_count);
     const auto members = in.indices("region_face", face_count);
     const auto member_count = in.counts("region_face_count", 1, members.size(), region_count);
     const auto loop_points = in.points("loop_corner");
@@ -298,6 +304,7 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
             region.loops.emplace_back(first, first + loop_corners[loop]);
             point += loop_corners[loop++];
         }
+        region.level = std::min(level[i], most_stacked);
         scene.regions_.add(std::move(region));
     }
     for (std::uint32_t s : emitters) scene.emitters_.emplace_back(s);

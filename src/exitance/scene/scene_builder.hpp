@@ -1,0 +1,78 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "exitance/joining/face_mesh.hpp"
+#include "exitance/joining/regions.hpp"
+#include "exitance/scene/findings.hpp"
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+/// Makes a scene step by step; findings gather on the way.
+class SceneBuilder {
+  public:
+    explicit SceneBuilder(SceneDescription description) : in_(std::move(description)) {}
+    CheckedScene build();
+
+  private:
+    void check_materials();
+    void check_lights();
+    void place_corners();
+    void check_faces();
+    void check_face(std::uint32_t f);
+    void check_shape(std::uint32_t f, std::vector<std::uint32_t> outline);
+    void add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area);
+    void add_triangles(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners,
+                       const Normal& n);
+    void report_flattened();
+    void drop_duplicates();
+    void check_light();
+    Scene make();
+    void add_regions(Scene& scene, const std::vector<JoinedFaces>& joined);
+
+    void find(Finding::Kind kind, int line, std::string message, std::string hint = "") {
+        findings_.push_back({kind, in_.file, line, std::move(message), std::move(hint)});
+    }
+    void error(int line, std::string message, std::string hint = "") {
+        find(Finding::Kind::error, line, std::move(message), std::move(hint));
+    }
+    /// About a face, which is named by its line or, where files have none, by its group; marked as `mark`. Of one kind,
+    /// which `rest` names ("faces without area"), the first is told, with the number of the others.
+    void find(Finding::Kind kind, const SceneDescription::Face& face, Mark::Kind mark, std::string message,
+              std::string hint = "", const char* rest = nullptr);
+    void repair(const SceneDescription::Face& face, std::string message, const char* rest, std::string hint = "") {
+        find(Finding::Kind::repair, face, Mark::Kind::left_out, std::move(message), std::move(hint), rest);
+    }
+    void error(const SceneDescription::Face& face, std::string message, std::string hint = "") {
+        find(Finding::Kind::error, face, Mark::Kind::broken, std::move(message), std::move(hint));
+    }
+    void report_alike();
+    void stack_overlaps(Scene& scene);
+    std::string name_of(const SceneDescription::Face& face) const;
+    bool has_errors() const { return exitance::has_errors(findings_); }
+
+    SceneDescription in_;
+    std::vector<Finding> findings_;
+    std::vector<std::uint32_t> place_;  // of every point: the first point at its place
+    Tolerances tol_;
+    FaceMesh mesh_;
+    std::vector<std::uint32_t> origin_;  // face of the mesh -> face of the description
+    Box box_;
+    /// Faces out of plane by more than rounding, within the tolerance.
+    struct Flattened {
+        std::size_t count = 0;
+        double farthest = 0;  ///< m
+        int first_line = 0;
+    } flattened_;
+    std::vector<Mark> marks_;
+    struct Alike {
+        std::size_t finding, more = 0;
+        std::string rest;
+    };
+    std::map<std::string, Alike> alike_;  ///< By kind, or by message: where it is told first, and how often again.
+};
+
+}  // namespace exitance

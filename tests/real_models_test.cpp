@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/methods/solve_scene.hpp"
+#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/transport/stage.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace exitance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Models as users bring them, each with one thing that they do.
+fs::path shared_scenes() {
+    return fs::path(EXITANCE_SHARED_DIR) / "scenes";
+}
+
+#define SKIP_WITHOUT_SHARED_SCENES() \
+    if (!fs::exists(shared_scenes() / "real")) GTEST_SKIP() << "there are no shared scenes"
+
+CheckedScene load_real(const char* name) {
+    return load_scene((shared_scenes() / "real" / name).string());
+}
+
+Result<Solution> solve_direct(const Scene& scene) {
+    Progress progress;
+    const StopRequest stop;
+    return solve_scene(scene, {.bounces = 0, .error = 0.1}, progress, stop);
+}
+
+double irradiance_at(const Solution& solution, const Point& x) {
+    const std::vector<ProbePoint> points{{x, {0, 0, 1}}};
+    return RadiosityFunction(solution).at(points)[0].irradiance[0];
+}
+
+std::size_t count(const CheckedScene& checked, Finding::Kind kind) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(checked.findings, [&](const Finding& f) { return f.kind == kind; }));
+}
+
+TEST(RealModels, WhateverIsSolvedCanBeReadBack) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const TemporaryFolder temporary;
+    std::size_t solved = 0;
+    for (const char* folder : {"degenerate", "real"})
+        for (const auto& entry : fs::directory_iterator(shared_scenes() / folder)) {
+            if (entry.path().extension() != ".obj") continue;
+            const CheckedScene checked = load_scene(entry.path().string());
+            if (!checked.scene || checked.scene->surfaces().size() > 100) continue;
+            const Result<Solution> solution = solve_direct(*checked.scene);
+            ASSERT_TRUE(solution) << entry.path();
+            ASSERT_TRUE(write_solution(temporary / "s.h5", *solution)) << entry.path();
+            const Result<Solution> again = load_solution(temporary / "s.h5");
+            EXPECT_TRUE(again) << entry.path() << ": " << again.error().message;
+            ++solved;
+        }
+    EXPECT_GT(solved, 15u);
+}
+
+TEST(RealModels, ANeedleLosesNoSolution) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const CheckedScene checked = load_real("slivers.obj");
+    ASSERT_TRUE(checked.scene);
+    EXPECT_EQ(count(checked, Finding::Kind::repair), 1u);
+}
+
+TEST(RealModels, AWindowThatTurnsLikeItsWallIsOpen) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const CheckedScene checked = load_real("hole_same_turn.obj");
+    ASSERT_TRUE(checked.scene);
+    EXPECT_NEAR(checked.scene->surfaces()[SurfaceId(0)].area, 10, 1e-9);
+    EXPECT_EQ(count(checked, Finding::Kind::repair), 1u);
+}
+
+TEST(RealModels, OfFacesInOnePlaneTheLastOneIsLit) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const CheckedScene checked = load_real("coplanar.obj");
+    ASSERT_TRUE(checked.scene);
+    const Result<Solution> solution = solve_direct(*checked.scene);
+    ASSERT_TRUE(solution);
+    const RadiosityFunction light(*solution);
+    // Floor, rug, and the third face, which covers both: radiosity over irradiance is the reflectance of what is seen.
+    const std::vector<ProbePoint> points{{{0.5, 0.5, 0.3}, {0, 0, 1}},
+                                         {{1.3, 2, 0.3}, {0, 0, 1}},
+                                         {{2, 1.5, 0.3}, {0, 0, 1}},
+                                         {{2, 1.1, 0.3}, {0, 0, 1}}};
+    const std::vector<Light> values = light.at(points);
+    const double reflectances[] = {0.5, 0.1, 0.8, 0.8};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_GT(values[i].irradiance[0], 0.9) << i;
+        EXPECT_NEAR(values[i].radiosity[0] / values[i].irradiance[0], reflectances[i], 1e-6) << i;
+    }
+    // Rays from the lamp meet the same faces.
+    const Normal down{0, 0, -1};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        RayHit hit;
+        const Point from = points[i].x + Vec3{0.01, 0.02, 1.5};
+        light.stage().tracer.nearest(std::span(&down, 1), from, RegionId(), std::span(&hit, 1));
+        EXPECT_NEAR(checked.scene->material(hit.surface).reflectance[0], reflectances[i], 1e-6) << i;
+    }
+}
+
+TEST(RealModels, WhiteAndBentFacesAreMendedAndSaidOnce) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const CheckedScene checked = load_real("white.obj");
+    ASSERT_TRUE(checked.scene);
+    EXPECT_EQ(count(checked, Finding::Kind::repair), 2u);
+    const Result<Solution> solution = solve_direct(*checked.scene);
+    ASSERT_TRUE(solution);
+    EXPECT_GT(irradiance_at(*solution, checked.scene->outline(SurfaceId(0))[0]), 0);
+}
+
+}  // namespace
+}  // namespace exitance
