@@ -156,6 +156,46 @@ TEST_F(RadianceFiles, AliasesAndPatternsLeadToTheirMaterial) {
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.material(SurfaceId(i)).name, "grey");
 }
 
+TEST_F(RadianceFiles, WordsMayStandInQuotes) {
+    const Scene s = scene(
+        "'void' plastic \"a #name with blanks\" 0 0 5 .5 .4 .3 0 0\n'a #name with blanks' polygon '!p' 0 0 9 0 0 0 1 0 "
+        "0 0 1 0\n"
+        "lamp polygon c 0 0 9 0 0 2 1 0 2 0 1 2\n");
+    ASSERT_EQ(s.surfaces().size(), 3u);
+    EXPECT_EQ(s.material(SurfaceId(0)).name, "a #name with blanks");
+    EXPECT_EQ(s.groups()[GroupId(0)], "!p");
+    EXPECT_EQ(first_error("'void plastic a 0 0 5 .5 .4 .3 0 0\n"), "s.rad:4: a quoted word does not end on its line");
+    EXPECT_EQ(first_error("void plastic 'a 0 0 5 .5 .4 .3 0 0\n"), "s.rad:4: a quoted word does not end on its line");
+}
+
+TEST_F(RadianceFiles, PatternsLieOnPatternsAndMixturesAreOfTheirFirstMaterial) {
+    const CheckedScene s = load(
+        "void brightfunc dusty 4 dirt dirt.cal -s 2 0 1 .15\ndusty texfunc rough 2 a b.cal 0 0\n"
+        "rough plastic tile 0 0 5 .5 .5 .5 0 0\ntile colorfunc spots 4 r g b c.cal 0 0\nspots brightfunc more 2 a "
+        "b.cal 0 0\n"
+        "void mixfunc half 4 void tile half half.cal 0 0\n"
+        "more polygon p 0 0 9 0 0 0 1 0 0 0 1 0\nhalf polygon q 0 0 9 0 0 1 1 0 1 0 1 1\n"
+        "lamp polygon c 0 0 9 0 0 2 1 0 2 0 1 2\n");
+    ASSERT_TRUE(s.scene) << s.scene.error().message;
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.scene->material(SurfaceId(i)).name, "tile");
+    const auto notes = std::count_if(s.findings.begin(), s.findings.end(), [](const Finding& f) {
+        return f.message.find("patterns and textures") != f.message.npos;
+    });
+    EXPECT_EQ(notes, 1);
+    EXPECT_EQ(first_error("void brightfunc a 2 a b.cal 0 0\na polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"),
+              "s.rad:5: 'p' has no material");
+}
+
+TEST_F(RadianceFiles, WhatCannotBeReadUnderAnEmitterIsAnError) {
+    const std::string pattern = "lamp brightfunc d 2 ripple ripple.cal 0 0\n";
+    EXPECT_EQ(first_error(pattern + "d polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"),
+              "s.rad:5: 'p' emits by the brightfunc 'd', which is not read");
+    const CheckedScene unused = load(pattern + std::string("lamp ") + square);
+    EXPECT_TRUE(unused.scene) << "a distribution that no face has changes nothing";
+    const CheckedScene sky = load(pattern + std::string("d source s 0 0 4 0 0 1 180\nlamp ") + square);
+    EXPECT_TRUE(sky.scene) << "skies are left out, and said";
+}
+
 TEST_F(RadianceFiles, TheSunIsParallelLight) {
     const Scene s = scene(std::string("lamp source sun 0 0 4 0 1 1 0.5\ngrey ") + square);
     ASSERT_EQ(s.lights().size(), 1u);
