@@ -1,5 +1,4 @@
 #include "exitance/io/export/export.hpp"
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/export/export_links.hpp"
 #include "exitance/io/solution/solution_file.hpp"
@@ -8,15 +7,12 @@ namespace exitance {
 
 /// exitance export SOLUTION -o FILE
 ExitCode run(const ExportArguments& arguments, Terminal& terminal) {
-    StopRequest stop;
-    const SignalGuard signals(stop);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
-    if (signals.received()) return *signals.received();
     const Result<void> written = arguments.links.empty() ? export_solution(*solution, arguments.output)
                                                          : export_links(*solution, arguments.links, arguments.output);
     if (!written) return terminal.fail(written.error());
-    return signals.received().value_or(ExitCode::done);
+    return ExitCode::done;
 }
 
 }  // namespace exitance

@@ -1,6 +1,5 @@
 #include <limits>
 
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/probe_file.hpp"
@@ -12,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// Points taken at a time: memory stays small however many there are, and a signal need not wait for long.
+/// Points taken at a time: memory stays small however many there are.
 constexpr std::size_t batch = 1 << 13;
 
 std::vector<ProbePoint> zip(const ProbePoints& probes) {
@@ -23,10 +22,9 @@ std::vector<ProbePoint> zip(const ProbePoints& probes) {
 }
 
 Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeReader& reader,
-                         ProbeWriter& writer, const StopRequest& stop) {
+                         ProbeWriter& writer) {
     ProbePoints probes;
     while (true) {
-        if (stop.requested()) return {};
         if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
         if (probes.size() == 0) return writer.commit();
         const std::vector<ProbePoint> points = zip(probes);
@@ -47,7 +45,6 @@ Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene
     const std::vector<ProbePoint> points = zip(probes);
     const std::vector<ReferenceLight> values =
         reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
-    if (stop.requested()) return {};
     const Locator locator(scene);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SurfaceId surface = locator.find(points[i].x, points[i].n);
@@ -63,8 +60,7 @@ Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene
 
 /// exitance probe SOLUTION --points POINTS -o LIGHT
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
-    StopRequest stop;
-    const SignalGuard signals(stop);
+    const StopRequest stop;  // signals end the program at once
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
@@ -76,9 +72,9 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
 
     const Result<void> written = by_paths
                                      ? write_reference(arguments, solution->scene, *reader, *writer, terminal, stop)
-                                     : write_light(arguments, RadiosityFunction(*solution), *reader, *writer, stop);
+                                     : write_light(arguments, RadiosityFunction(*solution), *reader, *writer);
     if (!written) return terminal.fail(written.error());
-    return signals.received().value_or(ExitCode::done);  // after a signal the file is not there
+    return ExitCode::done;
 }
 
 }  // namespace exitance

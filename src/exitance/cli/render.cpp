@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -125,8 +124,7 @@ Result<void> write_linear(const RenderArguments& arguments, const Camera& camera
 /// exitance render SOLUTION -o PICTURE
 ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
-    StopRequest stop;
-    const SignalGuard signals(stop);
+    const StopRequest stop;  // signals end the program at once
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
@@ -138,7 +136,6 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     PictureOptions options{*camera, arguments.size, static_cast<int>(arguments.samples)};
     options.gather = static_cast<unsigned>(arguments.gather);
     const Picture picture = take_picture(light, options, terminal.progress(), stop);
-    if (signals.received()) return *signals.received();
     terminal.progress().finish();
     const Result<void> written = ending(arguments.output) == ".png"
                                      ? write_display(arguments, light, *camera, picture, terminal)

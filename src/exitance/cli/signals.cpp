@@ -1,7 +1,11 @@
 #include "exitance/cli/signals.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
+
+#include "exitance/io/files/atomic_file.hpp"
 
 namespace exitance {
 namespace {
@@ -10,20 +14,29 @@ namespace {
 std::atomic<StopRequest*> target{nullptr};
 std::atomic<int> last_signal{0};
 
+void leave(int signal) {
+    remove_unfinished_files();
+    _exit(static_cast<int>(signal == SIGINT ? ExitCode::interrupted : ExitCode::terminated));
+}
+
 void on_signal(int signal) {
-    last_signal.store(signal);
+    if (last_signal.exchange(signal) != 0) leave(signal);
     if (StopRequest* stop = target.load()) stop->interrupt();
 }
 
 void install(void (*handler)(int)) {
     struct sigaction action {};
     action.sa_handler = handler;
-    action.sa_flags = SA_RESTART | (handler == SIG_DFL ? 0 : static_cast<int>(SA_RESETHAND));
+    action.sa_flags = SA_RESTART;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
 }
 
 }  // namespace
+
+void leave_at_signals() {
+    install(leave);
+}
 
 SignalGuard::SignalGuard(StopRequest& stop) {
     last_signal = 0;
@@ -32,7 +45,7 @@ SignalGuard::SignalGuard(StopRequest& stop) {
 }
 
 SignalGuard::~SignalGuard() {
-    install(SIG_DFL);
+    install(leave);
     target = nullptr;
 }
 

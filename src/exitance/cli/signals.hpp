@@ -7,8 +7,12 @@
 
 namespace exitance {
 
+/// From now on SIGINT and SIGTERM end the program at once, with the exit status for them; files that are not whole yet
+/// are removed. For all work that leaves nothing unless it is done.
+void leave_at_signals();
+
 /// While it lives, SIGINT and SIGTERM ask the work to stop at its next safe point; a second one ends the program at
-/// once. One at a time.
+/// once, and so does the first one when it is gone. One at a time.
 class SignalGuard {
   public:
     explicit SignalGuard(StopRequest& stop);

@@ -16,6 +16,7 @@
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/io/solution/stored_scene_check.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/methods/solve_scene.hpp"
 
@@ -33,6 +34,12 @@ StopRequest::Clock::time_point after(double seconds) {
     using Seconds = std::chrono::duration<double>;
     const Seconds limit(std::min(seconds, 1e9));  // what a clock can hold
     return StopRequest::Clock::now() + std::chrono::duration_cast<StopRequest::Clock::duration>(limit);
+}
+
+/// What is left of a limit for the solve itself: what is read once has to be written, too, together with its light.
+double time_to_solve(double limit, double elapsed, double read_seconds) {
+    constexpr double written_against_read = 5;
+    return std::max(0.5 * limit, limit - written_against_read * read_seconds) - elapsed;
 }
 
 /// Whoever reads the solution later learns what was repaired.
@@ -134,9 +141,6 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     SolveArguments arguments = given;
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
-    StopRequest stop;
-    const SignalGuard signals(stop);
-    if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit));
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
     if (const Result<void> output = check_output(arguments.output); !arguments.dry_run && !output)
@@ -151,6 +155,15 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!checked.scene) return terminal.fail(checked);
     const double read_seconds = reading.seconds();
     if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
+    if (const auto nonsense = find_nonsense(*checked.scene))
+        return terminal.fail({ErrorCode::failure,
+                              "makes a scene that its solution could not be read with: " + *nonsense, arguments.scene,
+                              "please report this file"});
+    // From here on there is something to save.
+    StopRequest stop;
+    const SignalGuard signals(stop);
+    if (arguments.time_limit)
+        stop.set_deadline(after(time_to_solve(*arguments.time_limit, run_time.seconds(), read_seconds)));
 
     Result<std::optional<CheckpointFile>> checkpoint = open_checkpoint(arguments, *checked.scene, terminal);
     if (!checkpoint) return terminal.fail(checkpoint.error());
@@ -171,6 +184,10 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     Stopwatch writing;
     if (const Result<void> written = write_solution(arguments.output, *solution); !written)
         return terminal.fail(written.error());
+    if (!stop.requested())
+        if (const Result<Solution> read_back = load_solution(arguments.output, Rehearsed::already); !read_back)
+            return terminal.fail({ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message,
+                                  arguments.output, "please report the scene that it is of"});
     statistics.seconds["write"] = writing.seconds();
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();

@@ -40,9 +40,12 @@ std::string summary(const SolveStatistics& s) {
         text += fmt::format("{:<10} {}\n", name, value);
     };
     line("method", s.basis.empty() ? s.method : fmt::format("{}, {} basis", s.method, s.basis));
-    line("error", fmt::format("{} of the light that probe evaluates (at most {}), {} of what export writes",
-                              percent(s.relative_error_estimate), percent(s.relative_error_bound),
-                              percent(s.relative_error_estimate_interpolant)));
+    const auto known = [](const std::optional<double>& error) { return error ? percent(*error) : "not known"; };
+    line("error", s.relative_error_estimate
+                      ? fmt::format("{} of the light that probe evaluates (at most {}), {} of what export writes",
+                                    percent(*s.relative_error_estimate), known(s.relative_error_bound),
+                                    known(s.relative_error_estimate_interpolant))
+                      : "not known: the run was stopped before its first estimate");
     line("reached", s.converged ? "yes" : s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by));
     line("elements", fmt::format("{} ({} leaves) on {} surfaces", s.elements, s.leaf_elements, s.surfaces));
     line("transport", fmt::format("{} links ({}), {} form factors, {} rays", s.links, bytes(s.link_memory_bytes),

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "exitance/cli/json_output.hpp"
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/atomic_file.hpp"
@@ -27,8 +26,7 @@ ViewFactorFacts facts_of(const ViewFactors& table, double seconds) {
 
 /// exitance viewfactors SCENE -o MATRIX
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
-    StopRequest stop;
-    const SignalGuard signals(stop);
+    const StopRequest stop;  // signals end the program at once
     set_threads(arguments.threads);
     if (const Result<AtomicFile> file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
 
@@ -39,7 +37,6 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     const Stopwatch time;
     const Result<ViewFactors> table =
         compute_view_factors(*checked.scene, arguments.tolerance, terminal.progress(), stop);
-    if (!table && signals.received()) return *signals.received();
     if (!table) return terminal.fail(table.error());
     const ViewFactorFacts facts = facts_of(*table, time.seconds());
     if (const Result<void> written = write_view_factors(arguments.output, *table); !written)

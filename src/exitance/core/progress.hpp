@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <limits>
@@ -28,10 +29,11 @@ class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
 
-    void interrupt() { interrupted_.store(true, std::memory_order_relaxed); }  ///< Async-signal-safe.
+    /// Async-signal-safe.
+    void interrupt() { interrupted_at_.store(Clock::now().time_since_epoch().count(), std::memory_order_relaxed); }
     void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
 
-    bool interrupted() const { return interrupted_.load(std::memory_order_relaxed); }
+    bool interrupted() const { return interrupted_at_.load(std::memory_order_relaxed) != 0; }
     bool out_of_time() const { return Clock::now() >= deadline_; }
     /// Until the deadline; infinite when there is none, below 0 when it has passed.
     double seconds_left() const {
@@ -39,9 +41,15 @@ class StopRequest {
         return std::chrono::duration<double>(deadline_ - Clock::now()).count();
     }
     bool requested() const { return interrupted() || out_of_time(); }
+    /// Since the stop was asked for; 0 or less when it was not. For work that uses what little time is left.
+    double seconds_overdue() const {
+        const Clock::time_point at{Clock::duration(interrupted_at_.load(std::memory_order_relaxed))};
+        const double interrupt = interrupted() ? std::chrono::duration<double>(Clock::now() - at).count() : 0;
+        return std::max(interrupt, -seconds_left());
+    }
 
   private:
-    std::atomic<bool> interrupted_{false};
+    std::atomic<Clock::rep> interrupted_at_{0};  ///< As a clock tells it; 0: not.
     Clock::time_point deadline_ = Clock::time_point::max();
 };
 

@@ -101,7 +101,12 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
                 direct[i] = old_direct[e];
                 continue;
             }
-            patch_of[i] = patch_by_element[tree.parent(e)];
+            const ElementId parent = tree.parent(e);
+            patch_of[i] = patch_by_element[parent];
+            if (input_.stop.requested()) {  // half a sweep: the rest keeps what its elements had
+                irradiance[i] = old_irradiance[parent], direct[i] = old_direct[parent];
+                continue;
+            }
             if (!shoots_direct_light()) direct[i] = mean_direct_light(e, exact);
             for (std::size_t p = 0; p < patches.size(); ++p)
                 if (max(sent[p]) > 0) irradiance[i] += transfer_.form_factor(e, patches[p], workspace) * sent[p];

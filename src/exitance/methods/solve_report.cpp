@@ -30,6 +30,7 @@ void record_certificate(const Certificate& certificate, const GlobalLight& light
     statistics.rays += certificate.rays;
     statistics.elements = light.tree.size() + delivered.tree.size();
     statistics.leaf_elements = light.numbering.leaves.size() + delivered.tree.leaves().size();
+    if (certificate.points == 0) return;  // nothing reflects, or so little was found that nothing can be told
     statistics.relative_error_estimate = certificate.estimate;
     statistics.relative_error_bound = certificate.bound;
 }

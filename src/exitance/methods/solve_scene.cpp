@@ -70,7 +70,7 @@ class Solver {
         constexpr double near = 30;  // seconds
         const bool deadline = stop.seconds_left() < near && !checkpoints_;
         const double error = deadline ? std::max(coarse, options.error_target()) : options.error_target();
-        stage_.leave_out(find_unlit_sides(stage_, options.seed));
+        stage_.leave_out(find_unlit_sides(stage_, options.seed, stop));
         const std::vector<Piece> lit = stage_.lit_pieces();
         knobs_ = knobs_for_error(error, lit, options);
         sums_ = ElementGather::suits(stage_);
@@ -88,6 +88,9 @@ class Solver {
             solve_indirect_light();
         } else {
             project_direct();
+            statistics().elements = direct_.tree.size();
+            statistics().leaf_elements = direct_.tree.leaves().size();
+            statistics().relative_error_estimate = statistics().relative_error_bound = 0;  // direct light is exact
         }
         if (light_ && !light_->kept_links.empty())
             solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
@@ -216,7 +219,7 @@ class Solver {
         if (step_ == Step::project) {
             fresh_ = !light_;
             if (fresh_) project_direct();
-            if (gives_up()) return;
+            if (stop_.requested()) return;  // where there is no light of another attempt, direct light is all there is
             reach(Step::solve);
         }
         if (step_ == Step::solve) {
@@ -380,6 +383,8 @@ class Solver {
             certificate_ = certifier.look();
         }
         record_certificate(certificate_, *light_, solution_.indirect, statistics());
+        if (certificate_.points == 0 && !stop_.requested())  // nothing reflects any light
+            statistics().relative_error_estimate = statistics().relative_error_bound = 0;
         progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
     }
 
@@ -408,7 +413,9 @@ class Solver {
                 make_interpolant(stage_, direct_, solution_.indirect, solution_.direct_share,
                                  {.tolerance = 2.5 * options_.error_target() * scale}, report, stop_);
             const double own = scale > 0 ? report.error / scale : 0;
-            statistics().relative_error_estimate_interpolant = std::hypot(own, statistics().relative_error_estimate);
+            if (statistics().relative_error_estimate && !report.interrupted)
+                statistics().relative_error_estimate_interpolant =
+                    std::hypot(own, *statistics().relative_error_estimate);
             progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
                                        solution_.interpolant.tree.leaves().size(), 100 * own));
         }

@@ -15,7 +15,7 @@ namespace exitance {
 namespace {
 
 std::vector<double> bits(const Solution& s) {
-    std::vector<double> out = {s.statistics.relative_error_estimate, s.statistics.relative_error_bound};
+    std::vector<double> out = {*s.statistics.relative_error_estimate, *s.statistics.relative_error_bound};
     for (const auto& value : s.indirect.values) out.insert(out.end(), value.begin(), value.end());
     for (const auto& value : s.interpolant.values) out.insert(out.end(), value.begin(), value.end());
     return out;
@@ -292,6 +292,8 @@ TEST(SolveScene, AnInterruptedSolveStillHasAResult) {
     ASSERT_TRUE(solution);
     EXPECT_FALSE(solution->statistics.converged);
     EXPECT_EQ(solution->statistics.stopped_by, "interrupt");
+    EXPECT_FALSE(solution->statistics.relative_error_estimate);  // unknown, not 0
+    EXPECT_FALSE(solution->statistics.converged);
     for (const auto& value : solution->interpolant.values)
         for (float v : value) EXPECT_TRUE(std::isfinite(v));
 }

@@ -21,6 +21,7 @@ class Interpolation {
         out_.tree = direct.tree;
     }
 
+    /// A leaf that a request to stop leaves no time for holds what its parent held there.
     ElementFunction run(InterpolantReport& report, const StopRequest& stop) {
         std::vector<ElementId> active = out_.tree.leaves();
         for (int round = 0;; ++round) {
@@ -29,8 +30,12 @@ class Interpolation {
                             [&](std::size_t begin, std::size_t end) {
                                 DirectLight::Workspace workspace;
                                 ReceiverLight light;
-                                for (std::size_t i = begin; i < end; ++i)
-                                    fitted_[active[i]] = fit(active[i], light, workspace);
+                                for (std::size_t i = begin; i < end; ++i) {
+                                    const ElementId e = active[i];
+                                    fitted_[e] = round > 0 && stop.requested()
+                                                     ? inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)])
+                                                     : fit(e, light, workspace);
+                                }
                             },
                             {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
             report.error = error();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,11 +35,12 @@ struct SolveStatistics {
     int threads = 1;
     std::size_t surfaces = 0, elements = 0, leaf_elements = 0, links = 0;
     std::size_t rays = 0, form_factors = 0, iterations = 0;
-    bool converged = false;                          ///< The error asked for was reached, or none was asked for.
-    double residual = 0;                             ///< Of the discrete system, relative to its right-hand side.
-    double relative_error_estimate = 0;              ///< Of what `probe` evaluates.
-    double relative_error_bound = 0;                 ///< The same, as an upper bound.
-    double relative_error_estimate_interpolant = 0;  ///< Of what `export` writes.
+    bool converged = false;  ///< The error asked for was reached, or none was asked for.
+    double residual = 0;     ///< Of the discrete system, relative to its right-hand side.
+    /// Of what `probe` evaluates, and the same as an upper bound; none where a run was stopped before its first
+    /// estimate.
+    std::optional<double> relative_error_estimate, relative_error_bound;
+    std::optional<double> relative_error_estimate_interpolant;  ///< Of what `export` writes; likewise.
     /// Relative RMS standard error of the light that a random method found on its elements; 0 for other methods.
     double standard_error = 0;
     EnergyBalance energy;

@@ -57,7 +57,7 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
 
 }  // namespace
 
-Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t seed) {
+Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
     const std::vector<Side> sides = sides_of_sheets(stage);
     if (sides.empty() || !stage.scene.has_light()) return {};
     // All of them together: about as many rays as a quick solve takes.
@@ -65,10 +65,12 @@ Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t
     const PathTracer tracer(stage);
     std::vector<std::uint8_t> unlit(sides.size());
     parallel_for(sides.size(), 4, [&](std::size_t k) {
+        if (stop.requested()) return;
         const double share = std::sqrt(sides[k].area / stage.area / static_cast<double>(sides.size()));
         const double paths = std::clamp(all / places * share, 2.0, 16.0);
         unlit[k] = !is_lit(stage, tracer, sides[k], static_cast<unsigned>(paths), seed);
     });
+    if (stop.requested()) return {};
     Field<RegionId, std::uint8_t> out(stage.scene.regions().size());
     std::size_t count = 0;
     for (std::size_t k = 0; k < sides.size(); ++k) {

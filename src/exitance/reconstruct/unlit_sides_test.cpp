@@ -29,7 +29,7 @@ std::vector<Face> room_with_box(bool open) {
 TEST(UnlitSides, AreTheOutsideOfARoomAndTheInsideOfABox) {
     const Scene scene = test::make(room_with_box(false));
     const Stage stage(scene);
-    const Field<RegionId, std::uint8_t> unlit = find_unlit_sides(stage, 1);
+    const Field<RegionId, std::uint8_t> unlit = find_unlit_sides(stage, 1, StopRequest());
     ASSERT_EQ(unlit.size(), scene.regions().size());
     for (SurfaceId s : scene.surfaces().ids()) {
         const bool of_room = s.value < 12, inwards = s.value % 2 == 0, lamp = s.value == 22;
@@ -40,7 +40,7 @@ TEST(UnlitSides, AreTheOutsideOfARoomAndTheInsideOfABox) {
 TEST(UnlitSides, AreNoneInAnOpenBox) {
     const Scene scene = test::make(room_with_box(true));
     const Stage stage(scene);
-    const Field<RegionId, std::uint8_t> unlit = find_unlit_sides(stage, 1);
+    const Field<RegionId, std::uint8_t> unlit = find_unlit_sides(stage, 1, StopRequest());
     for (SurfaceId s : scene.surfaces().ids())
         EXPECT_EQ(unlit[scene.surfaces()[s].region] != 0, s.value < 12 && s.value % 2 == 1) << s.value;
 }
@@ -50,13 +50,13 @@ TEST(UnlitSides, AreLookedForInSheetsOnly) {
     for (const Face& f : test::closed_box({3, 0, 0}, {1, 1, 1})) faces.push_back(f);
     faces[0].exitance = 1;
     const Scene scene = test::make(faces);
-    EXPECT_EQ(find_unlit_sides(Stage(scene), 1).size(), 0u);
+    EXPECT_EQ(find_unlit_sides(Stage(scene), 1, StopRequest()).size(), 0u);
 }
 
 TEST(UnlitSides, DoNotCountInTheAreaAndAreNotCut) {
     const Scene scene = test::make(room_with_box(false));
     Stage stage(scene);
-    stage.leave_out(find_unlit_sides(stage, 1));
+    stage.leave_out(find_unlit_sides(stage, 1, StopRequest()));
     EXPECT_NEAR(stage.area, 24 + 5 * 0.16 + 0.04, 1e-9);  // room, box, lamp; metres with few digits
     const ElementTree tree = stage.make_elements({0.1, 2});
     std::size_t whole = 0;

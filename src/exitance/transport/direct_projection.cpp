@@ -39,11 +39,29 @@ DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementI
     return fit_values(stage, tree, e, light, workspace);
 }
 
-Spectrum DirectProjection::at(ElementTree::Place place) const {
-    const auto [u, v] = place.uv;
-    const std::array<Spectrum, 4>& c = fit[place.element].corners;
-    if (tree.patch(place.element).is_triangle()) return (1 - u - v) * c[0] + u * c[1] + v * c[2];
+namespace {
+
+Spectrum between(const std::array<Spectrum, 4>& c, const Patch& patch, Vec2 uv) {
+    const auto [u, v] = uv;
+    if (patch.is_triangle()) return (1 - u - v) * c[0] + u * c[1] + v * c[2];
     return (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
+}
+
+}  // namespace
+
+Spectrum DirectProjection::at(ElementTree::Place place) const {
+    return between(fit[place.element].corners, tree.patch(place.element), place.uv);
+}
+
+DirectFit inherited_fit(const ElementTree& tree, ElementId e, const DirectFit& parent) {
+    const Patch &patch = tree.patch(e), &of_parent = tree.patch(tree.parent(e));
+    const auto value = [&](const Point& p) {
+        return between(parent.corners, of_parent, into_shape(of_parent.coordinates(p), of_parent.shape));
+    };
+    DirectFit out = parent;
+    for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = value(patch.corner(i));
+    out.mean = value(patch.at(tree.centre(e)));
+    return out;
 }
 
 Spectrum light_weight(const Material& material) {
@@ -70,6 +88,16 @@ DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementI
     // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
     out.misfit_squared = std::max(out.misfit_squared, of.misfit_squared);
     return out;
+}
+
+constexpr double time_for_rays = 0.2;  ///< Seconds after a stop was asked for.
+
+/// By rays alone, constant: for work that is cut short.
+DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, SampledLight& sampled) {
+    constexpr double anything = 1e300;
+    const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
+    const SampledLight::Estimate& of = sampled(tree, e, w, anything, rays_an_element);
+    return {{of.weak, of.weak, of.weak, of.weak}, of.weak, {}, of.misfit_squared};
 }
 
 /// Sum of w E_dir over leaves, W.
@@ -127,19 +155,28 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
     double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed)) : 0;
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
-        parallel_ranges(active.size(), 8,
-                        [&](std::size_t begin, std::size_t end) {
-                            if (options.may_give_up && stop.requested()) return;
-                            DirectLight::Workspace workspace;
-                            ReceiverLight light;
-                            SampledLight sampled(stage.direct, stage.tracer, options.seed);
-                            for (std::size_t i = begin; i < end; ++i)
-                                out.fit[active[i]] =
-                                    many ? fit_strong_light(stage, out.tree, active[i], share, rays_of(active[i]),
-                                                            sampled, light, workspace)
-                                         : fit_direct_light(stage, out.tree, active[i], light, workspace);
-                        },
-                        {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
+        parallel_ranges(
+            active.size(), 8,
+            [&](std::size_t begin, std::size_t end) {
+                if (options.may_give_up && stop.requested()) return;
+                DirectLight::Workspace workspace;
+                ReceiverLight light;
+                SampledLight sampled(stage.direct, stage.tracer, options.seed);
+                for (std::size_t i = begin; i < end; ++i) {
+                    const ElementId e = active[i];
+                    DirectFit& fit = out.fit[e];
+                    if (stop.requested() && depth > 0)
+                        fit = inherited_fit(out.tree, e, out.fit[out.tree.parent(e)]);
+                    else if (stop.requested())  // dark, where even rays would take too long
+                        fit = stop.seconds_overdue() < time_for_rays ? fit_by_rays(stage, out.tree, e, sampled)
+                                                                     : DirectFit();
+                    else if (many)
+                        fit = fit_strong_light(stage, out.tree, e, share, rays_of(e), sampled, light, workspace);
+                    else
+                        fit = fit_direct_light(stage, out.tree, e, light, workspace);
+                }
+            },
+            {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
         if (options.may_give_up && stop.requested()) return {};
         if (depth == 0 && !many) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
         if (depth == options.max_depth || stop.requested()) break;

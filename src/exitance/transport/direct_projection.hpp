@@ -14,8 +14,8 @@ struct DirectProjectionOptions {
     int max_depth = 8;     ///< Cuts below the first mesh.
     /// Elements of less than this are not cut, m^2; empty: as the tolerance asks.
     std::optional<double> least_area = {};
-    /// What to do when a stop is asked for: give up at once and return an empty tree, or end the first round, so that
-    /// there is something to return.
+    /// What to do when a stop is asked for: give up at once and return an empty tree, or leave the rest to rays, so
+    /// that there is something to return.
     bool may_give_up = false;
     std::uint64_t seed = 1;  ///< Of the rays to small elements, where there are many.
 };
@@ -47,6 +47,9 @@ Spectrum light_weight(const Material& material);
 /// Of one element, by exact values at the places of its fine rule. `light` and `workspace` are room to work in.
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace);
+
+/// What an element's parent holds, in place of light of its own: for work that is cut short.
+DirectFit inherited_fit(const ElementTree& tree, ElementId e, const DirectFit& parent);
 
 /// O(elements x places x visible emitters).
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,

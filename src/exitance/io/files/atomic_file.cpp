@@ -4,6 +4,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -49,6 +52,39 @@ mode_t usual_mode() {
 
 }  // namespace
 
+/// The name of a file that is not whole yet, where a handler of signals may read it.
+struct AtomicFile::Unfinished {
+    static constexpr std::size_t longest_path = 4096;
+    enum State : int { free, taken, named };
+    std::atomic<int> state{free};
+    std::array<char, longest_path> path{};
+
+    /// A free entry takes the name; null where there is none, or the name is too long: then such a file may stay.
+    static Unfinished* enter(const std::string& name) {
+        if (name.size() >= longest_path) return nullptr;
+        for (Unfinished& entry : all) {
+            int expected = free;
+            if (!entry.state.compare_exchange_strong(expected, taken)) continue;
+            std::copy(name.c_str(), name.c_str() + name.size() + 1, entry.path.begin());
+            entry.state = named;
+            return &entry;
+        }
+        return nullptr;
+    }
+
+    static std::array<Unfinished, 16> all;
+};
+std::array<AtomicFile::Unfinished, 16> AtomicFile::Unfinished::all;
+
+void AtomicFile::remove_unfinished() noexcept {
+    for (const Unfinished& entry : Unfinished::all)
+        if (entry.state == Unfinished::named) ::unlink(entry.path.data());
+}
+
+void remove_unfinished_files() noexcept {
+    AtomicFile::remove_unfinished();
+}
+
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
     AtomicFile out;
     out.path_ = path;
@@ -69,6 +105,7 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
     out.file_ = ::mkostemp(temporary.data(), O_CLOEXEC);
     if (out.file_ < 0) return cannot_write(path, errno);
     out.temporary_ = temporary;
+    out.unfinished_ = Unfinished::enter(temporary);
     ::fchmod(out.file_, exists ? present.st_mode & 07777 : usual_mode());
     return out;
 }
@@ -91,6 +128,7 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
     abandon();
     path_ = std::move(other.path_), target_ = std::move(other.target_);
     temporary_ = std::exchange(other.temporary_, {});
+    unfinished_ = std::exchange(other.unfinished_, nullptr);
     buffer_ = std::exchange(other.buffer_, {});
     file_ = std::exchange(other.file_, -1);
     error_ = other.error_, sync_ = other.sync_;
@@ -104,6 +142,7 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::abandon() {
     if (file_ >= 0) ::close(std::exchange(file_, -1));
     if (!temporary_.empty()) ::unlink(std::exchange(temporary_, {}).c_str());
+    if (unfinished_) std::exchange(unfinished_, nullptr)->state = Unfinished::free;
 }
 
 void AtomicFile::flush() {

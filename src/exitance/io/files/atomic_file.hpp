@@ -29,6 +29,9 @@ class AtomicFile {
     }
     Result<void> commit();
 
+    /// See remove_unfinished_files.
+    static void remove_unfinished() noexcept;
+
   private:
     AtomicFile() = default;
     void flush();
@@ -37,11 +40,17 @@ class AtomicFile {
     std::string path_;       ///< As the user wrote it, for messages.
     std::string target_;     ///< Where it is renamed to.
     std::string temporary_;  ///< Empty when written to directly.
+    struct Unfinished;
+    Unfinished* unfinished_ = nullptr;  ///< Its entry among the files that handlers of signals remove.
     std::string buffer_;
     int file_ = -1;
     int error_ = 0;  ///< The first failure, as errno.
     bool sync_ = true;
 };
+
+/// Removes what has been written beside the places of all files that are not whole yet. Async-signal-safe: for handlers
+/// that end the program.
+void remove_unfinished_files() noexcept;
 
 /// Writes a file in one go.
 Result<void> write_file(const std::string& path, std::string_view content);

@@ -97,5 +97,15 @@ TEST_F(AtomicFiles, DevicesAreWrittenToDirectly) {
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
+TEST_F(AtomicFiles, AreRemovedBySignalsBeforeTheyAreWhole) {
+    Result<AtomicFile> file = AtomicFile::create((fs::path(folder) / "a").string());
+    ASSERT_TRUE(file);
+    const AtomicFile moved = std::move(*file);
+    const auto count = [&] { return std::distance(fs::directory_iterator(folder), fs::directory_iterator()); };
+    EXPECT_EQ(count(), 1);
+    remove_unfinished_files();
+    EXPECT_EQ(count(), 0);
+}
+
 }  // namespace
 }  // namespace exitance

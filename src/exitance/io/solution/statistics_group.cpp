@@ -37,7 +37,9 @@ void for_figures(Statistics& s, const Visit& visit) {
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics) {
     file.make_group(group);
     for_figures(statistics, [&]<class T>(const char* name, const T& value) {
-        if constexpr (std::is_same_v<T, std::string>)
+        if constexpr (std::is_same_v<T, std::optional<double>>) {
+            if (value) file.set_attribute(group, name, *value);
+        } else if constexpr (std::is_same_v<T, std::string>)
             file.set_attribute(group, name, std::string_view(value));
         else if constexpr (std::is_same_v<T, double>)
             file.set_attribute(group, name, value);
@@ -58,7 +60,9 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
     SolveStatistics statistics;
     for_figures(statistics, [&]<class T>(const char* name, T& value) {  // a figure that is missing keeps its default
-        if constexpr (std::is_same_v<T, std::string>)
+        if constexpr (std::is_same_v<T, std::optional<double>>)
+            value = file.number_attribute(group, name);
+        else if constexpr (std::is_same_v<T, std::string>)
             value = file.text_attribute(group, name).value_or(value);
         else if constexpr (std::is_same_v<T, double>)
             value = file.number_attribute(group, name).value_or(value);
