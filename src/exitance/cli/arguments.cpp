@@ -384,6 +384,31 @@ void declare(CLI::App& app, RenderArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+void declare(CLI::App& app, BakeArguments& arguments) {
+    LightMapFormat& format = arguments.format;
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("-o,--output", arguments.output,
+                   "Folder for lightmaps.json, lightmap_0.exr and .png, ..., scene.glb")
+        ->type_name("FOLDER")
+        ->required();
+    add_positive(app, "--density", arguments.density, "T",
+                 "Texels per metre; default: up to 64, with at most a million texels on surfaces");
+    add_count(app, "--padding", arguments.padding, 1,
+              "Texels around every chart; 2^m keep charts apart down to mip level m; default 4")
+        ->check(CLI::Range(1, 256));
+    add_choice(app, "--quantity", light_map_quantity_names, format.quantity, "In W/m^2; default irradiance");
+    app.add_flag_callback(
+        "--half", [&format] { format.precision = Precision::half; }, "EXR of 16-bit numbers in place of 32-bit ones");
+    CLI::Option* unlit = app.add_flag_callback(
+        "--unlit", [&format] { format.material = LightMapMaterial::unlit; },
+        "The .glb shows a toned picture of the light as base colour; default: linear light as emission");
+    app.add_flag_callback(
+           "--moz-lightmap", [&format] { format.material = LightMapMaterial::moz_lightmap; },
+           "The .glb has base colours, and its light in the extension MOZ_lightmap")
+        ->excludes(unlit);
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, CheckArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
     declare_faults(app, arguments.faults);
@@ -477,6 +502,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<ExportArguments>},
         {"render", "Makes a picture of a solution.", "exitance render room.h5 -o room.png",
          parse_verb<RenderArguments>},
+        {"bake", "Writes light maps: pictures of the light on every surface, and a model that shows them.",
+         "exitance bake room.h5 -o lightmaps", parse_verb<BakeArguments>},
         {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
          parse_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",

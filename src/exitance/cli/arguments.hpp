@@ -8,6 +8,7 @@
 
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/core/result.hpp"
+#include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
@@ -80,6 +81,14 @@ struct RenderArguments : CommonArguments {
     int threads = 0;
 };
 
+struct BakeArguments : CommonArguments {
+    std::string solution, output;
+    double density = 0;       ///< Texels per metre; 0: what suits the scene.
+    std::size_t padding = 4;  ///< Texels.
+    LightMapFormat format;
+    int threads = 0;
+};
+
 struct CheckArguments : CommonArguments {
     std::string scene, picture;
     Faults faults = Faults::repair;
@@ -99,7 +108,7 @@ struct ViewFactorArguments : CommonArguments {
 
 /// What the program is to do.
 using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
-                             RenderArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
+                             RenderArguments, BakeArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

@@ -13,6 +13,7 @@ ExitCode run(const CompareArguments& arguments, Terminal& terminal);
 ExitCode run(const StatsArguments& arguments, Terminal& terminal);
 ExitCode run(const ExportArguments& arguments, Terminal& terminal);
 ExitCode run(const RenderArguments& arguments, Terminal& terminal);
+ExitCode run(const BakeArguments& arguments, Terminal& terminal);
 ExitCode run(const CheckArguments& arguments, Terminal& terminal);
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);

@@ -6,7 +6,9 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include <algorithm>
 #include <exception>
+#include <vector>
 
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/pictures/linear_image.hpp"
@@ -33,20 +35,34 @@ class MemoryFile : public Imf::OStream {
     std::size_t position_ = 0;
 };
 
+std::vector<Imath::half> to_half(const std::vector<float>& values) {
+    std::vector<Imath::half> out(values.size());
+    std::transform(values.begin(), values.end(), out.begin(),
+                   [](float value) { return Imath::half(std::min(value, 65504.0f)); });
+    return out;
+}
+
 }  // namespace
 
-Result<void> write_exr(const std::string& path, const LinearImage& image, const ImageFacts& facts) {
+Result<void> write_exr(const std::string& path, const LinearImage& image, const ImageFacts& facts,
+                       Precision precision) {
     try {
+        const bool half = precision == Precision::half;
+        const Imf::PixelType type = half ? Imf::HALF : Imf::FLOAT;
+        const std::size_t bytes = half ? sizeof(Imath::half) : sizeof(float);
+        std::vector<std::vector<Imath::half>> halves;
         Imf::Header header(image.width, image.height);
         header.compression() = Imf::ZIP_COMPRESSION;
         Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709, white D65
         for (const auto& [name, text] : facts) header.insert(name, Imf::StringAttribute(text));
         Imf::FrameBuffer frame;
         for (const LinearImage::Channel& channel : image.channels) {
-            header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
-            char* first = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));  // it only reads
-            frame.insert(channel.name, Imf::Slice(Imf::FLOAT, first, sizeof(float),
-                                                  sizeof(float) * static_cast<std::size_t>(image.width)));
+            header.channels().insert(channel.name, Imf::Channel(type));
+            if (half) halves.push_back(to_half(channel.values));
+            const void* values =
+                half ? static_cast<const void*>(halves.back().data()) : static_cast<const void*>(channel.values.data());
+            char* first = static_cast<char*>(const_cast<void*>(values));  // it only reads
+            frame.insert(channel.name, Imf::Slice(type, first, bytes, bytes * static_cast<std::size_t>(image.width)));
         }
         MemoryFile memory;
         {

@@ -27,9 +27,13 @@ using ImageFacts = std::vector<std::pair<std::string, std::string>>;
 /// of a pixel that shows a surface. irradiance.R, G and B: E in W/m^2, averaged over what shows fronts.
 LinearImage linear_image(const Picture& picture);
 
-/// OpenEXR, 32-bit floats, ZIP-compressed, linear Rec. 709 primaries; the facts become string attributes. Appears whole
-/// or not at all.
-Result<void> write_exr(const std::string& path, const LinearImage& image, const ImageFacts& facts);
+/// Of the numbers in a file: 32 bits; or 16 bits, relative error 2^-11, of which the largest is 65504: what is larger
+/// becomes that.
+enum class Precision { single, half };
+
+/// OpenEXR, ZIP-compressed, linear Rec. 709 primaries; the facts become string attributes. Appears whole or not at all.
+Result<void> write_exr(const std::string& path, const LinearImage& image, const ImageFacts& facts,
+                       Precision precision = Precision::single);
 
 /// Radiance's picture format, R, G and B alone: a shared exponent a pixel ([Ward91], relative error below 1%),
 /// run-length encoded, exposure 1 (values are W/(m^2 sr)), sRGB primaries; the facts become comments.

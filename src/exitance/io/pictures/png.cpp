@@ -77,7 +77,7 @@ bool decode_rows(png_structp png, png_infop info, Source& source, std::vector<st
 
 }  // namespace
 
-Result<void> write_png(const std::string& path, const Image& image, const ImageTexts& texts) {
+Result<std::string> encode_png(const Image& image, const ImageTexts& texts) {
     std::vector<png_text> entries;
     for (const auto& [key, text] : texts) {
         png_text entry{};
@@ -92,8 +92,16 @@ Result<void> write_png(const std::string& path, const Image& image, const ImageT
     png_infop info = png ? png_create_info_struct(png) : nullptr;
     const bool done = info && encode(png, info, image, entries.data(), static_cast<int>(entries.size()), content);
     png_destroy_write_struct(&png, &info);
-    if (!done) return Error{ErrorCode::cannot_write, "the picture cannot be encoded as PNG", path, ""};
-    return write_file(path, content);
+    if (!done) return Error{ErrorCode::cannot_write, "the picture cannot be encoded as PNG", "", ""};
+    return content;
+}
+
+Result<void> write_png(const std::string& path, const Image& image, const ImageTexts& texts) {
+    Result<std::string> content = encode_png(image, texts);
+    if (content) return write_file(path, *content);
+    Error error = content.error();
+    error.where = path;
+    return error;
 }
 
 Result<std::array<double, 3>> mean_of_png(std::span<const std::uint8_t> file, const ByteCurve& decode) {

@@ -25,6 +25,9 @@ struct Image {
 /// Keywords and what they say, stored with a picture (tEXt). Latin-1.
 using ImageTexts = std::vector<std::pair<std::string, std::string>>;
 
+/// A picture as the bytes of a PNG file.
+Result<std::string> encode_png(const Image& image, const ImageTexts& texts);
+
 /// Writes a PNG; it appears whole or not at all.
 Result<void> write_png(const std::string& path, const Image& image, const ImageTexts& texts);
 

@@ -1,0 +1,152 @@
+#include "exitance/io/export/light_map_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+
+#include "exitance/io/export/glb_nodes.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/pictures/png.hpp"
+
+namespace exitance {
+namespace {
+
+std::string map_name(std::size_t map, const char* ending) {
+    return fmt::format("lightmap_{}{}", map, ending);
+}
+
+const char* name_of(LightMapQuantity quantity) {
+    return quantity == LightMapQuantity::irradiance ? "irradiance" : "radiosity";
+}
+
+LinearImage numbers(const Scene& scene, const LightMaps& light, std::size_t m, LightMapQuantity quantity) {
+    const LightMap& map = light.maps[m];
+    LinearImage image{map.size.width, map.size.height, {}};
+    for (const char* name : {"R", "G", "B"}) image.channels.push_back({name, std::vector<float>(map.size.texels())});
+    for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
+        const auto rgb = red_green_blue(texel_value(scene, map, chart, i, quantity));
+        for (std::size_t c = 0; c < 3; ++c) image.channels[c].values[i] = static_cast<float>(rgb[c]);
+    });
+    image.channels.push_back({"coverage", map.share});
+    return image;
+}
+
+/// The scale at which what maps show besides lamps lies around middle grey.
+ToneMap preview_tones(const Scene& scene, const LightMaps& light, LightMapQuantity quantity) {
+    double sum = 0, weight = 0;
+    for (std::size_t m = 0; m < light.maps.size(); ++m)
+        for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
+            const auto share = static_cast<double>(light.maps[m].share[i]);
+            if (share == 0 || scene.material(chart.region).emits()) return;
+            const double value = mean(texel_value(scene, light.maps[m], chart, i, quantity));
+            if (value > 0) sum += share * std::log(value), weight += share;
+        });
+    ToneMap tones;
+    tones.curve = ToneCurve::filmic;
+    tones.scale = weight > 0 ? 0.18 / std::exp(sum / weight) : 1;
+    return tones;
+}
+
+Image preview(const Scene& scene, const LightMaps& light, std::size_t m, LightMapQuantity quantity,
+              const ToneMap& tones) {
+    const LightMap& map = light.maps[m];
+    Image image(map.size.width, map.size.height);
+    for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
+        const DisplayColour colour = tones(texel_value(scene, map, chart, i, quantity));
+        for (std::size_t c = 0; c < 3; ++c)
+            image.rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(colour[c])));
+    });
+    return image;
+}
+
+std::string triple(const Vec3& v) {
+    return fmt::format("[{},{},{}]", v.x, v.y, v.z);
+}
+
+/// The texels that a face touches, and where they are.
+std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart) {
+    constexpr double rounding = 1e-6;
+    Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
+    for (const Point& p : scene.outline(s)) {
+        const Vec2 place = chart.place(p);
+        lo = {std::min(lo.x, place.x), std::min(lo.y, place.y)};
+        hi = {std::max(hi.x, place.x), std::max(hi.y, place.y)};
+    }
+    const int x0 = std::clamp(static_cast<int>(std::floor(lo.x + rounding)), 0, chart.width - 1);
+    const int y0 = std::clamp(static_cast<int>(std::floor(lo.y + rounding)), 0, chart.height - 1);
+    const int x1 = std::clamp(static_cast<int>(std::ceil(hi.x - rounding)), x0 + 1, chart.width);
+    const int y1 = std::clamp(static_cast<int>(std::ceil(hi.y - rounding)), y0 + 1, chart.height);
+    return fmt::format(
+        "    {{\"surface\": {}, \"map\": {}, \"x\": {}, \"y\": {}, \"width\": {}, \"height\": {}, \"origin\": {}, "
+        "\"du\": {}, \"dv\": {}, \"normal\": {}}}",
+        s.value, chart.map, chart.x + x0, chart.y + y0, x1 - x0, y1 - y0, triple(chart.at({x0 + 0.5, y0 + 0.5})),
+        triple(chart.du), triple(chart.dv), triple(scene.surfaces()[s].normal));
+}
+
+std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantity quantity, const ToneMap& tones) {
+    std::string text = fmt::format(
+        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"W/m^2\",\n"
+        "  \"texels_per_metre\": {},\n  \"padding\": {},\n  \"model\": \"scene.glb\",\n  \"exposure\": {},\n  "
+        "\"maps\": [",
+        EXITANCE_VERSION, name_of(quantity), light.density, light.padding, tones.scale);
+    for (std::size_t m = 0; m < light.maps.size(); ++m)
+        text += fmt::format("{}\n    {{\"file\": \"{}\", \"preview\": \"{}\", \"width\": {}, \"height\": {}}}",
+                            m > 0 ? "," : "", map_name(m, ".exr"), map_name(m, ".png"), light.maps[m].size.width,
+                            light.maps[m].size.height);
+    text += "\n  ],\n  \"charts\": [";
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const RegionId region = scene.surfaces()[s].region;
+        text += (s.value > 0 ? ",\n" : "\n") + chart_json(scene, s, light.charts[region.value]);
+    }
+    return text + "\n  ]\n}\n";
+}
+
+Result<void> make_folder(const std::string& folder) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (std::filesystem::is_directory(folder)) return {};
+    return Error{ErrorCode::cannot_write,
+                 "cannot make the folder " + folder + (failed ? ": " + failed.message() : ": a file has its name"),
+                 folder, ""};
+}
+
+}  // namespace
+
+Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart, std::size_t index,
+                     LightMapQuantity quantity) {
+    const Spectrum irradiance = map.at(index);
+    if (quantity == LightMapQuantity::irradiance) return irradiance;
+    const Material& material = scene.material(chart.region);
+    return material.exitance + material.reflectance * irradiance;
+}
+
+Result<void> write_light_maps(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
+                              const std::string& folder) {
+    if (const Result<void> made = make_folder(folder); !made) return made;
+    const Scene& scene = solution.scene;
+    const ToneMap tones = preview_tones(scene, light, format.quantity);
+    const std::string unit = fmt::format("R, G, B: {} in W/m^2", name_of(format.quantity));
+    for (std::size_t m = 0; m < light.maps.size(); ++m) {
+        const std::string stem = folder + "/";
+        const LinearImage image = numbers(scene, light, m, format.quantity);
+        const ImageFacts facts{{"software", "exitance"}, {"units", unit}};
+        if (const Result<void> written = write_exr(stem + map_name(m, ".exr"), image, facts, format.precision);
+            !written)
+            return written;
+        const std::string exposure =
+            fmt::format("{} in W/m^2 times {:.6g}, then a filmic curve", name_of(format.quantity), tones.scale);
+        const ImageTexts texts{{"Software", "exitance"}, {"Exposure", exposure}};
+        const Result<void> written =
+            write_png(stem + map_name(m, ".png"), preview(scene, light, m, format.quantity, tones), texts);
+        if (!written) return written;
+    }
+    ToneMap tone = make_tone_map(solution);
+    tone.curve = ToneCurve::filmic;
+    const Result<void> written = write_light_map_glb(solution, light, format.material, tone, folder + "/scene.glb");
+    if (!written) return written;
+    return write_file(folder + "/lightmaps.json", manifest(scene, light, format.quantity, tone));
+}
+
+}  // namespace exitance

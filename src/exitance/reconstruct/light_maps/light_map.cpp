@@ -1,0 +1,184 @@
+#include "exitance/reconstruct/light_maps/light_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/reconstruct/light_maps/texel_cover.hpp"
+#include "exitance/reconstruct/pictures/tile_light.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr int buried_reach = 1;            ///< Rings: as far as a bilinear lookup in the open reads.
+constexpr double most_texels = 134217728;  ///< 2^27, about 2.5 GB.
+
+/// A part of a chart that is baked at once.
+struct Tile {
+    std::size_t chart = 0;
+    Chart::Rectangle rectangle;  ///< In the chart's texels.
+};
+
+std::vector<Tile> cut_into_tiles(std::span<const Chart> charts) {
+    std::vector<Tile> tiles;
+    for (std::size_t c = 0; c < charts.size(); ++c)
+        for (int y = 0; y < charts[c].height; y += tile_side)
+            for (int x = 0; x < charts[c].width; x += tile_side)
+                tiles.push_back(
+                    {c, {x, y, std::min(tile_side, charts[c].width - x), std::min(tile_side, charts[c].height - y)}});
+    return tiles;
+}
+
+/// Says which points of a region see something of the world: neither covered by another surface nor inside a body.
+class OpenPoints {
+  public:
+    explicit OpenPoints(const Stage& stage) : stage_(stage) {}
+
+    bool is_open(const Point& x, RegionId region) const {
+        const Normal& n = stage_.scene.regions()[region].plane.n;
+        return !is_inside_body(x, n, region) && !stage_.occluders.is_covered(x, n, region);
+    }
+
+  private:
+    /// Inside a body rays to all sides end on backs, and the one straight up ends somewhere: bodies stand open where
+    /// they touch others, such as the legs of a table. In the open the first ray hardly ever meets a back.
+    bool is_inside_body(const Point& x, const Normal& n, RegionId region) const {
+        const Frame frame(n);
+        RayHit hit;
+        const auto trace = [&](double u, double v) {
+            const Vec3 direction = frame.to_world(u, v, 1);
+            stage_.tracer.nearest(std::span(&direction, 1), x, region, std::span(&hit, 1));
+            return !hit.surface.is_none();
+        };
+        for (const Vec2& way : {Vec2{1, 0.3}, Vec2{-0.3, 1}, Vec2{-1, -0.3}, Vec2{0.3, -1}})
+            if (!trace(way.x, way.y) || hit.front) return false;
+        return trace(0, 0);
+    }
+
+    const Stage& stage_;
+};
+
+/// Bakes one tile after the other. One a thread.
+class TileBaker {
+  public:
+    TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines)
+        : outlines_(outlines), open_(light.stage()), light_(light, texel_points, 0, 1) {}
+
+    void bake(const Tile& tile, const Chart& chart, LightMap& map) {
+        cutter_.cut(outlines_[tile.chart], tile.rectangle, covers_, places_);
+        points_.clear(), spots_.clear();
+        for (const TexelCover& cover : covers_) {
+            const std::size_t texel = map.index(chart.x + cover.x, chart.y + cover.y);
+            map.share[texel] = static_cast<float>(cover.share);
+            map.source[texel] = LightMap::Source::buried;
+            Spot spot{chart.region, cover.x - tile.rectangle.x, cover.y - tile.rectangle.y,
+                      static_cast<std::uint32_t>(texel), static_cast<std::uint32_t>(points_.size())};
+            add_open_points(chart, cover);
+            spot.count = static_cast<std::uint32_t>(points_.size()) - spot.first;
+            if (spot.count > 0) spots_.push_back(spot);
+        }
+        light_.evaluate(points_, spots_);
+        for (const Spot& spot : spots_) {
+            for (std::size_t b = 0; b < bands; ++b)
+                map.irradiance[spot.pixel][b] = static_cast<float>(std::max(0.0, spot.irradiance[b]));
+            map.source[spot.pixel] = LightMap::Source::computed;
+        }
+    }
+
+  private:
+    /// Where the first four points agree, so do the others.
+    void add_open_points(const Chart& chart, const TexelCover& cover) {
+        constexpr std::size_t few = 4;
+        std::size_t found = 0;
+        for (std::size_t k = 0; k < texel_points; ++k) {
+            if (k == few && found == 0) return;
+            const Point x = chart.at(places_[cover.first + k]);
+            if ((k >= few && found == k) || open_.is_open(x, chart.region)) points_.push_back(x), ++found;
+        }
+    }
+
+    std::span<const std::vector<TexelOutline>> outlines_;
+    OpenPoints open_;
+    TileLight light_;
+    TexelCutter cutter_;
+    std::vector<TexelCover> covers_;
+    std::vector<Vec2> places_;
+    std::vector<Point> points_;
+    std::vector<Spot> spots_;
+};
+
+/// The triangles and parallelograms of every chart's region.
+std::vector<std::vector<TexelOutline>> make_outlines(const Stage& stage, std::span<const Chart> charts) {
+    std::vector<std::vector<TexelOutline>> outlines(charts.size());
+    for (const Piece& piece : stage.pieces)
+        outlines[piece.region.value].emplace_back(charts[piece.region.value], piece.patch);
+    return outlines;
+}
+
+Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options) {
+    LightMaps out;
+    out.density = options.density > 0 ? options.density : automatic_density(scene);
+    out.padding = options.padding;
+    const int longest = options.most - 2 * options.padding;
+    Result<std::vector<Chart>> charts = make_charts(scene, out.density, longest);
+    if (!charts) return charts.error();
+    double texels = 0;
+    for (const Chart& chart : *charts)
+        texels += (chart.width + 2.0 * options.padding) * (chart.height + 2.0 * options.padding);
+    if (texels > most_texels)
+        return Error{ErrorCode::usage,
+                     "the maps would have " + std::to_string(std::llround(texels / 1e6)) +
+                         " million texels, the most is 134 million",
+                     "--density", "choose a smaller one, or a smaller --padding"};
+    out.charts = std::move(*charts);
+    for (const MapSize size : pack_charts(out.charts, options.padding, options.most)) {
+        LightMap map;
+        map.size = size;
+        map.irradiance.resize(size.texels());
+        map.source.resize(size.texels(), LightMap::Source::nothing);
+        map.share.resize(size.texels());
+        out.maps.push_back(std::move(map));
+    }
+    return out;
+}
+
+}  // namespace
+
+double automatic_density(const Scene& scene) {
+    double area = 0, density = 64;
+    for (const Region& region : scene.regions()) area += region.area;
+    while (density * density * area > 1e6) density /= 2;
+    return density;
+}
+
+Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOptions& options, Progress& progress,
+                                  const StopRequest& stop) {
+    Result<LightMaps> made = make_empty_maps(light.solution().scene, options);
+    if (!made) return made;
+    LightMaps& out = *made;
+    progress.phase("bake");
+    const std::vector<std::vector<TexelOutline>> outlines = make_outlines(light.stage(), out.charts);
+    const std::vector<Tile> tiles = cut_into_tiles(out.charts);
+    constexpr std::size_t at_once = 256, grain = 4;
+    for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
+        progress.advance(static_cast<double>(first) / static_cast<double>(tiles.size()));
+        parallel_ranges(std::min(at_once, tiles.size() - first), grain, [&](std::size_t begin, std::size_t end) {
+            TileBaker baker(light, outlines);
+            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
+                const Chart& chart = out.charts[tiles[i].chart];
+                baker.bake(tiles[i], chart, out.maps[chart.map]);
+            }
+        });
+    }
+    if (stop.requested()) return made;
+    parallel_for(out.charts.size(), 1,
+                 [&](std::size_t c) { extrapolate_texels(out.charts[c], buried_reach, out.maps[out.charts[c].map]); });
+    for (const LightMap& map : out.maps)
+        out.texels += static_cast<std::size_t>(
+            std::count_if(map.share.begin(), map.share.end(), [](float share) { return share > 0; }));
+    return made;
+}
+
+}  // namespace exitance

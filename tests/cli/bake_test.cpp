@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "cli/small_scene.hpp"
+
+namespace exitance::test {
+
+TEST(ProgramBake, WritesMapsAManifestAndAModel) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", out = folder / "new/maps";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const Finished run = run_program({"bake", solution, "-o", out, "--density", "6"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("texels"), std::string::npos);
+    const std::string manifest = read_text(out + "/lightmaps.json"), model = read_text(out + "/scene.glb");
+    for (const std::string key : {"version", "quantity", "unit", "maps", "file", "width", "height", "charts", "surface",
+                                  "map", "x", "y", "origin", "du", "dv", "normal"})
+        EXPECT_NE(manifest.find("\"" + key + "\": "), std::string::npos) << key;
+    EXPECT_NE(manifest.find("\"surface\": 6"), std::string::npos);
+    EXPECT_NE(model.find("TEXCOORD_1"), std::string::npos);
+    EXPECT_NE(model.find("\"emissiveTexture\":{\"index\":0,\"texCoord\":1}"), std::string::npos);
+    EXPECT_GT(std::filesystem::file_size(out + "/lightmap_0.png"), 100u);
+    const auto single = std::filesystem::file_size(out + "/lightmap_0.exr");
+
+    const Finished again = run_program(
+        {"bake", solution, "-o", out, "--density", "6", "--half", "--unlit", "--quantity", "radiosity", "-q"});
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_LT(std::filesystem::file_size(out + "/lightmap_0.exr"), 0.7 * static_cast<double>(single));
+    EXPECT_NE(read_text(out + "/scene.glb").find("\"baseColorTexture\":{\"index\":0,\"texCoord\":1}"),
+              std::string::npos);
+    EXPECT_NE(read_text(out + "/lightmaps.json").find("\"quantity\": \"radiosity\""), std::string::npos);
+
+    ASSERT_EQ(run_program({"bake", solution, "-o", out, "--density", "6", "--moz-lightmap", "-q"}).status, 0);
+    EXPECT_NE(read_text(out + "/scene.glb").find("\"MOZ_lightmap\":{\"index\":0"), std::string::npos);
+}
+
+TEST(ProgramBake, RefusesWhatCannotBeDone) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const std::string out = folder / "maps";
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--unlit", "--moz-lightmap"}).status, 2);
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--density", "0"}).status, 2);
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--padding", "1000"}).status, 2);
+    const Finished large = run_program({"bake", solution, "-o", out, "--density", "1e7"});
+    EXPECT_EQ(large.status, 2);
+    EXPECT_NE(large.err.find("--density"), std::string::npos) << large.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+    EXPECT_EQ(run_program({"bake", solution, "-o", solution, "--density", "4"}).status, 5);  // a file has that name
+    EXPECT_EQ(run_program({"bake", folder / "absent.h5", "-o", out}).status, 3);
+}
+
+}  // namespace exitance::test
