@@ -25,12 +25,15 @@ camera="0.2,0.2,1.7 2.3,2.3,1.05 86"
 echo "== Exporting"
 "$exitance" export "$out/solution.h5" -o "$out/lit.glb"
 "$exitance" export "$out/solution.h5" -o "$out/lit.vtkhdf"
+echo "== Reporting"
+"$exitance" report "$out/solution.h5" -o "$out/report.html" --camera "$camera"
 
 cat <<EOT
 
 Done in $SECONDS s. In $out/:
   picture.png       the room as one would see it
   false_colour.png  the irradiance of its surfaces, with a legend
+  report.html       pictures, tables and figures on one page (its numbers: report.json)
   lit.glb           the room with its light, for any glTF viewer
   lit.vtkhdf        the elements, for ParaView
   solution.h5       the light, with what it took (exitance stats $out/solution.h5); ParaView opens it as it is

@@ -127,6 +127,18 @@ void read_camera(const std::string& words, RenderArguments& arguments) {
     arguments.camera = camera;
 }
 
+/// "ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]", metres; spacing may be "auto".
+MeasuringPlane read_plane(std::string words) {
+    const std::string given = words;
+    if (const std::size_t at = words.find("auto"); at != std::string::npos) words.replace(at, 4, "0");
+    const std::vector<double> n = read_numbers("--grid", words);
+    const bool automatic = words != given;
+    if ((n.size() != 10 && n.size() != 11) || (automatic ? n[9] != 0 : !(n[9] > 0)))
+        throw CLI::ValidationError("--grid",
+                                   fmt::format("'{}' is not 'ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]'", given));
+    return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n.size() == 11 ? n[10] : 0};
+}
+
 /// "640x400"
 PictureSize read_size(const std::string& words) {
     std::string blank = words;
@@ -409,6 +421,39 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+void declare(CLI::App& app, ReportArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("-o,--output", arguments.output, "Page to write (.html), its numbers beside it (.json)")
+        ->type_name("FILE")
+        ->required();
+    app.add_option_function<std::vector<std::string>>(
+           "--grid",
+           [&arguments](const std::vector<std::string>& all) {
+               for (const std::string& words : all) arguments.planes.push_back(read_plane(words));
+           },
+           "Plane to measure on, 'ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]': a corner, two edges, the distance of "
+           "points (auto: that of EN 12464-1) and a strip to leave out, metres; light from where u x v points. May be "
+           "given again")
+        ->type_name("PLANE")
+        ->expected(1)
+        ->take_all();
+    app.add_option_function<std::vector<std::string>>(
+           "--camera",
+           [&arguments](const std::vector<std::string>& all) {
+               for (const std::string& words : all) read_camera(words, arguments.views.emplace_back());
+           },
+           "As of render; may be given again. Default: one that shows much, and up to three of the scene's")
+        ->type_name("CAMERA")
+        ->expected(1)
+        ->take_all();
+    app.add_option_function<std::string>(
+           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 960x600")
+        ->type_name("WxH");
+    add_choice(app, "--unit", report_unit_names, arguments.unit,
+               "watt (default): W/m^2, mean of the bands; lux: lx, where emitters are given in cd/m^2");
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, CheckArguments& arguments) {
     app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
     declare_faults(app, arguments.faults);
@@ -504,6 +549,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<RenderArguments>},
         {"bake", "Writes light maps: pictures of the light on every surface, and a model that shows them.",
          "exitance bake room.h5 -o lightmaps", parse_verb<BakeArguments>},
+        {"report", "Writes a page with pictures, tables, measuring planes, energy balance and error.",
+         "exitance report room.h5 -o room.html", parse_verb<ReportArguments>},
         {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
          parse_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",

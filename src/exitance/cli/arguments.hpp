@@ -11,6 +11,7 @@
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/solve/solve_options.hpp"
@@ -89,6 +90,15 @@ struct BakeArguments : CommonArguments {
     int threads = 0;
 };
 
+struct ReportArguments : CommonArguments {
+    std::string solution, output;
+    std::vector<RenderArguments> views;  ///< Of which the camera counts; empty: automatic ones.
+    std::vector<MeasuringPlane> planes;
+    PictureSize size{960, 600};
+    ReportUnit unit = ReportUnit::watt;
+    int threads = 0;
+};
+
 struct CheckArguments : CommonArguments {
     std::string scene, picture;
     Faults faults = Faults::repair;
@@ -107,8 +117,9 @@ struct ViewFactorArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
-                             RenderArguments, BakeArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
+using Command =
+    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
+                 BakeArguments, ReportArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/export/light_map_files.hpp"
@@ -10,8 +9,7 @@ namespace exitance {
 
 /// exitance bake SOLUTION -o FOLDER
 ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
-    StopRequest stop;
-    const SignalGuard signals(stop);
+    const StopRequest stop;  // signals end the program at once: nothing is written before all is there
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
@@ -20,7 +18,6 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     BakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
-    if (signals.received()) return *signals.received();
     terminal.progress().finish();
     if (!maps) return terminal.fail(maps.error());
     const Result<void> written = write_light_maps(*solution, *maps, arguments.format, arguments.output);
@@ -31,7 +28,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     terminal.note(fmt::format("{} texels on surfaces at {} per metre, in {} {} ({}); {:.1f} s", maps->texels,
                               maps->density, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps", sizes,
                               watch.seconds()));
-    return signals.received().value_or(ExitCode::done);
+    return ExitCode::done;
 }
 
 }  // namespace exitance

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 
+#include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -12,16 +12,10 @@
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/linear_image.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/reconstruct/pictures/automatic_camera.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
-
-std::string describe(const Camera& c) {
-    return fmt::format("{:.7g},{:.7g},{:.7g} {:.7g},{:.7g},{:.7g} {:.7g}", c.eye.x, c.eye.y, c.eye.z, c.target.x,
-                       c.target.y, c.target.z, c.fov);
-}
 
 /// What cannot be done, before the work begins.
 std::optional<Error> find_misuse(const RenderArguments& a) {
@@ -43,42 +37,6 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
     if (a.fov && a.projection != Projection::orthographic && !(*a.fov >= 1 && *a.fov <= most))
         return usage(fmt::format("angle {} is not from 1 to {} degrees", *a.fov, most), "--camera", "");
     return std::nullopt;
-}
-
-/// A camera that came with the scene.
-Result<Camera> find_camera(const RenderArguments& arguments, const Scene& scene) {
-    const std::vector<SceneCamera>& all = scene.cameras();
-    const std::string& name = arguments.camera_name;
-    auto found = std::find_if(all.begin(), all.end(), [&](const SceneCamera& c) { return c.name == name; });
-    std::size_t number = 0;
-    const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (found == all.end() && failed == std::errc() && end == name.data() + name.size() && number >= 1 &&
-        number <= all.size())
-        found = all.begin() + static_cast<std::ptrdiff_t>(number - 1);
-    if (found == all.end()) {
-        std::vector<std::string> names;
-        for (const SceneCamera& c : all) names.push_back(fmt::format("'{}'", c.name));
-        return Error{ErrorCode::usage, fmt::format("the scene has no camera '{}'", name), "--camera",
-                     all.empty() ? "no camera came with the scene: give 'ex,ey,ez tx,ty,tz fov'"
-                                 : fmt::format("it has {}", fmt::join(names, ", "))};
-    }
-    Camera camera{found->eye, found->target, found->fov, found->up, arguments.projection};
-    if (found->width > 0) camera.fov = found->width, camera.projection = Projection::orthographic;
-    return camera;
-}
-
-/// The camera asked for, with what was left open.
-Result<Camera> choose_camera(const RenderArguments& arguments, const RadiosityFunction& light) {
-    const Solution& solution = light.solution();
-    if (!arguments.camera_name.empty()) return find_camera(arguments, solution.scene);
-    if (!arguments.camera)
-        return automatic_camera(solution, light.stage().tracer, arguments.projection, arguments.size);
-    Camera camera = *arguments.camera;
-    camera.projection = arguments.projection;
-    if (camera.projection == Projection::fisheye) camera.fov = 180;
-    if (camera.projection == Projection::orthographic) camera.fov = solution.scene.size();
-    if (arguments.fov) camera.fov = *arguments.fov;
-    return camera;
 }
 
 /// The picture for people, and the words that go with it.

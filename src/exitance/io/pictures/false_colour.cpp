@@ -36,11 +36,6 @@ Rgb band_colour(std::size_t band, std::size_t count) {
     return viridis(count > 1 ? static_cast<double>(band) / static_cast<double>(count - 1) : 0.5);
 }
 
-double luminous_mean(const Spectrum& s) {
-    if constexpr (bands == 3) return 0.2126 * s[0] + 0.7152 * s[1] + 0.0722 * s[2];
-    return mean(s);
-}
-
 std::vector<double> linear_steps(double lo, double hi) {
     constexpr double wanted = 9;
     const double raw = (hi - lo) / wanted, power = std::pow(10, std::floor(std::log10(raw)));
@@ -77,6 +72,11 @@ std::string title(Quantity quantity) {
 }
 
 }  // namespace
+
+double luminous_mean(const Spectrum& s) {
+    if constexpr (bands == 3) return 0.2126 * s[0] + 0.7152 * s[1] + 0.0722 * s[2];
+    return mean(s);
+}
 
 double value_of(const Pixel& pixel, Quantity quantity) {
     switch (quantity) {

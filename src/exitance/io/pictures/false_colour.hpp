@@ -13,6 +13,9 @@ namespace exitance {
 /// are three).
 enum class Quantity { radiosity, irradiance, luminance, illuminance };
 
+/// The weighted mean of the bands.
+double luminous_mean(const Spectrum& s);
+
 double value_of(const Pixel& pixel, Quantity quantity);
 
 /// Round values in rising order between which one colour stands each: equal steps (1, 2 or 5 times a power of ten), or

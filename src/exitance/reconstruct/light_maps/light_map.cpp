@@ -6,8 +6,8 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/light_maps/texel_cover.hpp"
+#include "exitance/reconstruct/open_points.hpp"
 #include "exitance/reconstruct/pictures/tile_light.hpp"
-#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
@@ -31,40 +31,11 @@ std::vector<Tile> cut_into_tiles(std::span<const Chart> charts) {
     return tiles;
 }
 
-/// Says which points of a region see something of the world: neither covered by another surface nor inside a body.
-class OpenPoints {
-  public:
-    explicit OpenPoints(const Stage& stage) : stage_(stage) {}
-
-    bool is_open(const Point& x, RegionId region) const {
-        const Normal& n = stage_.scene.regions()[region].plane.n;
-        return !is_inside_body(x, n, region) && !stage_.occluders.is_covered(x, n, region);
-    }
-
-  private:
-    /// Inside a body rays to all sides end on backs, and the one straight up ends somewhere: bodies stand open where
-    /// they touch others, such as the legs of a table. In the open the first ray hardly ever meets a back.
-    bool is_inside_body(const Point& x, const Normal& n, RegionId region) const {
-        const Frame frame(n);
-        RayHit hit;
-        const auto trace = [&](double u, double v) {
-            const Vec3 direction = frame.to_world(u, v, 1);
-            stage_.tracer.nearest(std::span(&direction, 1), x, region, std::span(&hit, 1));
-            return !hit.surface.is_none();
-        };
-        for (const Vec2& way : {Vec2{1, 0.3}, Vec2{-0.3, 1}, Vec2{-1, -0.3}, Vec2{0.3, -1}})
-            if (!trace(way.x, way.y) || hit.front) return false;
-        return trace(0, 0);
-    }
-
-    const Stage& stage_;
-};
-
 /// Bakes one tile after the other. One a thread.
 class TileBaker {
   public:
     TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines)
-        : outlines_(outlines), open_(light.stage()), light_(light, texel_points, 0, 1) {}
+        : stage_(light.stage()), outlines_(outlines), light_(light, texel_points, 0, 1) {}
 
     void bake(const Tile& tile, const Chart& chart, LightMap& map) {
         cutter_.cut(outlines_[tile.chart], tile.rectangle, covers_, places_);
@@ -91,16 +62,17 @@ class TileBaker {
     /// Where the first four points agree, so do the others.
     void add_open_points(const Chart& chart, const TexelCover& cover) {
         constexpr std::size_t few = 4;
+        const Normal& n = stage_.scene.regions()[chart.region].plane.n;
         std::size_t found = 0;
         for (std::size_t k = 0; k < texel_points; ++k) {
             if (k == few && found == 0) return;
             const Point x = chart.at(places_[cover.first + k]);
-            if ((k >= few && found == k) || open_.is_open(x, chart.region)) points_.push_back(x), ++found;
+            if ((k >= few && found == k) || is_in_open(stage_, x, n, chart.region)) points_.push_back(x), ++found;
         }
     }
 
+    const Stage& stage_;
     std::span<const std::vector<TexelOutline>> outlines_;
-    OpenPoints open_;
     TileLight light_;
     TexelCutter cutter_;
     std::vector<TexelCover> covers_;

@@ -1,0 +1,121 @@
+#include "exitance/io/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exitance/cli/camera_choice.hpp"
+#include "exitance/cli/json_output.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/pictures/display.hpp"
+#include "exitance/io/pictures/isolux.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/reconstruct/surface_levels.hpp"
+
+namespace exitance {
+namespace {
+
+/// Default views: one that shows much, and what came with the scene.
+std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene& scene) {
+    constexpr std::size_t most_cameras = 3;
+    std::vector<RenderArguments> out = arguments.views;
+    if (out.empty()) {
+        out.emplace_back();
+        for (std::size_t i = 0; i < std::min(most_cameras, scene.cameras().size()); ++i)
+            out.emplace_back().camera_name = std::to_string(i + 1);
+    }
+    for (RenderArguments& view : out) view.size = arguments.size;
+    return out;
+}
+
+/// What a camera sees, as an eye would and in false colours.
+void add_pictures(const ReportArguments& arguments, const RadiosityFunction& light, const Camera& camera,
+                  ReportContent& content, Terminal& terminal, const StopRequest& stop) {
+    PictureOptions options{camera, arguments.size, 8};
+    const Picture picture = take_picture(light, options, terminal.progress(), stop);
+    ToneMap tones;
+    tones.curve = ToneCurve::filmic, tones.scale = automatic_exposure(picture);
+    content.pictures.push_back({fmt::format("Radiosity times {:.4g}, toned by a filmic curve", tones.scale),
+                                describe(camera), display_image(picture, tones)});
+    const bool lux = arguments.unit == ReportUnit::lux;
+    const Quantity quantity = lux ? Quantity::illuminance : Quantity::irradiance;
+    const ColourScale scale = make_colour_scale(picture, quantity);
+    Image image = false_colour_image(picture, quantity, scale);
+    if (lux) draw_isolux(image, picture, scale);
+    draw_legend(image, quantity, scale);
+    content.pictures.push_back(
+        {lux ? "Illuminance in lx" : "Irradiance in W/m^2, mean of the bands", describe(camera), std::move(image)});
+}
+
+/// The largest faces, and how many there are besides.
+std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) {
+    constexpr std::size_t most_rows = 1000;
+    std::vector<SurfaceId> faces;
+    for (SurfaceId s : scene.surfaces().ids()) faces.push_back(s);
+    std::stable_sort(faces.begin(), faces.end(),
+                     [&](SurfaceId a, SurfaceId b) { return scene.surfaces()[a].area > scene.surfaces()[b].area; });
+    left_out = faces.size() > most_rows ? faces.size() - most_rows : 0;
+    faces.resize(faces.size() - left_out);
+    return faces;
+}
+
+/// Light maps for the embedded viewer, where they are small enough for a page that is mailed.
+void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
+    constexpr double most_texels = 150000;
+    constexpr std::size_t most_faces = 20000;
+    const Scene& scene = light.solution().scene;
+    if (scene.surfaces().size() > most_faces) return;
+    double area = 0;
+    for (const Region& region : scene.regions()) area += region.area;
+    BakeOptions options;
+    options.density = std::min(64.0, std::sqrt(most_texels / area));
+    Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
+    if (maps) content.viewer = std::move(*maps);
+}
+
+std::optional<Error> find_misuse(const ReportArguments& arguments) {
+    const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
+    if (page) return std::nullopt;
+    return Error{ErrorCode::usage, "reports are written as .html", arguments.output, "name the output something.html"};
+}
+
+}  // namespace
+
+/// exitance report SOLUTION -o PAGE
+ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
+    if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
+    ReportContent content;
+    for (const MeasuringPlane& plane : arguments.planes) {
+        Result<GridLight> grid = make_grid(plane);
+        if (!grid) return terminal.fail(grid.error());
+        content.grids.push_back(std::move(*grid));
+    }
+    const StopRequest stop;  // signals end the program at once: nothing is written before all is there
+    set_threads(arguments.threads);
+    const Result<Solution> solution = load_solution(arguments.solution);
+    if (!solution) return terminal.fail(solution.error());
+    const RadiosityFunction light(*solution);
+    content.solution = &*solution, content.unit = arguments.unit;
+    content.statistics = statistics_json(solution->statistics);
+    std::vector<Camera> cameras;
+    for (const RenderArguments& view : views(arguments, solution->scene)) {
+        Result<Camera> camera = choose_camera(view, light);
+        if (!camera) return terminal.fail(camera.error());
+        cameras.push_back(*camera);
+    }
+    content.view = cameras.front();
+    for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
+    for (GridLight& grid : content.grids) measure(light, grid, terminal.progress(), stop);
+    constexpr std::size_t surface_points = 50000, error_points = 400;
+    constexpr unsigned error_rays = 2048;
+    const std::vector<SurfaceId> faces = largest_faces(solution->scene, content.surfaces_left_out);
+    content.surfaces = measure_surfaces(light, faces, surface_points, terminal.progress(), stop);
+    content.error = find_error_percentile(light, error_points, error_rays, terminal.progress(), stop);
+    add_viewer(light, content, terminal, stop);
+    terminal.progress().finish();
+    const Result<void> written = write_report(content, arguments.output);
+    return written ? ExitCode::done : terminal.fail(written.error());
+}
+
+}  // namespace exitance

@@ -1,0 +1,171 @@
+#include "exitance/io/report/report_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/io/export/glb_nodes.hpp"
+#include "exitance/io/files/base64.hpp"
+#include "exitance/io/pictures/tone_map.hpp"
+
+namespace exitance {
+namespace {
+
+ReportFigures::Face face_figures(const ReportContent& content, const SurfacePoints& points) {
+    const Scene& scene = content.solution->scene;
+    const Surface& surface = scene.surfaces()[points.surface];
+    ReportFigures::Face face;
+    face.surface = points.surface, face.line = surface.line, face.area = surface.area;
+    face.group = scene.groups()[surface.group], face.material = scene.material(points.surface).name;
+    std::vector<double> values;
+    for (const Light& light : points.light) {
+        values.push_back(in_unit(light.irradiance, content.unit));
+        face.radiosity += in_unit(light.radiosity, content.unit) / static_cast<double>(points.light.size());
+    }
+    face.irradiance = levels_of(values);
+    return face;
+}
+
+std::vector<ReportFigures::MaterialUse> material_figures(const Scene& scene,
+                                                         const std::vector<ReportFigures::Face>& faces) {
+    std::vector<ReportFigures::MaterialUse> materials;
+    for (const Material& m : scene.materials())
+        materials.push_back(
+            {m.name, red_green_blue(m.reflectance), red_green_blue(radiance_of_exitance(m.exitance)), 0, 0, 0});
+    for (const Surface& surface : scene.surfaces()) {
+        ReportFigures::MaterialUse& use = materials[surface.material.value];
+        ++use.faces, use.area += surface.area;
+    }
+    std::vector<double> measured(materials.size());
+    for (const ReportFigures::Face& face : faces) {
+        const std::uint32_t m = scene.surfaces()[face.surface].material.value;
+        if (face.irradiance.count == 0) continue;
+        materials[m].irradiance += face.area * face.irradiance.mean, measured[m] += face.area;
+    }
+    for (std::size_t m = 0; m < materials.size(); ++m)
+        if (measured[m] > 0) materials[m].irradiance /= measured[m];
+    std::erase_if(materials, [](const ReportFigures::MaterialUse& use) { return use.faces == 0; });
+    return materials;
+}
+
+std::string numbers(std::span<const double> values) {
+    std::string text;
+    for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ", ", figure(value));
+    return fmt::format("[{}]", text);
+}
+
+std::string point(const Vec3& p) {
+    return numbers(std::array<double, 3>{p.x, p.y, p.z});
+}
+
+std::string levels(const Levels& l) {
+    if (l.count == 0) return R"("mean": null, "minimum": null, "maximum": null, "uniformity": null)";
+    return fmt::format(R"("mean": {}, "minimum": {}, "maximum": {}, "uniformity": {})", figure(l.mean), figure(l.least),
+                       figure(l.most), figure(l.uniformity()));
+}
+
+std::string grid_json(const ReportFigures::Grid& grid) {
+    const GridLight& light = *grid.light;
+    std::string points, values;
+    for (std::size_t i = 0; i < light.points.size(); ++i) {
+        points += fmt::format("{}{}", i > 0 ? ", " : "", point(light.points[i]));
+        values += fmt::format("{}{}", i > 0 ? ", " : "", light.is_open[i] ? figure(grid.values[i]) : "null");
+    }
+    return fmt::format(
+        "{{\"origin\": {}, \"u\": {}, \"v\": {}, \"normal\": {}, \"margin\": {}, \"columns\": {}, \"rows\": {}, "
+        "\"spacing\": [{}, {}], {}, \"diversity\": {}, \"hidden\": {},\n     \"points\": [{}],\n     \"values\": "
+        "[{}]}}",
+        point(light.plane.origin), point(light.plane.u), point(light.plane.v), point(light.n),
+        figure(light.plane.margin), light.columns, light.rows, figure(light.step_u), figure(light.step_v),
+        levels(grid.levels), figure(grid.levels.diversity()), grid.hidden, points, values);
+}
+
+std::string face_json(const ReportFigures::Face& face) {
+    return fmt::format(
+        "{{\"surface\": {}, \"line\": {}, \"group\": {}, \"material\": {}, \"area\": {}, \"irradiance\": {{{}}}, "
+        "\"radiosity\": {}, \"points\": {}}}",
+        face.surface.value, face.line, json_text(face.group), json_text(face.material), figure(face.area),
+        levels(face.irradiance), face.irradiance.count > 0 ? figure(face.radiosity) : "null", face.irradiance.count);
+}
+
+/// Items of a JSON array, one a line.
+template <class Items, class Text>
+std::string list(const Items& items, const Text& text) {
+    std::string out;
+    for (const auto& item : items) out += fmt::format("{}\n    {}", out.empty() ? "" : ",", text(item));
+    return out.empty() ? "[]" : fmt::format("[{}\n  ]", out);
+}
+
+}  // namespace
+
+double in_unit(const Spectrum& light, ReportUnit unit) {
+    return unit == ReportUnit::lux ? luminous_mean(light) : mean(light);
+}
+
+const char* symbol(ReportUnit unit) {
+    return unit == ReportUnit::lux ? "lx" : "W/m\xc2\xb2";
+}
+
+std::string figure(double value) {
+    return std::isfinite(value) ? fmt::format("{:.5g}", value) : "null";
+}
+
+Result<std::string> data_address(const Image& image) {
+    const Result<std::string> png = encode_png(image, {});
+    if (!png) return png.error();
+    return fmt::format("data:image/png;base64,{}", base64(std::as_bytes(std::span(*png))));
+}
+
+ReportFigures find_figures(const ReportContent& content) {
+    ReportFigures out;
+    for (const SurfacePoints& points : content.surfaces) out.faces.push_back(face_figures(content, points));
+    out.materials = material_figures(content.solution->scene, out.faces);
+    for (const GridLight& light : content.grids) {
+        ReportFigures::Grid grid{&light, {}, {}, 0};
+        std::vector<double> open;
+        for (std::size_t i = 0; i < light.points.size(); ++i) {
+            grid.values.push_back(in_unit(light.irradiance[i], content.unit));
+            if (light.is_open[i]) open.push_back(grid.values.back());
+        }
+        grid.levels = levels_of(open);
+        grid.hidden = light.points.size() - open.size();
+        out.grids.push_back(std::move(grid));
+    }
+    for (const Surface& surface : content.solution->scene.surfaces()) out.area += surface.area;
+    return out;
+}
+
+std::string report_json(const ReportContent& content, const ReportFigures& figures) {
+    const Scene& scene = content.solution->scene;
+    const bool lux = content.unit == ReportUnit::lux;
+    const Vec3 size = scene.box().size();
+    return fmt::format(
+        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"unit\": \"{}\",\n"
+        "  \"scene\": {{\"file\": {}, \"surfaces\": {}, \"area\": {}, \"size\": {}, \"emitters\": {}, \"lights\": "
+        "{}}},\n"
+        "  \"error\": {{\"median\": {}, \"error_p99\": {}, \"check_noise\": {}, \"check_points\": {}}},\n"
+        "  \"pictures\": {},\n  \"grids\": {},\n  \"materials\": {},\n  \"surfaces\": {},\n"
+        "  \"surfaces_left_out\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
+        EXITANCE_VERSION, lux ? "lx" : "W/m^2", json_text(scene.file()), scene.surfaces().size(), figure(figures.area),
+        point(size), scene.emitters().size(), scene.lights().size(), figure(content.error.median),
+        figure(content.error.p99), figure(content.error.noise), content.error.points,
+        list(content.pictures,
+             [](const ReportPicture& p) {
+                 return fmt::format("{{\"caption\": {}, \"camera\": {}}}", json_text(p.caption), json_text(p.camera));
+             }),
+        list(figures.grids, grid_json),
+        list(figures.materials,
+             [](const ReportFigures::MaterialUse& m) {
+                 return fmt::format(
+                     "{{\"name\": {}, \"reflectance\": {}, \"radiance\": {}, \"surfaces\": {}, \"area\": {}, "
+                     "\"irradiance\": {}}}",
+                     json_text(m.name), numbers(m.reflectance), numbers(m.radiance), m.faces, figure(m.area),
+                     figure(m.irradiance));
+             }),
+        list(figures.faces, face_json), content.surfaces_left_out,
+        content.statistics.empty() ? "null" : content.statistics,
+        content.solution->options.empty() ? "null" : content.solution->options);
+}
+
+}  // namespace exitance

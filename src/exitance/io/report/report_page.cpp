@@ -1,0 +1,267 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/report/report_figures.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr const char* style = R"css(
+:root { color-scheme: light; }
+body { font: 15px/1.5 system-ui, sans-serif; color: #1b1b1f; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; border-bottom: 1px solid #ccc; }
+img, canvas, svg.plan { width: 100%; height: auto; display: block; background: #141418; }
+figure { margin: 1rem 0; break-inside: avoid; } figcaption, .note { color: #555; font-size: .85rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .85rem; margin: .6rem 0; }
+th, td { padding: .15rem .7rem .15rem 0; text-align: right; vertical-align: top; border-bottom: 1px solid #eee; }
+th { border-bottom: 1px solid #999; } td.text, th.text { text-align: left; overflow-wrap: anywhere; }
+.facts td { text-align: left; overflow-wrap: anywhere; } .facts td:first-child { color: #555; white-space: nowrap; }
+.warning { border-left: .3rem solid #c77700; padding-left: .6rem; margin: .3rem 0; }
+.legend { font-size: .85rem; } .legend span { white-space: nowrap; margin-right: .8rem; }
+.legend i { display: inline-block; width: 1rem; height: .8rem; margin-right: .3rem; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+.plan .line { fill: none; stroke: #fff; stroke-width: 1.5; } .plan text { font: 11px sans-serif; text-anchor: middle; fill: #fff; paint-order: stroke; stroke: #000; stroke-width: 2px; }
+.plan .level { font-weight: bold; font-size: 13px; }
+.wide { overflow-x: auto; } details { margin: .6rem 0; }
+@media print { body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
+)css";
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '&')
+            out += "&amp;";
+        else if (c == '"')
+            out += "&quot;";
+        else if (static_cast<unsigned char>(c) < 0x20)
+            out += ' ';
+        else
+            out += c;
+    }
+    return out;
+}
+
+std::string percent(double share) {
+    return fmt::format("{:.3g}%", 100 * share);
+}
+
+std::string fact(const std::string& name, const std::string& value) {
+    return "<tr><td>" + name + "</td><td>" + value + "</td></tr>\n";
+}
+
+std::string section(const char* id, const std::string& title, const std::string& body) {
+    return body.empty() ? "" : fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", id, title, body);
+}
+
+std::string overview(const ReportContent& content, const ReportFigures& figures) {
+    const Scene& scene = content.solution->scene;
+    const SolveStatistics& s = content.solution->statistics;
+    const Vec3 size = scene.box().size();
+    std::string rows = fact("Scene", escaped(scene.file()));
+    rows += fact("Size", fmt::format("{} x {} x {} m, {} m² in {} surfaces", figure(size.x), figure(size.y),
+                                     figure(size.z), figure(figures.area), scene.surfaces().size()));
+    rows += fact("Light", fmt::format("{} emitting surfaces, {} lights without extent", scene.emitters().size(),
+                                      scene.lights().size()));
+    rows += fact("Error", s.relative_error_estimate
+                              ? fmt::format("{} (relative RMS, estimated)", percent(*s.relative_error_estimate))
+                              : "not known");
+    rows += fact("Numbers", content.unit == ReportUnit::lux
+                                ? "illuminance in lx, radiosity in lm/m² (weighted means of the bands)"
+                                : "irradiance and radiosity in W/m² (means of the bands)");
+    return "<table class=\"facts\">\n" + rows + "</table>\n";
+}
+
+Result<std::string> pictures(const ReportContent& content) {
+    std::string html;
+    for (const ReportPicture& picture : content.pictures) {
+        const Result<std::string> address = data_address(picture.image);
+        if (!address) return address.error();
+        html += fmt::format(
+            "<figure><img src=\"{}\" alt=\"{}\" width=\"{}\" height=\"{}\"><figcaption>{}<br>--camera '{}'</figcaption>"
+            "</figure>\n",
+            *address, escaped(picture.caption), picture.image.width, picture.image.height, escaped(picture.caption),
+            escaped(picture.camera));
+    }
+    return html;
+}
+
+std::string place(const Vec3& p) {
+    return fmt::format("({}, {}, {})", figure(p.x), figure(p.y), figure(p.z));
+}
+
+std::string grid_table(const ReportFigures::Grid& grid) {
+    const GridLight& light = *grid.light;
+    std::string html = "<details><summary>All points</summary><div class=\"wide\"><table>\n";
+    for (int row = light.rows - 1; row >= 0; --row) {
+        html += "<tr>";
+        for (int column = 0; column < light.columns; ++column) {
+            const auto i = static_cast<std::size_t>(row * light.columns + column);
+            html += "<td>" + (light.is_open[i] ? figure(grid.values[i]) : std::string("-")) + "</td>";
+        }
+        html += "</tr>\n";
+    }
+    return html + "</table></div></details>\n";
+}
+
+std::string grids(const ReportContent& content, const ReportFigures& figures) {
+    std::string html;
+    for (std::size_t i = 0; i < figures.grids.size(); ++i) {
+        const ReportFigures::Grid& grid = figures.grids[i];
+        const GridLight& light = *grid.light;
+        html += fmt::format("<h3>Plane {}</h3>\n<table class=\"facts\">\n", i + 1);
+        html += fact("Where", fmt::format("from {} along {} and {} m, seen from {}", place(light.plane.origin),
+                                          place(light.plane.u), place(light.plane.v), place(light.n)));
+        html += fact(
+            "Points",
+            fmt::format(
+                "{} x {}, {} and {} m apart, {} m from the edges{}", light.columns, light.rows, figure(light.step_u),
+                figure(light.step_v), figure(light.plane.margin),
+                grid.hidden > 0 ? fmt::format("; {} of them below or within something, left out", grid.hidden) : ""));
+        const char* unit = symbol(content.unit);
+        html += fact("Mean", figure(grid.levels.mean) + " " + unit);
+        html += fact("Minimum", figure(grid.levels.least) + " " + unit);
+        html += fact("Maximum", figure(grid.levels.most) + " " + unit);
+        html += fact("Uniformity", figure(grid.levels.uniformity()) + " (minimum / mean)");
+        html += fact("Diversity", figure(grid.levels.diversity()) + " (minimum / maximum)");
+        html += "</table>\n<figure>" + grid_plan(grid, content.unit) +
+                "<figcaption>u runs to the right, v upwards.</figcaption></figure>\n" + grid_table(grid);
+    }
+    return html;
+}
+
+std::string materials(const ReportContent& content, const ReportFigures& figures) {
+    std::string html = fmt::format(
+        "<div class=\"wide\"><table>\n<thead><tr><th class=\"text\">Material</th><th>Reflectance R, G, "
+        "B</th><th>Radiance R, "
+        "G, B</th><th>Surfaces</th><th>Area m²</th><th>Mean irradiance {}</th></tr></thead>\n",
+        symbol(content.unit));
+    for (const ReportFigures::MaterialUse& m : figures.materials)
+        html += fmt::format(
+            "<tr><td class=\"text\">{}</td><td>{} {} {}</td><td>{} {} {}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            escaped(m.name), figure(m.reflectance[0]), figure(m.reflectance[1]), figure(m.reflectance[2]),
+            figure(m.radiance[0]), figure(m.radiance[1]), figure(m.radiance[2]), m.faces, figure(m.area),
+            figure(m.irradiance));
+    return html + "</table></div>\n";
+}
+
+std::string surfaces(const ReportContent& content, const ReportFigures& figures) {
+    std::string html = fmt::format(
+        "<div class=\"wide\"><table>\n<thead><tr><th>Surface</th><th>Line</th><th class=\"text\">Group</th><th "
+        "class=\"text\""
+        ">Material</th><th>Area m²</th><th>Mean "
+        "{0}</th><th>Minimum</th><th>Maximum</th><th>Uniformity</th><th>Radiosity "
+        "{0}</th></tr></thead>\n",
+        symbol(content.unit));
+    for (const ReportFigures::Face& face : figures.faces) {
+        const Levels& l = face.irradiance;
+        const std::string light =
+            l.count == 0 ? "<td colspan=\"5\" class=\"text\">covered</td>"
+                         : fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>", figure(l.mean),
+                                       figure(l.least), figure(l.most), figure(l.uniformity()), figure(face.radiosity));
+        html += fmt::format(
+            "<tr><td>{}</td><td>{}</td><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{}</td>{}</tr>\n",
+            face.surface.value, face.line, escaped(face.group), escaped(face.material), figure(face.area), light);
+    }
+    html +=
+        "</table></div>\n<p class=\"note\">Light of the full function at 16 to 1024 points of a surface, those that "
+        "lie "
+        "in the open. Uniformity is the minimum over the mean.</p>\n";
+    if (content.surfaces_left_out > 0)
+        html += fmt::format("<p class=\"note\">{} smaller surfaces are left out.</p>\n", content.surfaces_left_out);
+    return html;
+}
+
+std::string error_part(const ReportContent& content) {
+    const SolveStatistics& s = content.solution->statistics;
+    const auto known = [](const std::optional<double>& error) { return error ? percent(*error) : "not known"; };
+    std::string rows =
+        fact("Estimate", known(s.relative_error_estimate) + " of the light, relative RMS over all surfaces");
+    rows += fact("Bound", known(s.relative_error_bound) + " at most, at 95% confidence");
+    rows += fact("Of what export writes", known(s.relative_error_estimate_interpolant));
+    if (content.error.points > 0)
+        rows +=
+            fact("99th percentile",
+                 fmt::format("{} of the mean irradiance: at 99 of 100 places it is off by less (median {}; {} places "
+                             "checked by rays of their own, whose noise of {} is part of these figures)",
+                             percent(content.error.p99), percent(content.error.median), content.error.points,
+                             percent(content.error.noise)));
+    return "<table class=\"facts\">\n" + rows + "</table>\n";
+}
+
+std::string energy_part(const EnergyBalance& energy) {
+    std::string rows = fact("Emitted", figure(energy.emitted) + " W (all bands)");
+    rows += fact("Absorbed", figure(energy.absorbed) + " W");
+    rows += fact("Difference", percent(energy.defect) +
+                                   " of what is emitted: what the solution is off, and what escapes "
+                                   "where the scene is open");
+    return "<table class=\"facts\">\n" + rows + "</table>\n";
+}
+
+std::string method_part(const ReportContent& content) {
+    const SolveStatistics& s = content.solution->statistics;
+    std::string rows = fact("Method", escaped(s.basis.empty() ? s.method : s.method + ", " + s.basis + " basis"));
+    rows += fact("Reached", s.converged ? "yes" : "no" + (s.stopped_by.empty() ? "" : ", stopped by " + s.stopped_by));
+    rows += fact("Elements", fmt::format("{}, {} of them leaves", s.elements, s.leaf_elements));
+    rows += fact("Transport", fmt::format("{} links, {} form factors, {} rays", s.links, s.form_factors, s.rays));
+    rows += fact("Solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
+    std::string parts;
+    for (const auto& [phase, seconds] : s.seconds)
+        if (phase != "total") parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", phase, seconds);
+    const auto total = s.seconds.find("total");
+    rows += fact("Time", fmt::format("{:.3g} s on {} threads ({})", total == s.seconds.end() ? 0 : total->second,
+                                     s.threads, escaped(parts)));
+    rows += fact("Memory", fmt::format("{:.3g} MB at most", static_cast<double>(s.peak_memory_bytes) / 1e6));
+    rows += fact("Options", "<code>" + escaped(content.solution->options) + "</code>");
+    return "<table class=\"facts\">\n" + rows + "</table>\n";
+}
+
+std::string warnings(const SolveStatistics& s) {
+    std::string html;
+    for (const std::string& warning : s.warnings) html += "<p class=\"warning\">" + escaped(warning) + "</p>\n";
+    return html.empty() ? "<p>None.</p>\n" : html;
+}
+
+/// JSON within a page: nothing in it may look like the end of its element.
+std::string embedded(std::string json) {
+    for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.replace(at, 2, "<\\/");
+    return json;
+}
+
+}  // namespace
+
+Result<void> write_report(const ReportContent& content, const std::string& path) {
+    const ReportFigures figures = find_figures(content);
+    const Result<std::string> shown = pictures(content), viewer = report_viewer(content);
+    if (!shown) return shown.error();
+    if (!viewer) return viewer.error();
+    const std::string json = report_json(content, figures);
+    const std::string name = std::filesystem::path(content.solution->scene.file()).filename().string();
+    const SolveStatistics& s = content.solution->statistics;
+    const std::string page =
+        fmt::format(
+            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+            "content=\"width=device-width\">\n<title>Light in {0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
+            "<h1>Light in {0}</h1>\n",
+            escaped(name), style) +
+        overview(content, figures) + section("pictures", "Pictures", *shown) +
+        (viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>") +
+        section("grids", "Measuring planes", grids(content, figures)) +
+        section("materials", "Materials", materials(content, figures)) +
+        section("surfaces", "Surfaces", surfaces(content, figures)) +
+        section("energy", "Energy balance", energy_part(s.energy)) + section("error", "Error", error_part(content)) +
+        section("method", "Method and what it took", method_part(content)) +
+        section("warnings", "Warnings", warnings(s)) +
+        fmt::format("<p class=\"note\">Made by exitance {}.</p>\n<script type=\"application/json\" id=\"numbers\">\n",
+                    EXITANCE_VERSION) +
+        embedded(json) + "</script>\n</body>\n</html>\n";
+    const std::string twin = std::filesystem::path(path).replace_extension(".json").string();
+    if (const Result<void> written = write_file(twin, json); !written) return written;
+    return write_file(path, page);
+}
+
+}  // namespace exitance

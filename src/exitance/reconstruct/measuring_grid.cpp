@@ -1,0 +1,82 @@
+#include "exitance/reconstruct/measuring_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/reconstruct/open_points.hpp"
+
+namespace exitance {
+
+double en_12464_spacing(double length, double width) {
+    const double longer = std::max(length, width), shorter = std::min(length, width);
+    const double d = longer >= 2 * shorter ? shorter : longer;
+    return std::min(10.0, 0.2 * std::pow(5, std::log10(d)));
+}
+
+Result<GridLight> make_grid(const MeasuringPlane& plane) {
+    constexpr double most_points = 100000;
+    const auto refuse = [](const std::string& message, const std::string& hint) {
+        return Error{ErrorCode::usage, message, "--grid", hint};
+    };
+    const double length = norm(plane.u), width = norm(plane.v);
+    const Vec3 normal = cross(plane.u, plane.v);
+    if (!(norm(normal) > 1e-9 * length * width) || !is_finite(plane.origin))
+        return refuse("the plane has no area", "give two edges that are not parallel, metres");
+    if (!(plane.margin >= 0 && 2 * plane.margin < std::min(length, width)))
+        return refuse("a margin of " + std::to_string(plane.margin) + " m leaves nothing of the plane",
+                      "choose less than half of its width");
+    GridLight grid;
+    grid.plane = plane, grid.n = normalized(normal);
+    const double inner_u = length - 2 * plane.margin, inner_v = width - 2 * plane.margin;
+    const double spacing = plane.spacing > 0 ? plane.spacing : en_12464_spacing(inner_u, inner_v);
+    constexpr double rounding = 1e-9;
+    const double columns = std::max(1.0, std::ceil(inner_u / spacing - rounding));
+    const double rows = std::max(1.0, std::ceil(inner_v / spacing - rounding));
+    if (!(columns * rows <= most_points))
+        return refuse("the grid has more than 100000 points", "choose a larger spacing");
+    grid.columns = static_cast<int>(columns), grid.rows = static_cast<int>(rows);
+    grid.step_u = inner_u / columns, grid.step_v = inner_v / rows;
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column)
+            grid.points.push_back(plane.origin + (plane.margin + (column + 0.5) * grid.step_u) / length * plane.u +
+                                  (plane.margin + (row + 0.5) * grid.step_v) / width * plane.v);
+    grid.irradiance.resize(grid.points.size());
+    grid.is_open.resize(grid.points.size());
+    return grid;
+}
+
+void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress, const StopRequest& stop) {
+    progress.phase("measure");
+    const std::size_t count = grid.points.size();
+    std::vector<std::uint8_t> open(count);
+    const Locator locator(light.solution().scene);
+    parallel_for(count, 32, [&](std::size_t i) {
+        const SurfaceId s = locator.find(grid.points[i], grid.n);
+        const RegionId region = s.is_none() ? RegionId() : light.solution().scene.surfaces()[s].region;
+        open[i] = is_in_open(light.stage(), grid.points[i], grid.n, region);
+    });
+    std::copy(open.begin(), open.end(), grid.is_open.begin());
+    std::vector<ProbePoint> points;
+    constexpr std::size_t slice = 2048;
+    for (std::size_t first = 0; first < count && !stop.requested(); first += slice) {
+        progress.advance(static_cast<double>(first) / static_cast<double>(count));
+        points.clear();
+        for (std::size_t i = first; i < std::min(first + slice, count); ++i) points.push_back({grid.points[i], grid.n});
+        const std::vector<Light> found = light.at(points);
+        for (std::size_t i = 0; i < found.size(); ++i) grid.irradiance[first + i] = found[i].irradiance;
+    }
+}
+
+Levels levels_of(std::span<const double> values) {
+    Levels out;
+    out.count = values.size();
+    if (values.empty()) return out;
+    out.least = *std::min_element(values.begin(), values.end());
+    out.most = *std::max_element(values.begin(), values.end());
+    for (const double value : values) out.mean += value / static_cast<double>(values.size());
+    return out;
+}
+
+}  // namespace exitance
