@@ -33,6 +33,8 @@ const std::vector<std::string> statistics_keys{"method",
                                                "relative_error_estimate",
                                                "relative_error_bound",
                                                "relative_error_estimate_interpolant",
+                                               "relative_error_estimate_worst_room",
+                                               "rooms",
                                                "standard_error",
                                                "energy",
                                                "seconds",
@@ -53,7 +55,7 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     ASSERT_EQ(run.status, 0) << run.err;
     const Json json = Json::parse(run.out);
     EXPECT_EQ(keys(json), statistics_keys);
-    EXPECT_EQ(keys(json["energy"]), (std::vector<std::string>{"emitted", "absorbed", "defect"}));
+    EXPECT_EQ(keys(json["energy"]), (std::vector<std::string>{"emitted", "absorbed", "escaped", "defect"}));
     EXPECT_EQ(keys(json["seconds"]),
               (std::vector<std::string>{"total", "read", "mesh", "link", "solve", "certify", "reconstruct", "write"}));
     EXPECT_EQ(json["surfaces"], 7);

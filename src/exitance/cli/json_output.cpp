@@ -54,6 +54,9 @@ std::string statistics_json(const SolveStatistics& s) {
         const auto at = s.seconds.find(phase);
         seconds[phase] = at == s.seconds.end() ? 0.0 : at->second;
     }
+    Json rooms = Json::array();
+    for (const RoomError& room : s.rooms)
+        rooms.push_back({{"area", room.area}, {"mean", room.mean}, {"error", room.error}});
     const std::size_t elements =
         std::accumulate(s.elements_by_level.begin(), s.elements_by_level.end(), std::size_t(0));
     const auto share = [](std::size_t whole, std::size_t parts) {
@@ -76,8 +79,14 @@ std::string statistics_json(const SolveStatistics& s) {
         {"relative_error_estimate", value_or_null(s.relative_error_estimate)},
         {"relative_error_bound", value_or_null(s.relative_error_bound)},
         {"relative_error_estimate_interpolant", value_or_null(s.relative_error_estimate_interpolant)},
+        {"relative_error_estimate_worst_room", value_or_null(s.relative_error_estimate_worst_room)},
+        {"rooms", rooms},
         {"standard_error", s.standard_error > 0 ? Json(s.standard_error) : Json(nullptr)},
-        {"energy", {{"emitted", s.energy.emitted}, {"absorbed", s.energy.absorbed}, {"defect", s.energy.defect}}},
+        {"energy",
+         {{"emitted", s.energy.emitted},
+          {"absorbed", s.energy.absorbed},
+          {"escaped", s.energy.escaped},
+          {"defect", s.energy.defect}}},
         {"seconds", seconds},
         {"peak_memory_bytes", s.peak_memory_bytes},
         {"link_memory_bytes", s.link_memory_bytes},

@@ -20,6 +20,16 @@ std::string seconds_line(const std::map<std::string, double>& seconds) {
                        parts.empty() ? "" : " (" + parts + ")");
 }
 
+/// The largest rooms.
+std::string rooms_line(const std::vector<RoomError>& rooms) {
+    constexpr std::size_t most = 4;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, rooms.size()); ++i)
+        text += fmt::format("{}{:.4g} m^2: {:.3g} W/m^2, error {}", i > 0 ? "; " : "", rooms[i].area, rooms[i].mean,
+                            percent(rooms[i].error));
+    return rooms.size() > most ? text + fmt::format("; and {} more", rooms.size() - most) : text;
+}
+
 }  // namespace
 
 std::string percent(double share) {
@@ -46,6 +56,7 @@ std::string summary(const SolveStatistics& s) {
                                     percent(*s.relative_error_estimate), known(s.relative_error_bound),
                                     known(s.relative_error_estimate_interpolant))
                       : "not known: the run was stopped before its first estimate");
+    if (s.rooms.size() > 1) line("rooms", rooms_line(s.rooms));
     line("reached", s.converged ? "yes" : s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by));
     line("elements", fmt::format("{} ({} leaves) on {} surfaces", s.elements, s.leaf_elements, s.surfaces));
     line("transport", fmt::format("{} links ({}), {} form factors, {} rays", s.links, bytes(s.link_memory_bytes),
@@ -61,7 +72,8 @@ std::string summary(const SolveStatistics& s) {
     line("solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
     if (s.standard_error > 0)
         line("noise", fmt::format("standard error {} of the light that the method found", percent(s.standard_error)));
-    line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {} apart", s.energy.emitted, s.energy.absorbed,
+    line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {}{} apart", s.energy.emitted, s.energy.absorbed,
+                               s.energy.escaped > 0 ? fmt::format("{:.4g} escaped, ", s.energy.escaped) : "",
                                percent(s.energy.defect)));
     line("time", fmt::format("{} on {} thread{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s"));
     line("memory", bytes(s.peak_memory_bytes) + " at most");

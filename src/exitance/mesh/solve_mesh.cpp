@@ -165,15 +165,16 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
 }
 
 ElementTree make_mesh(const std::vector<Piece>& pieces, const std::vector<ConcaveBorders>& concave, MeshSize size,
-                      const Field<RegionId, std::uint8_t>& whole) {
+                      const Field<RegionId, std::uint8_t>& whole, const std::vector<double>& finer) {
     ElementTree tree;
     for (const auto& [region, patch] : pieces) tree.add_root(region, patch);
-    Cutter cutter(tree, size);
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         if (whole.size() > 0 && whole[pieces[k].region]) continue;
         std::array<bool, 4> touches{};
         std::copy(concave[k].begin(), concave[k].end(), touches.begin());
-        cutter.refine(tree.roots()[k], touches);
+        MeshSize own = size;
+        if (!finer.empty()) own.edge /= finer[k];
+        Cutter(tree, own).refine(tree.roots()[k], touches);
     }
     return tree;
 }

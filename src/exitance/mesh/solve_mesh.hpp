@@ -28,9 +28,10 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
 
 /// Cuts every piece until `size` is met. Strips along concave edges stay long: parallelograms are cut across one
 /// direction at a time, triangles along lines parallel to the edge, into cells; triangles without such an edge are cut
-/// into four. Roots stand in the order of the pieces. Pieces of the regions marked in `whole`, if any, are not cut.
+/// into four. Roots stand in the order of the pieces. Pieces of the regions marked in `whole`, if any, are not cut;
+/// `finer`, if any, divides the longest edge of each piece's elements.
 ElementTree make_mesh(const std::vector<Piece>& pieces, const std::vector<ConcaveBorders>& concave, MeshSize size,
-                      const Field<RegionId, std::uint8_t>& whole = {});
+                      const Field<RegionId, std::uint8_t>& whole = {}, const std::vector<double>& finer = {});
 
 /// About how many elements make_mesh would make, without making them.
 std::size_t predict_elements(const std::vector<Piece>& pieces, double edge);

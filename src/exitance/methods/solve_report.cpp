@@ -33,6 +33,7 @@ void record_certificate(const Certificate& certificate, const GlobalLight& light
     if (certificate.points == 0) return;  // nothing reflects, or so little was found that nothing can be told
     statistics.relative_error_estimate = certificate.estimate;
     statistics.relative_error_bound = certificate.bound;
+    statistics.relative_error_estimate_worst_room = certificate.worst_room;
 }
 
 std::string describe(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,

@@ -72,6 +72,7 @@ class Solver {
         const double error = deadline ? std::max(coarse, options.error_target()) : options.error_target();
         stage_.leave_out(find_unlit_sides(stage_, options.seed, stop));
         const std::vector<Piece> lit = stage_.lit_pieces();
+        stage_.rooms = find_light_rooms(stage_, options.seed, stop);
         knobs_ = knobs_for_error(error, lit, options);
         sums_ = ElementGather::suits(stage_);
         if (sums_) knobs_ = knobs_for_sums(knobs_, error, lit, options);
@@ -90,7 +91,7 @@ class Solver {
             project_direct();
             statistics().elements = direct_.tree.size();
             statistics().leaf_elements = direct_.tree.leaves().size();
-            statistics().relative_error_estimate = statistics().relative_error_bound = 0;  // direct light is exact
+            tell_exact();
         }
         if (light_ && !light_->kept_links.empty())
             solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
@@ -119,7 +120,7 @@ class Solver {
     template <class Archive>
     void archive_state(Archive& a, std::string& phase) {
         a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase);
-        a(solution_.indirect, solution_.direct_share, solution_.direct_in_elements, solution_.statistics);
+        a(light_in_, solution_.indirect, solution_.direct_share, solution_.direct_in_elements, solution_.statistics);
         bool has_local_pass = local_pass_.has_value();
         a(has_local_pass);
         if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
@@ -159,6 +160,13 @@ class Solver {
         statistics().warnings.push_back(std::move(message));
     }
 
+    /// Nothing reflects any light, and direct light is exact.
+    void tell_exact() {
+        statistics().relative_error_estimate = statistics().relative_error_bound = 0;
+        statistics().relative_error_estimate_worst_room = 0;
+        statistics().rooms = {{stage_.area, 0, 0}};
+    }
+
     void stop_early(const char* why) {
         statistics().stopped_by = why;
         statistics().converged = false;
@@ -172,7 +180,7 @@ class Solver {
             const Stopwatch watch;
             attempt();
             if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-            if (!demand || certificate_.estimate <= margin(certificate_.points) * *demand) {
+            if (!demand || certificate_.largest() <= margin(certificate_.points) * *demand) {
                 if (statistics().stopped_by.empty() || demand)
                     statistics().converged = true, statistics().stopped_by.clear();
                 return;
@@ -185,7 +193,7 @@ class Solver {
             // One that cannot end in time would only be thrown away.
             if (stop_.seconds_left() < watch.seconds() * finer.work) return stop_early("time limit");
             progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}",
-                                       100 * certificate_.estimate, 100 * *demand,
+                                       100 * certificate_.largest(), 100 * *demand,
                                        finer.method ? "" : ", on the light that the method found"));
             knobs_ = finer.knobs;
             if (finer.method) light_.reset();
@@ -269,6 +277,7 @@ class Solver {
                          .solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points(), has_light()});
             record_work(*light_, statistics());
             if (!gives_up()) share_ = direct_share();
+            light_in_ = light_by_room(stage_, *light_);
         }
         statistics().seconds["solve"] += watch.seconds();
     }
@@ -348,7 +357,8 @@ class Solver {
                                                    .curved = knobs_.gather_curved,
                                                    .relative_tolerance = knobs_.gather_relative_tolerance,
                                                    .elements = elements,
-                                                   .element_share = knobs_.gather_element_share},
+                                                   .element_share = knobs_.gather_element_share,
+                                                   .light_in = light_in_},
                                                   gathered_, progress_, stop_, safe_points());
         statistics().rays += gathered_.rays;
         return out;
@@ -358,6 +368,7 @@ class Solver {
                           std::span<const ElementGather> gathered = {}) {
         options.seed = options_.seed;
         options.direct_in_elements = light_->holds_direct;
+        options.light_in = light_in_;
         if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
         // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
         std::optional<ElementFunction> older;
@@ -379,18 +390,27 @@ class Solver {
         constexpr std::size_t most_looks = 4;
         for (std::size_t looks = 1; demand && looks < most_looks && !stop_.requested(); ++looks) {
             const double limit = margin(certificate_.points) * *demand;
-            if (certificate_.estimate <= limit || certificate_.estimate - 2 * certificate_.uncertainty > limit) break;
+            const double estimate = certificate_.largest();
+            if (estimate <= limit || estimate - 2 * certificate_.uncertainty > limit) break;
             certificate_ = certifier.look();
         }
         record_certificate(certificate_, *light_, solution_.indirect, statistics());
-        if (certificate_.points == 0 && !stop_.requested())  // nothing reflects any light
-            statistics().relative_error_estimate = statistics().relative_error_bound = 0;
+        statistics().rooms = certifier.rooms();
+        if (certificate_.points == 0 && !stop_.requested()) tell_exact();
         progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
     }
 
     /// What the estimate is made of, relative to the mean reflected light.
     ErrorParts error_parts() const {
-        if (!gathers()) return {.method = certificate_.estimate};
+        if (!gathers()) return {.method = certificate_.largest()};
+        // Of the worst room, as if its parts were made like those of all.
+        const bool has_rooms = stage_.rooms.count() > 0 && certificate_.of_rooms > 0;
+        const double worse = has_rooms ? certificate_.worst_room / certificate_.of_rooms : 1;
+        const ErrorParts parts = mean_error_parts();
+        return {worse * parts.method, worse * parts.noise, worse * parts.interpolation};
+    }
+
+    ErrorParts mean_error_parts() const {
         const double noise = gathered_.noise / certificate_.mean_reflected;
         const double misfit = std::sqrt(std::max(0.0, certificate_.local * certificate_.local - noise * noise));
         return {.method = certificate_.method,
@@ -409,9 +429,9 @@ class Solver {
             const double scale =
                 certificate_.mean_reflected > 0 ? certificate_.mean_reflected : mean_direct_light(stage_, direct_);
             InterpolantReport report;
-            solution_.interpolant =
-                make_interpolant(stage_, direct_, solution_.indirect, solution_.direct_share,
-                                 {.tolerance = 2.5 * options_.error_target() * scale}, report, stop_);
+            solution_.interpolant = make_interpolant(
+                stage_, direct_, solution_.indirect, solution_.direct_share,
+                {.tolerance = 2.5 * options_.error_target() * scale, .light_in = light_in_}, report, stop_);
             const double own = scale > 0 ? report.error / scale : 0;
             if (statistics().relative_error_estimate && !report.interrupted)
                 statistics().relative_error_estimate_interpolant =
@@ -419,7 +439,7 @@ class Solver {
             progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
                                        solution_.interpolant.tree.leaves().size(), 100 * own));
         }
-        const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_);
+        const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_, stage_.rooms);
         if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
             warn("no light reaches the front of any face: they may be turned inside out");
         statistics().seconds["reconstruct"] += watch.seconds();
@@ -442,8 +462,9 @@ class Solver {
     Certificate certificate_;
     int attempt_ = 1;
     Step step_ = Step::project;
-    bool fresh_ = true;  ///< Does the method find new light in this attempt?
-    Spectrum share_;     ///< c of that light, see find_direct_share.
+    bool fresh_ = true;             ///< Does the method find new light in this attempt?
+    Spectrum share_;                ///< c of that light, see find_direct_share.
+    std::vector<double> light_in_;  ///< Of every room by the mean light; empty where all is one room.
     std::string resumed_phase_;
 };
 

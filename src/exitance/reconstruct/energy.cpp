@@ -11,7 +11,7 @@ double sum(const Spectrum& s) {
 
 }  // namespace
 
-EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct) {
+EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const LightRooms& rooms) {
     const Scene& scene = solution.scene;
     EnergyBalance out;
     for (const Region& region : scene.regions())
@@ -19,17 +19,25 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
     for (const PunctualLight& light : scene.lights()) out.emitted += sum(light.power());
     // Parallel light comes from outside: what meets a surface counts as emitted.
     for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * sum(direct.fit[e].parallel);
-    const auto absorb = [&](RegionId region, double area, const Spectrum& E) {
-        out.absorbed += area * sum((Spectrum(1.0) - scene.material(region).reflectance) * E);
+    const auto arrive = [&](const ElementTree& tree, ElementId e, const Spectrum& E) {
+        const Spectrum& rho = scene.material(tree.region(e)).reflectance;
+        out.absorbed += tree.area(e) * sum((Spectrum(1.0) - rho) * E);
+        const double lost = rooms.lost_share(tree.region(e), tree.patch(e).at(tree.centre(e)));
+        if (lost > 0) out.escaped += lost * tree.area(e) * sum(rho * E);
     };
+    for (ElementId e : direct.tree.leaves()) {
+        const Spectrum& M = scene.material(direct.tree.region(e)).exitance;
+        if (max(M) <= 0) continue;
+        const double lost = rooms.lost_share(direct.tree.region(e), direct.tree.patch(e).at(direct.tree.centre(e)));
+        out.escaped += lost * direct.tree.area(e) * sum(M);
+    }
     if (!solution.direct_in_elements)
         for (ElementId e : direct.tree.leaves())
-            absorb(direct.tree.region(e), direct.tree.area(e),
-                   (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean);
+            arrive(direct.tree, e, (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean);
     // A linear or bilinear function has its mean at the centre of its element.
     const ElementTree& tree = solution.indirect.tree;
-    for (ElementId e : tree.leaves()) absorb(tree.region(e), tree.area(e), solution.indirect.at({e, tree.centre(e)}));
-    out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed) / out.emitted : 0;
+    for (ElementId e : tree.leaves()) arrive(tree, e, solution.indirect.at({e, tree.centre(e)}));
+    out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
     return out;
 }
 

@@ -76,7 +76,14 @@ class Interpolation {
         for (std::size_t i = 0; i < rule.size(); ++i)
             out.misfit_squared +=
                 rule[i].weight * squared(w * (value[i] - indirect.at(rule[i].uv))) / static_cast<double>(bands);
+        if (!options_.light_in.empty()) out.misfit_squared *= relative_weight(e);
         return out;
+    }
+
+    /// By which an error counts where rooms are judged apart.
+    double relative_weight(ElementId e) const {
+        const double light = options_.light_in[stage_.rooms.of(out_.tree, e)];
+        return stage_.rooms.weight(out_.tree, e) / (light * light);
     }
 
     double error() const {

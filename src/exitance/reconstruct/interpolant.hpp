@@ -10,6 +10,7 @@ struct InterpolantOptions {
     double tolerance = 0;  ///< RMS error of rho E over all surfaces that is to be held, W/m^2.
     int max_depth = 12;    ///< Rounds of cutting.
     std::size_t max_elements = 2'000'000;
+    std::span<const double> light_in = {};  ///< As in LocalPassDemand: errors are allowed in proportion.
 };
 
 struct InterpolantReport {

@@ -13,6 +13,11 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
     mean_area_ = stage.area / static_cast<double>(tree_.leaves().size());
 }
 
+/// The light of the room that an element is in, by the mean light.
+double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
+    return demand.light_in.empty() ? 1 : demand.light_in[stage_.rooms.of(tree_, e)];
+}
+
 /// How much noisier than allowed. All elements of the first mesh may be alike if the error falls with the root of the
 /// rays; small ones count less. Where many rays are needed, the next one takes away less: there more noise may stay,
 /// and less where few do. (The least rays for an error in the mean square leave noise in proportion to the root of the
@@ -20,14 +25,16 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
     const double usual = 4 * demand.rays.average;
     const double dear = std::clamp(std::pow(sampled.place_rays / usual, 0.25), 0.5, 2.0);
-    const double allowed = demand.noise * dear * std::pow(mean_area_ / tree_.area(e), 0.25);
+    const double allowed =
+        demand.noise * light_near(e, demand) * dear * std::pow(mean_area_ / stage_.counted_area(tree_, e), 0.25);
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
 
 /// An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Without noise it can
 /// be told how far dim places are off, too; not the darkest, where that would follow the method's elements.
 double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
-    const double share = demand.tolerance * std::sqrt(mean_area_ / tree_.area(e));
+    const double share =
+        demand.tolerance * light_near(e, demand) * std::sqrt(mean_area_ / stage_.counted_area(tree_, e));
     if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
     constexpr double darkest = 0.3;
     return std::min(share, std::max(demand.relative_tolerance * light, darkest * demand.tolerance));
@@ -79,7 +86,8 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
     const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area asks for no rays
-    const unsigned first = hopeless ? std::bit_ceil(demand.rays.least) : demand.rays.rays(tree_.area(e), mean_area_);
+    const unsigned first =
+        hopeless ? std::bit_ceil(demand.rays.least) : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
     unsigned rays = std::max({4u, first, before});
     w.growing.assign(places.size(), {});
     constexpr double tolerated = 1.2;  // the noise is itself an estimate
@@ -150,8 +158,10 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
     double noise = 0, interpolation = 0;
     for (ElementId e : tree_.leaves()) {
         const SampledElement& s = sampled_[e];
-        noise += tree_.area(e) * s.noise_squared;
-        interpolation += tree_.area(e) * (s.misfit_squared - s.noise_in_misfit);
+        const double light = light_near(e, demand);
+        const double counted = stage_.counted_area(tree_, e) / (light * light);
+        noise += counted * s.noise_squared;
+        interpolation += counted * (s.misfit_squared - s.noise_in_misfit);
     }
     report.noise = std::sqrt(noise / stage_.area);
     report.interpolation = std::sqrt(std::max(0.0, interpolation) / stage_.area);

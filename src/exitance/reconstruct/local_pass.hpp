@@ -23,12 +23,16 @@ struct LocalPassDemand {
     std::span<const ElementGather> elements = {};
     double element_share = 1e-4;
     int max_depth = 8;  ///< Rounds of cutting.
+    /// The light of every room by the mean light: errors are allowed in proportion. Empty where all is one room.
+    std::span<const double> light_in = {};
 };
 
 struct LocalPassReport {
     std::size_t rays = 0;
-    double noise = 0;          ///< RMS over the surfaces of the rays' error in rho E_ind, W/m^2.
-    double interpolation = 0;  ///< Estimated RMS of the interpolation's error in rho E_ind, W/m^2.
+    /// RMS over the surfaces of the rays' error in rho E_ind, W/m^2; where there are several rooms, of the error by the
+    /// room's light, all rooms alike, times the mean light.
+    double noise = 0;
+    double interpolation = 0;  ///< The same of the interpolation's error, as estimated.
     /// What is known of every leaf; of inner elements: unused.
     struct Leaf {
         double expected_error = 0;  ///< Of rho E_ind, W/m^2.
@@ -95,6 +99,7 @@ class LocalPass {
                        bool more, const LocalPassDemand& demand, Workspace& workspace) const;
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
+    double light_near(ElementId e, const LocalPassDemand& demand) const;
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;

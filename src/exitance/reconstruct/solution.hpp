@@ -26,7 +26,15 @@ struct ElementFunction {
 struct EnergyBalance {
     double emitted = 0;   ///< int M dA
     double absorbed = 0;  ///< int (1 - rho) E dA
-    double defect = 0;    ///< |emitted - absorbed| / emitted; meaningful in closed scenes, where nothing is lost.
+    double escaped = 0;   ///< int B dA, of what meets no front, by few rays; 0 in closed scenes.
+    double defect = 0;    ///< |emitted - absorbed - escaped| / emitted
+};
+
+/// Light of a room (LightRooms), and how far it is off.
+struct RoomError {
+    double area = 0;   ///< m^2
+    double mean = 0;   ///< Of reflected radiosity over its surfaces and the bands, W/m^2,
+    double error = 0;  ///< and the RMS error of radiosity relative to it.
 };
 
 /// What a solve took and what it reached: the keys of `solve --json` and `stats --json`, in their order.
@@ -41,6 +49,8 @@ struct SolveStatistics {
     /// estimate.
     std::optional<double> relative_error_estimate, relative_error_bound;
     std::optional<double> relative_error_estimate_interpolant;  ///< Of what `export` writes; likewise.
+    std::vector<RoomError> rooms;                               ///< The largest first; one, where all is one room.
+    std::optional<double> relative_error_estimate_worst_room;   ///< Of what `probe` evaluates.
     /// Relative RMS standard error of the light that a random method found on its elements; 0 for other methods.
     double standard_error = 0;
     EnergyBalance energy;

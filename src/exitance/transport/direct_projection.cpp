@@ -128,6 +128,34 @@ double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<con
 
 }  // namespace
 
+namespace {
+
+/// What squared error an element may have where rooms are judged apart: each room as if it were alone, but none for
+/// less than a hundredth of the light of all. (W/m^2)^2 m^2
+std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& light,
+                                   const std::vector<ElementId>& leaves, double tolerance) {
+    const std::size_t rooms = stage.rooms.count();
+    if (rooms == 0) return {};
+    std::vector<double> flux(rooms), elements(rooms);
+    double all = 0;
+    for (ElementId e : leaves) {
+        const std::size_t room = stage.rooms.of(light.tree, e);
+        const double own =
+            light.tree.area(e) * mean(light_weight(stage.scene.material(light.tree.region(e))) * light.fit[e].mean);
+        flux[room] += own, all += own, elements[room] += 1;
+    }
+    std::vector<double> out(rooms);
+    for (std::size_t room = 0; room < rooms; ++room) {
+        constexpr double least = 0.01;
+        const double light_there = std::max(flux[room] / stage.rooms.area(room), least * all / stage.area);
+        out[room] =
+            tolerance * light_there * tolerance * light_there * stage.rooms.area(room) / std::max(1.0, elements[room]);
+    }
+    return out;
+}
+
+}  // namespace
+
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
                                       const StopRequest& stop) {
     DirectProjection out{stage.make_elements(options.mesh), {}};
@@ -153,6 +181,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
             std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
     };
     double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed)) : 0;
+    std::vector<double> share_in;  // of the rooms, where there are several
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
         parallel_ranges(
@@ -179,10 +208,17 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
             {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
         if (options.may_give_up && stop.requested()) return {};
         if (depth == 0 && !many) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
+        if (depth == 0) share_in = shares_by_room(stage, out, active, options.tolerance);
         if (depth == options.max_depth || stop.requested()) break;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            if (out.tree.area(e) * out.fit[e].misfit_squared <= share) continue;
+            if (share_in.empty()) {
+                if (out.tree.area(e) * out.fit[e].misfit_squared <= share) continue;
+            } else {
+                const double relative = stage.rooms.importance(out.tree, e) / stage.rooms.weight(out.tree, e);
+                const double allowed = share_in[stage.rooms.of(out.tree, e)] / relative;
+                if (out.tree.area(e) * out.fit[e].misfit_squared <= allowed) continue;
+            }
             if (options.least_area && out.tree.area(e) < 2 * *options.least_area) continue;
             for (ElementId child : refine_element(out.tree, e)) fresh.push_back(child);
         }

@@ -59,7 +59,7 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
     const double mean_area = stage.area / static_cast<double>(n);
     first_.assign(n + 1, 0);
     for (std::size_t i = 0; i < n; ++i)
-        first_[i + 1] = first_[i] + budget.rays(tree.area(numbering.leaves[i]), mean_area);
+        first_[i + 1] = first_[i] + budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
     hits_.assign(first_[n], missed);
     const std::vector<Deal> dealt = deal(tree, numbering, first_, seed, dealing);
 

@@ -9,6 +9,7 @@
 #include "exitance/direct/direct_light.hpp"
 #include "exitance/mesh/contact_lines.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/transport/light_rooms.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -54,17 +55,23 @@ struct Stage {
         return out;
     }
 
-    /// Elements over all pieces, graded towards concave edges and cut where other polygons touch them.
-    ElementTree make_elements(MeshSize size) const {
-        ElementTree tree = make_mesh(pieces, concave, size, unlit);
-        std::vector<ElementId> leaves = tree.leaves();
-        std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
-        cut_along_contacts(tree, leaves, contacts);
-        return tree;
-    }
+    /// Elements over all pieces, graded towards concave edges and cut where other polygons touch them; finer in rooms
+    /// that are small beside others.
+    ElementTree make_elements(MeshSize size) const;
 
     double area = 0;                      ///< Of all surfaces but those left out, m^2.
     Field<RegionId, std::uint8_t> unlit;  ///< What is left out; empty: nothing.
+    LightRooms rooms;                     ///< By which errors are judged.
+
+    /// The area of an element as errors are judged by it, m^2.
+    double counted_area(const ElementTree& tree, ElementId e) const {
+        return rooms.count() > 0 ? tree.area(e) * rooms.weight(tree, e) : tree.area(e);
+    }
+
+    /// The same as errors of what is gathered from it are, m^2.
+    double important_area(const ElementTree& tree, ElementId e) const {
+        return rooms.count() > 0 ? tree.area(e) * rooms.importance(tree, e) : tree.area(e);
+    }
 
     /// Is there anything that emits, and anything that reflects? Without either no light is indirect.
     bool has_indirect_light() const {

@@ -22,9 +22,11 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("relative_error_estimate", s.relative_error_estimate);
     visit("relative_error_bound", s.relative_error_bound);
     visit("relative_error_estimate_interpolant", s.relative_error_estimate_interpolant);
+    visit("relative_error_estimate_worst_room", s.relative_error_estimate_worst_room);
     visit("standard_error", s.standard_error);
     visit("energy_emitted", s.energy.emitted);
     visit("energy_absorbed", s.energy.absorbed);
+    visit("energy_escaped", s.energy.escaped);
     visit("energy_defect", s.energy.defect);
     visit("peak_memory_bytes", s.peak_memory_bytes);
     visit("link_memory_bytes", s.link_memory_bytes);
@@ -54,6 +56,12 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
                                                statistics.elements_by_level.end());
         file.write(group + "/elements_by_level", levels, 1, {"1", "elements of a hierarchy by depth, roots first"});
     }
+    if (!statistics.rooms.empty()) {
+        std::vector<double> rooms;
+        for (const RoomError& room : statistics.rooms) rooms.insert(rooms.end(), {room.area, room.mean, room.error});
+        file.write(group + "/rooms", rooms, 3,
+                   {"m^2, W/m^2, 1", "area, mean reflected radiosity and relative error of every room"});
+    }
     file.write_texts(group + "/warnings", statistics.warnings, {"1", "what the user should know"});
 }
 
@@ -75,6 +83,11 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
     if (const std::string levels = group + "/elements_by_level"; file.has(levels))
         for (const std::int64_t count : file.read<std::int64_t>(levels))
             statistics.elements_by_level.push_back(static_cast<std::size_t>(std::max<std::int64_t>(0, count)));
+    if (const std::string rooms = group + "/rooms"; file.has(rooms)) {
+        const std::vector<double> values = file.read<double>(rooms, 3);
+        for (std::size_t i = 0; i + 2 < values.size(); i += 3)
+            statistics.rooms.push_back({values[i], values[i + 1], values[i + 2]});
+    }
     statistics.warnings = file.read_texts(group + "/warnings");
     return statistics;
 }

@@ -212,4 +212,18 @@ double rms_standard_error(const Stage& stage, const GlobalLight& light) {
     return std::sqrt(sum / stage.area);
 }
 
+std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) {
+    constexpr double least = 1e-6;
+    const double mean_light = light.mean_reflected(stage.area);
+    if (stage.rooms.count() == 0 || mean_light <= 0) return {};
+    std::vector<double> out(stage.rooms.count());
+    for (std::size_t i = 0; i < light.reflected.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const std::size_t room = stage.rooms.of(light.tree, e);
+        out[room] += light.tree.area(e) * mean(light.reflected[i]) / (stage.rooms.area(room) * mean_light);
+    }
+    for (double& value : out) value = std::max(value, least);
+    return out;
+}
+
 }  // namespace exitance

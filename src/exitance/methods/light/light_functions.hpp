@@ -63,6 +63,10 @@ std::vector<ElementFunction> delivered_functions(const Scene& scene, const Eleme
                                                  const DirectProjection& direct, const Spectrum& direct_weight,
                                                  const Spectrum& c);
 
+/// The light that every room reflects, by the mean light; at least a millionth, since nothing can be relative to none.
+/// Empty where all is one room.
+std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
+
 /// RMS over the surfaces of the standard error of rho E_ind, where a method is a random one, W/m^2.
 double rms_standard_error(const Stage& stage, const GlobalLight& light);
 

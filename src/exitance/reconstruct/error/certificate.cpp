@@ -17,6 +17,7 @@ struct WeightedSample {
 /// One point of the certificate: two independent estimates of the residual there.
 struct Sample {
     RegionId region;
+    std::uint32_t room = 0;
     double weight = 0;
     Spectrum r1, r2;          ///< The residual.
     Spectrum local1, local2;  ///< Its part by the local pass, where known.
@@ -28,18 +29,24 @@ struct Sample {
 /// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x expected error.
 /// A few lie on what is left out: should there be light, it is to be noticed.
 std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
-                                              const Field<ElementId, LocalPassReport::Leaf>* known, std::size_t count,
-                                              std::uint64_t seed) {
+                                              const CertificateOptions& options, std::uint64_t seed) {
+    const std::size_t count = options.points;
+    const Field<ElementId, LocalPassReport::Leaf>* const known = options.leaves;
     const std::vector<ElementId> leaves = tree.leaves();
+    // Where rooms are judged apart, all are looked at alike, and errors count by the light there.
+    const auto error_at = [&](ElementId e) {
+        const double light = options.light_in.empty() ? 1 : options.light_in[stage.rooms.of(tree, e)];
+        return (*known)[e].expected_error / light;
+    };
     double area = 0, error = 0;
     for (ElementId e : leaves) {
-        area += tree.area(e);
-        error += known ? tree.area(e) * (*known)[e].expected_error : 0;
+        area += stage.counted_area(tree, e);
+        error += known ? stage.counted_area(tree, e) * error_at(e) : 0;
     }
     const double mean_error = error / area;
     const auto density = [&](ElementId e) {
         const double seldom = stage.is_left_out(tree.region(e)) ? 0.1 : 1;
-        return seldom * (mean_error > 0 ? 0.5 + 0.5 * (*known)[e].expected_error / mean_error : 1.0);
+        return seldom * stage.rooms.weight(tree, e) * (mean_error > 0 ? 0.5 + 0.5 * error_at(e) / mean_error : 1.0);
     };
     double total = 0;
     for (ElementId e : leaves) total += tree.area(e) * density(e);
@@ -142,7 +149,9 @@ struct Certifier::Content {
 
     void measure_residuals();
     std::vector<Spectrum> late_response() const;
-    Certificate judge() const;
+    Certificate judge();
+    void judge_rooms(const std::vector<Spectrum>& response, Certificate& out);
+    std::vector<RoomError> rooms;
 };
 
 /// The residual at stratified points, twice each.
@@ -156,9 +165,9 @@ void Certifier::Content::measure_residuals() {
         return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
     };
     const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
-    const std::vector<WeightedSample> places =
-        options.places.empty() ? stratified_places(stage, indirect.tree, options.leaves, options.points, seed)
-                               : in_turn(options.places, options.points);
+    const std::vector<WeightedSample> places = options.places.empty()
+                                                   ? stratified_places(stage, indirect.tree, options, seed)
+                                                   : in_turn(options.places, options.points);
     const std::size_t before = samples.size();
     samples.resize(before + places.size());
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -175,6 +184,7 @@ void Certifier::Content::measure_residuals() {
             if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
             Sample& sample = samples[before + k];
             sample.region = region, sample.weight = weight;
+            if (stage.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage.rooms.at(region, x));
             sample.leaf = light.numbering.number[coarse.find(region, x).element];
             if (options.summed) {
                 const bool is_covered = stage.occluders.is_covered(x, n, region);
@@ -211,25 +221,69 @@ void Certifier::Content::measure_residuals() {
 /// The smooth part of the error: the coarse response to the mean residual of each region, less that residual itself. By
 /// leaf number of the coarse mesh.
 std::vector<Spectrum> Certifier::Content::late_response() const {
-    Field<RegionId, Spectrum> mean_residual(stage.scene.regions().size());
-    Field<RegionId, double> count(stage.scene.regions().size());
+    // A region in several rooms is one in each.
+    const std::size_t regions = stage.scene.regions().size();
+    std::vector<Spectrum> mean_residual(regions * std::max<std::size_t>(1, stage.rooms.count()));
+    std::vector<double> count(mean_residual.size());
     for (const Sample& s : samples) {
         const double n = s.weight * static_cast<double>(options.points);
-        mean_residual[s.region] += 0.5 * n * (s.r1 + s.r2);
-        count[s.region] += n;
+        mean_residual[s.room * regions + s.region.value] += 0.5 * n * (s.r1 + s.r2);
+        count[s.room * regions + s.region.value] += n;
     }
     std::vector<Spectrum> rhs(rho.size());
     for (std::size_t i = 0; i < rhs.size(); ++i) {
-        const RegionId region = light.tree.region(light.numbering.leaves[i]);
+        const ElementId e = light.numbering.leaves[i];
+        const std::size_t place = stage.rooms.of(light.tree, e) * regions + light.tree.region(e).value;
         // A mean of few samples is mostly noise: it is drawn towards zero.
-        rhs[i] = mean_residual[region] / (count[region] + 4);
+        rhs[i] = mean_residual[place] / (count[place] + 4);
     }
     std::vector<Spectrum> response = respond({H, rho, rhs, area}, 0.02);
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
 }
 
-Certificate Certifier::Content::judge() const {
+/// Every room by itself; parts of the residual are then those of the rooms, each by its own light.
+void Certifier::Content::judge_rooms(const std::vector<Spectrum>& response, Certificate& out) {
+    const std::size_t count = stage.rooms.count();
+    if (count == 0) {
+        rooms = {{stage.area, mean_reflected, out.estimate}};
+        out.worst_room = out.of_rooms = out.estimate;
+        return;
+    }
+    std::vector<std::array<double, batches>> squares(count);
+    std::vector<double> weight(count), told(count), local(count), method(count);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const Sample& s = samples[k];
+        const Spectrum& late = response[s.leaf];
+        squares[s.room][k % batches] += s.weight * batches * mean((s.r1 + late) * (s.r2 + late));
+        weight[s.room] += s.weight;
+        if (!s.tells_local) continue;
+        told[s.room] += s.weight;
+        local[s.room] += s.weight * mean(s.local1 * s.local2);
+        method[s.room] += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
+    }
+    rooms.clear();
+    double all = 0, all_local = 0, all_method = 0;
+    for (std::size_t room = 0; room < count; ++room) {
+        const double light_there = options.light_in[room] * mean_reflected;
+        for (double& square : squares[room]) square /= weight[room] > 0 ? weight[room] : 1;
+        const BatchMean error(squares[room]);
+        const double estimate = std::sqrt(std::max(error.mean, error.standard_error)) / light_there;
+        rooms.push_back({stage.rooms.area(room), light_there, estimate});
+        out.worst_room = std::max(out.worst_room, estimate);
+        const auto relative = [&](double sum) {
+            return told[room] > 0 ? sum / told[room] / (light_there * light_there) : 0;
+        };
+        const double share = 1 / static_cast<double>(count);
+        all += share * estimate * estimate;
+        all_local += share * std::max(0.0, relative(local[room]));
+        all_method += share * std::max(0.0, relative(method[room]));
+    }
+    out.of_rooms = std::sqrt(all);
+    out.local = std::sqrt(all_local), out.method = std::sqrt(all_method);
+}
+
+Certificate Certifier::Content::judge() {
     Certificate out{.constant = constant, .mean_reflected = mean_reflected, .points = samples.size(), .rays = H.rays()};
     const std::vector<Spectrum> response = late_response();
     std::array<double, batches> residual_squared{}, error_squared{};
@@ -258,6 +312,7 @@ Certificate Certifier::Content::judge() const {
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
     out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
     out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
+    judge_rooms(response, out);
     return out;
 }
 
@@ -265,6 +320,10 @@ Certifier::Certifier(const Stage& stage, const GlobalLight& light, const Element
                      const ReflectedLight& b, const CertificateOptions& options)
     : content_(std::make_unique<Content>(stage, light, indirect, b, options)) {}
 Certifier::~Certifier() = default;
+
+const std::vector<RoomError>& Certifier::rooms() const {
+    return content_->rooms;
+}
 
 Certificate Certifier::look() {
     if (content_->mean_reflected <= 0) return {};

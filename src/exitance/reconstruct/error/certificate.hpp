@@ -32,6 +32,8 @@ struct CertificateOptions {
     const ReflectedLight* gathered = nullptr;
     /// In place of rays. Null where those are cast.
     const SummedLight* summed = nullptr;
+    /// The light of every room by the mean light; empty where all is one room.
+    std::vector<double> light_in = {};
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -48,6 +50,11 @@ struct Certificate {
     double mean_reflected =
         0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2: what errors are relative to.
     std::size_t points = 0, rays = 0;
+    /// Where rooms are judged apart: the estimate of the worst one, and the root of the mean of the rooms' squares,
+    /// which `local` and `method` are parts of. As the estimate, where all is one room.
+    double worst_room = 0, of_rooms = 0;
+    /// Of the whole and of every room.
+    double largest() const { return std::max(estimate, worst_room); }
 };
 
 /// Estimates the error of B = M + rho (E_dir + E_ind), E_dir exact, from its residual
@@ -70,6 +77,9 @@ class Certifier {
 
     /// Measures at `options.points` more places, and tells what all of them so far say. `rays` counts all of them, too.
     Certificate look();
+
+    /// As of the last look: every room's error, the largest room first.
+    const std::vector<RoomError>& rooms() const;
 
   private:
     struct Content;

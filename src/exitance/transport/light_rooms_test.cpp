@@ -1,0 +1,74 @@
+#include "exitance/transport/light_rooms.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/transport/stage.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+LightRooms rooms_of(const Scene& scene) {
+    return find_light_rooms(Stage(scene), 1, StopRequest());
+}
+
+/// A closed box of grey walls that look inwards.
+void add_box(SceneDescription& d, Point lo, Point hi, std::uint32_t material) {
+    const auto at = [&](int x, int y, int z) {
+        d.points.push_back({x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z});
+        return static_cast<std::uint32_t>(d.points.size() - 1);
+    };
+    const auto face = [&](std::vector<std::uint32_t> corners) {
+        d.faces.push_back({std::move(corners), material, 0, 0});
+    };
+    face({at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0)});
+    face({at(0, 0, 1), at(0, 1, 1), at(1, 1, 1), at(1, 0, 1)});
+    face({at(0, 0, 0), at(0, 0, 1), at(1, 0, 1), at(1, 0, 0)});
+    face({at(0, 1, 0), at(1, 1, 0), at(1, 1, 1), at(0, 1, 1)});
+    face({at(0, 0, 0), at(0, 1, 0), at(0, 1, 1), at(0, 0, 1)});
+    face({at(1, 0, 0), at(1, 0, 1), at(1, 1, 1), at(1, 1, 0)});
+}
+
+Scene boxes(const std::vector<std::pair<Point, Point>>& corners) {
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
+    for (const auto& [lo, hi] : corners) add_box(d, lo, hi, 0);
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+TEST(LightRooms, AClosedRoomATubeAndAnOpenSceneAreOne) {
+    for (const char* name : {"furnace", "tube", "chair", "cornell", "complex"})
+        EXPECT_EQ(rooms_of(built_scene(name)).count(), 0u) << name;
+}
+
+TEST(LightRooms, RoomsThatADoorJoinsAreTwo) {
+    const Scene scene = built_scene("office", {{"nx", "2"}, {"ny", "1"}});
+    const LightRooms rooms = rooms_of(scene);
+    ASSERT_EQ(rooms.count(), 2u);
+    EXPECT_NEAR(rooms.area(0), rooms.area(1), 0.05 * rooms.area(0));
+}
+
+TEST(LightRooms, WhatIsSealedIsApartAndCountsAlike) {
+    const Scene scene = boxes({{{0, 0, 0}, {4, 4, 4}}, {{10, 0, 0}, {12, 2, 2}}});
+    const Stage stage(scene);
+    const LightRooms rooms = find_light_rooms(stage, 1, StopRequest());
+    ASSERT_EQ(rooms.count(), 2u);
+    EXPECT_NEAR(rooms.area(0), 96, 1e-9);
+    EXPECT_NEAR(rooms.area(1), 24, 1e-9);
+    EXPECT_EQ(rooms.at(RegionId(0), {1, 1, 0}), 0u);
+    EXPECT_EQ(rooms.at(RegionId(6), {11, 1, 0}), 1u);
+    const ElementTree tree = stage.make_elements({1, 0});
+    double counted = 0;
+    for (ElementId e : tree.leaves()) counted += tree.area(e) * rooms.weight(tree, e);
+    EXPECT_NEAR(counted, 120, 1e-9);
+}
+
+TEST(LightRooms, SmallRoomsBelongToTheirNeighbourUnlessThatIsGroundOrSky) {
+    // 0.7% of the area: too small, but for beside a box of the size of a landscape.
+    EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {12, 12, 12}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 0u);
+    EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {900, 900, 900}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 2u);
+}
+
+}  // namespace
+}  // namespace exitance

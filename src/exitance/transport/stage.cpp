@@ -1,0 +1,49 @@
+#include "exitance/transport/stage.hpp"
+
+#include "exitance/mesh/adaptive.hpp"
+
+namespace exitance {
+namespace {
+
+/// How many times finer elements are where areas count `weight` times: a room has as many of them as if it were alone.
+double finer_by(double weight) {
+    return std::sqrt(std::max(1.0, weight));
+}
+
+double longest_extent(const ElementTree& tree, ElementId e) {
+    const std::vector<Point> outline = tree.outline(e);
+    double longest = 0;
+    for (const Point& p : outline)
+        for (const Point& q : outline) longest = std::max(longest, norm(p - q));
+    return longest;
+}
+
+/// Cuts what of pieces in several rooms lies in the smaller ones.
+void cut_to_rooms(ElementTree& tree, const LightRooms& rooms, double edge) {
+    constexpr double diagonal = 1.5;      // of an element, by its edge
+    constexpr double coarsest = 64 * 64;  // by area: what is larger lies in both rooms
+    std::vector<ElementId> open = tree.leaves();
+    while (!open.empty()) {
+        const ElementId e = open.back();
+        open.pop_back();
+        const double wanted = edge / finer_by(rooms.importance(tree, e));
+        if (tree.area(e) > coarsest * wanted * wanted || longest_extent(tree, e) <= diagonal * wanted) continue;
+        for (ElementId child : refine_element(tree, e)) open.push_back(child);
+    }
+}
+
+}  // namespace
+
+ElementTree Stage::make_elements(MeshSize size) const {
+    std::vector<double> finer;
+    for (std::size_t k = 0; k < pieces.size() && rooms.count() > 0; ++k)
+        finer.push_back(finer_by(rooms.importance_of_piece(k)));
+    ElementTree tree = make_mesh(pieces, concave, size, unlit, finer);
+    std::vector<ElementId> leaves = tree.leaves();
+    std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
+    cut_along_contacts(tree, leaves, contacts);
+    if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);
+    return tree;
+}
+
+}  // namespace exitance
