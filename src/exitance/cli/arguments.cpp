@@ -404,7 +404,7 @@ void declare(CLI::App& app, BakeArguments& arguments) {
         ->type_name("FOLDER")
         ->required();
     add_positive(app, "--density", arguments.density, "T",
-                 "Texels per metre; default: up to 64, with at most a million texels on surfaces");
+                 "Texels per metre; default: 64 (in small scenes more), with at most a million texels on surfaces");
     add_count(app, "--padding", arguments.padding, 1,
               "Texels around every chart; 2^m keep charts apart down to mip level m; default 4")
         ->check(CLI::Range(1, 256));

@@ -55,9 +55,9 @@ void for_each_texel(const LightMaps& light, std::size_t map, const Visit& visit)
 
 /// Binary glTF 2.0: a triangle mesh of the input's faces, Y up, metres. TEXCOORD_0: places in the face's plane, metres;
 /// TEXCOORD_1: places in the light maps. Colours are radiosity times `tone.scale`:
-///  emissive      black surfaces that emit E (stored from 0 to a peak) times rho; lamps a constant. Nothing but the
-///  light
-///                that was computed is seen, whatever lights a viewer brings along;
+///  emissive      black surfaces that emit rho E (stored from 0 to a peak), lamps a constant. Nothing but the light
+///  that
+///                was computed is seen, whatever lights a viewer brings along;
 ///  unlit         the picture of B, toned by `tone`;
 ///  moz_lightmap  reflectance as base colour, E in the extension, pi times as strong since such light maps are divided
 ///                by pi again.

@@ -81,45 +81,47 @@ Mesh make_mesh(const Scene& scene, const LightMaps& light) {
     return mesh;
 }
 
-/// Means and peaks of irradiance.
-struct Levels {
+/// What textures hold, W/m^2: what reflecting surfaces send out, or for MOZ_lightmap what they receive.
+Spectrum stored(const Scene& scene, const LightMap& map, const Chart& chart, std::size_t i, LightMapMaterial way) {
+    return way == LightMapMaterial::moz_lightmap ? map.at(i) : scene.material(chart.region).reflectance * map.at(i);
+}
+
+struct TextureLevels {
     double peak = 1;             ///< What the brightest colour of a texture stands for, W/m^2.
-    std::vector<Spectrum> mean;  ///< A material, W/m^2.
+    std::vector<Spectrum> mean;  ///< Mean irradiance of a material, W/m^2.
 };
 
-Levels find_levels(const Scene& scene, const LightMaps& light) {
-    // Eight bits are spent on what a display can show: what is brighter than 16 times the mean is white in any case.
-    constexpr double white = 16;
-    Levels levels;
+TextureLevels find_levels(const Scene& scene, const LightMaps& light, LightMapMaterial way, const ToneMap& tone) {
+    // Eight bits are spent on what a display shows: two stops above white are kept, at least.
+    constexpr double whites = 4;
+    TextureLevels levels;
     levels.mean.resize(scene.materials().size());
     std::vector<double> weights(scene.materials().size());
-    double sum = 0, weight = 0, peak = 0;
+    double peak = 0;
     for (std::size_t m = 0; m < light.maps.size(); ++m)
         for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
             const auto share = static_cast<double>(light.maps[m].share[i]);
-            const Spectrum irradiance = light.maps[m].at(i);
-            const auto rgb = red_green_blue(irradiance);
-            peak = std::max({peak, rgb[0], rgb[1], rgb[2]});
-            sum += share * mean(irradiance), weight += share;
             const std::uint32_t material = scene.regions()[chart.region].material.value;
-            levels.mean[material] += share * irradiance, weights[material] += share;
+            levels.mean[material] += share * light.maps[m].at(i), weights[material] += share;
+            if (scene.material(chart.region).emits()) return;
+            const auto rgb = red_green_blue(stored(scene, light.maps[m], chart, i, way));
+            peak = std::max({peak, rgb[0], rgb[1], rgb[2]});
         });
     for (std::size_t i = 0; i < weights.size(); ++i)
         if (weights[i] > 0) levels.mean[i] *= 1 / weights[i];
-    if (peak > 0) levels.peak = std::min(peak, white * sum / std::max(weight, 1.0));
+    if (peak > 0) levels.peak = std::min(peak, whites / tone.scale);
     return levels;
 }
 
-/// What a texture holds: irradiance over the peak, or the toned picture of radiosity.
-Image texture(const Scene& scene, const LightMaps& light, std::size_t m, LightMapMaterial material, const ToneMap& tone,
+/// What a texture shows: light over the peak, or the toned picture of radiosity.
+Image texture(const Scene& scene, const LightMaps& light, std::size_t m, LightMapMaterial way, const ToneMap& tone,
               double peak) {
     const LightMap& map = light.maps[m];
     Image image(map.size.width, map.size.height);
-    const bool toned = material == LightMapMaterial::unlit;
     for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
-        const Spectrum value =
-            texel_value(scene, map, chart, i, toned ? LightMapQuantity::radiosity : LightMapQuantity::irradiance);
-        const DisplayColour colour = toned ? tone(value) : red_green_blue(value / peak);
+        const DisplayColour colour = way == LightMapMaterial::unlit
+                                         ? tone(texel_value(scene, map, chart, i, LightMapQuantity::radiosity))
+                                         : red_green_blue(stored(scene, map, chart, i, way) / peak);
         for (std::size_t c = 0; c < 3; ++c)
             image.rgb[3 * i + c] =
                 static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(std::clamp(colour[c], 0.0, 1.0))));
@@ -141,7 +143,7 @@ std::string emission(std::array<double, 3> colour, const std::string& texture, s
 }
 
 std::string material_json(const Material& material, std::size_t map, LightMapMaterial way, const ToneMap& tone,
-                          const Levels& levels, const Spectrum& mean_irradiance) {
+                          const TextureLevels& levels, const Spectrum& mean_irradiance) {
     const auto rho = red_green_blue(material.reflectance), exitance = red_green_blue(material.exitance);
     const std::string texture = fmt::format("{{\"index\":{},\"texCoord\":1}}", map);
     std::string base = "[0,0,0,1]", base_texture, emitted, extensions;
@@ -152,15 +154,17 @@ std::string material_json(const Material& material, std::size_t map, LightMapMat
         emitted = emission(red_green_blue(tone.scale * (material.exitance + material.reflectance * mean_irradiance)),
                            "", extensions);
     } else if (way == LightMapMaterial::emissive) {
-        emitted = emission(red_green_blue(tone.scale * levels.peak * material.reflectance),
-                           ",\"emissiveTexture\":" + texture, extensions);
+        // The factor is grey: the importer of Blender 3.4 mixes up coloured ones.
+        const double strength = tone.scale * levels.peak;
+        emitted = emission({strength, strength, strength}, ",\"emissiveTexture\":" + texture, extensions);
     } else {
         base = fmt::format("[{},{},{},1]", rho[0], rho[1], rho[2]);
         extensions = fmt::format(",\"MOZ_lightmap\":{{\"index\":{},\"texCoord\":1,\"intensity\":{}}}", map,
                                  pi * tone.scale * levels.peak);
     }
-    // A black surface without highlights: a viewer's own lights add nothing.
-    if (way != LightMapMaterial::unlit) extensions += ",\"KHR_materials_specular\":{\"specularFactor\":0}";
+    // A black surface without highlights, told in both ways: a viewer's own lights add nothing.
+    if (way != LightMapMaterial::unlit)
+        extensions += ",\"KHR_materials_specular\":{\"specularFactor\":0},\"KHR_materials_ior\":{\"ior\":1}";
     return fmt::format(
         "{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":{},\"metallicFactor\":0,\"roughnessFactor\":1{}}}"
         "{},\"extensions\":{{{}}},\"extras\":{{\"reflectance\":{},\"exitance\":{}}}}}",
@@ -196,7 +200,8 @@ class Document {
     /// Material and map of every material of the document.
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& materials() const { return material_of_; }
 
-    std::string text(const std::string& materials, const std::string& used, const ToneMap& tone, const Levels& levels) {
+    std::string text(const std::string& materials, const std::string& used, const ToneMap& tone,
+                     const TextureLevels& levels) {
         GlbNodes placed = make_light_and_camera_nodes(scene_);
         // Lights are in the maps already: a viewer must not add them again. Cameras follow them among the nodes.
         std::string cameras;
@@ -212,7 +217,7 @@ class Document {
         }
         std::string json = fmt::format(
             "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"exposure\":{},"
-            "\"irradiancePeak\":{},\"unit\":\"W/"
+            "\"texturePeak\":{},\"unit\":\"W/"
             "m^2\"}}}},\"extensionsUsed\":[{}],\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}"
             "],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"images\":[{}],\"textures\":[{}],\"samplers\":[{{"
             "\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":33071,\"wrapT\":33071}}],{}\"accessors\":[{}],"
@@ -271,7 +276,7 @@ class Document {
 Result<void> write_light_map_glb(const Solution& solution, const LightMaps& light, LightMapMaterial material,
                                  const ToneMap& tone, const std::string& path) {
     const Scene& scene = solution.scene;
-    const Levels levels = find_levels(scene, light);
+    const TextureLevels levels = find_levels(scene, light, material, tone);
     std::vector<std::string> textures;
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
         Result<std::string> png = encode_png(texture(scene, light, m, material, tone, levels.peak), {});
@@ -284,8 +289,8 @@ Result<void> write_light_map_glb(const Solution& solution, const LightMaps& ligh
     for (const auto& [number, map] : document.materials())
         add(materials,
             material_json(scene.materials()[MaterialId(number)], map, material, tone, levels, levels.mean[number]));
-    for (const char* extension :
-         {"KHR_materials_unlit", "KHR_materials_emissive_strength", "MOZ_lightmap", "KHR_materials_specular"})
+    for (const char* extension : {"KHR_materials_unlit", "KHR_materials_emissive_strength", "MOZ_lightmap",
+                                  "KHR_materials_specular", "KHR_materials_ior"})
         if (materials.find(fmt::format("\"{}\":", extension)) != std::string::npos)
             add(used, fmt::format("\"{}\"", extension));
     const std::string json = document.text(materials, used, tone, levels);

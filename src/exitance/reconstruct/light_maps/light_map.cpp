@@ -119,9 +119,12 @@ Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options
 }  // namespace
 
 double automatic_density(const Scene& scene) {
-    double area = 0, density = 64;
+    constexpr double most = 1e6, usual = 64, along_scene = 512;
+    double area = 0;
     for (const Region& region : scene.regions()) area += region.area;
-    while (density * density * area > 1e6) density /= 2;
+    double density = usual;
+    while (2 * density * scene.size() <= along_scene) density *= 2;
+    while (density * density * area > most) density /= 2;
     return density;
 }
 

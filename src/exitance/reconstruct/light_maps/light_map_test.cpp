@@ -216,6 +216,7 @@ TEST(LightMap, IsRefusedWhereItWouldBeTooLarge) {
     ASSERT_FALSE(wide);
     EXPECT_EQ(wide.error().where, "--density");
     EXPECT_EQ(automatic_density(s.scene), 8);  // 5400 m^2
+    EXPECT_EQ(automatic_density(box_scene(0.1, 0.1, 0.1, 0.5, 1)), 2048);
 }
 
 TEST(TexelCutter, SharesSumToTheAreaAndPlacesLieInside) {
