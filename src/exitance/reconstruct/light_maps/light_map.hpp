@@ -50,8 +50,8 @@ struct LightMaps {
     std::size_t texels = 0;  ///< That lie on surfaces, wholly or in part.
 };
 
-/// 64 texels per metre, in scenes of less than 4 m as many more that 256 to 512 lie along their diagonal; less where the
-/// surfaces would have more than a million texels. A power of two.
+/// 64 texels per metre, in scenes of less than 4 m as many more that 256 to 512 lie along their diagonal; less where
+/// the surfaces would have more than a million texels. A power of two.
 double automatic_density(const Scene& scene);
 
 /// Bakes the function that `probe` evaluates: exact direct light, indirect light from the elements. A texel holds the
