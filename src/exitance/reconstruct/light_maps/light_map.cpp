@@ -35,7 +35,7 @@ std::vector<Tile> cut_into_tiles(std::span<const Chart> charts) {
 class TileBaker {
   public:
     TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines)
-        : stage_(light.stage()), outlines_(outlines), light_(light, texel_points, 0, 1) {}
+        : stage_(light.stage()), outlines_(outlines), light_(light, texel_points, 0, 1, SpotPoints::mirrored) {}
 
     void bake(const Tile& tile, const Chart& chart, LightMap& map) {
         cutter_.cut(outlines_[tile.chart], tile.rectangle, covers_, places_);

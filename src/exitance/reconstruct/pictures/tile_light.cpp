@@ -72,11 +72,13 @@ Spectrum probed_mean(std::uint32_t count, const Spectrum& rest, const Value& val
 
 }  // namespace
 
-TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed)
+TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed,
+                     SpotPoints kind)
     : light_(light),
       samples_(samples),
       gather_(gather),
       seed_(seed),
+      kind_(kind),
       direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()) {
     spot_at_.fill(0);
 }
@@ -170,6 +172,36 @@ bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t
     return neighbours < 3;  // too few to be told by
 }
 
+/// Is light at a square other than half-way between its neighbours, to the left and right or above and below? Where one
+/// of them is missing: does it differ from one that there is?
+bool TileLight::bends_between_neighbours(std::span<const Spot> spots, std::size_t i) const {
+    const auto [x, y] = std::pair(spots[i].x, spots[i].y);
+    const auto light_at = [&](int u, int v) -> const Spectrum* {
+        if (std::min(u, v) < 0 || std::max(u, v) >= tile_side) return nullptr;
+        const std::uint32_t found = spot_at_[static_cast<std::size_t>(v * tile_side + u)];
+        return found == 0 ? nullptr : &spots[found - 1].irradiance;
+    };
+    for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(0, 1)}) {
+        const Spectrum *before = light_at(x - dx, y - dy), *after = light_at(x + dx, y + dy);
+        if (!before || !after) return differs_from_neighbours(spots, i);
+        if (!agree(0.5 * (*before + *after), spots[i].irradiance)) return true;
+    }
+    return false;
+}
+
+/// Mean of direct light over a whole square, of which the middle is known: of five points where these tell that light
+/// is linear.
+Spectrum TileLight::mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known) {
+    const Spectrum middle = spot.irradiance - rest;
+    Spectrum pair[2], sum;
+    for (std::uint32_t i = 0; i < 4; ++i) pair[i / 2] += 0.5 * direct(spot, known, points_[spot.first + i]);
+    if (agree(rest + pair[0], spot.irradiance) && agree(rest + pair[1], spot.irradiance))
+        return 0.2 * middle + 0.4 * (pair[0] + pair[1]);
+    sum = 2 * (pair[0] + pair[1]);
+    for (std::uint32_t i = 4; i < spot.count; ++i) sum += direct(spot, known, points_[spot.first + i]);
+    return sum / spot.count;
+}
+
 /// All spots of one region, block by block.
 void TileLight::evaluate_region(std::span<Spot> spots) {
     const ReceiverLight* whole = prepare(spots, nullptr, whole_) ? &whole_ : nullptr;
@@ -186,12 +218,19 @@ void TileLight::evaluate_region(std::span<Spot> spots) {
             spot_at_[static_cast<std::size_t>(spots[i].y * tile_side + spots[i].x)] = static_cast<std::uint32_t>(i + 1);
         }
     }
-    for (std::size_t i = 0; i < spots.size(); ++i) settled_[i] |= !differs_from_neighbours(spots, i);
+    const bool squares = kind_ == SpotPoints::mirrored;
+    for (std::size_t i = 0; i < spots.size(); ++i)
+        settled_[i] |= !(squares && spots[i].count == samples_ ? bends_between_neighbours(spots, i)
+                                                               : differs_from_neighbours(spots, i));
     for (std::size_t i = 0; i < spots.size(); ++i) {
         Spot& spot = spots[i];
         spot_at_[static_cast<std::size_t>(spot.y * tile_side + spot.x)] = 0;
         if (settled_[i]) continue;
         const ReceiverLight* known = known_[static_cast<std::size_t>(block_of(spot))];
+        if (squares && spot.count == samples_) {
+            spot.irradiance = rest_[i] + mirrored_mean(spot, rest_[i], known);
+            continue;
+        }
         const auto direct_at = [&](std::uint32_t k) { return direct(spot, known, points_[spot.first + k]); };
         spot.irradiance = rest_[i] + probed_mean(spot.count, rest_[i], direct_at);
     }

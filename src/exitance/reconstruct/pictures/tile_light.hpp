@@ -19,11 +19,20 @@ struct Spot {
     Spectrum irradiance = {};            ///< Mean over the points, W/m^2.
 };
 
+/// Whose points the spots are.
+enum class SpotPoints : std::uint8_t {
+    any,
+    /// Squares side by side in a plane, and in every whole one the points 0 and 1 are mirror images in its middle, and
+    /// so are 2 and 3: where light is linear, the mean of either pair is that of the square.
+    mirrored,
+};
+
 /// Light on the spots of a picture's tile, as take_picture describes it. One a thread; keeps its memory.
 class TileLight {
   public:
     /// `samples` points a pixel; `gather` rays a point, 0 for none. Keeps a reference to `light`.
-    TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed);
+    TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed,
+              SpotPoints kind = SpotPoints::any);
 
     /// Fills in the irradiance of every spot and brings the spots into an order of its own. `points` are places in the
     /// open on the spots' regions, metres.
@@ -43,11 +52,14 @@ class TileLight {
     Spectrum elements(const Spot& spot);
     bool looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const;
     bool differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const;
+    bool bends_between_neighbours(std::span<const Spot> spots, std::size_t i) const;
+    Spectrum mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known);
 
     const RadiosityFunction& light_;
     std::uint32_t samples_;
     unsigned gather_;
     std::uint64_t seed_;
+    SpotPoints kind_;
     Spectrum direct_share_;  ///< Of exact direct light, on top of the rest.
     std::span<const Point> points_;
     std::vector<Point> outline_;
