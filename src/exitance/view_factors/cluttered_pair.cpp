@@ -11,7 +11,11 @@ namespace {
 constexpr std::size_t least_cells = 32;           ///< Of the receiver before differences are believed.
 constexpr std::size_t most_parts = 48;            ///< Cut under edges.
 constexpr double near_edge = 0.1;                 ///< Of the receiver's size: the height of edges that it is cut under.
-constexpr std::size_t most_evaluations = 20'000;  ///< Of a pair: a bound on the worst.
+constexpr std::size_t most_evaluations = 30'000;  ///< Of a pair: a bound on the worst.
+/// Of what a dark cell would hold at the slope at which light fades over the whole receiver: a corner that its points
+/// missed.
+constexpr double dark_corner = 0.1;
+constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may have been missed where nothing was seen.
 
 double squared_distance(const Point& x, const Point& a, const Point& b) {
     const Vec3 e = b - a, d = x - a;
@@ -140,10 +144,21 @@ double ClutteredExchange::unseen(const Cell& cell) const {
     return 0.3 * std::max(cell.integral, 0.3 * total_ * area / area_);
 }
 
+/// What a cell of which no point has seen anything may hold. Nothing where one blocker hides all of it; past several
+/// some of it may see through a gap, no more of it than light fades over the cell.
+double ClutteredExchange::dark(const Cell& cell) {
+    std::array<Point, 4> corners;
+    for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
+    if (visible_.is_hidden_from(std::span(corners).first(cell.count))) return 0;
+    const double area = area_of(std::span(cell.corner).first(cell.count)), size = std::sqrt(area / area_);
+    return dark_corner * brightest_ * size * area;
+}
+
 double ClutteredExchange::visible_at(Vec2 p, double weight) {
     ++evaluations;
     Seen seen;
     const double F = visible_(frame_.at(p), frame_.n, seen);
+    brightest_ = std::max(brightest_, F);
     all_lit_ = all_lit_ && seen == Seen::all;
     return weight * F;
 }
@@ -193,7 +208,15 @@ void ClutteredExchange::halve_worst() {
     constexpr double left = 0.35, least = 0.2;
     const double error = std::max(left * change, least * std::min(cell.error, change + cell.integral));
     one.error = two.error = error;
-    for (Cell* half : {&one, &two}) half->error = std::max(half->error, share_under_edges(*half) * unseen(*half));
+    for (Cell* half : {&one, &two}) {
+        if (cell.integral == 0 && cell.error == 0) continue;  // hidden for certain
+        const double missed = half->integral == 0 ? dark(*half) : HUGE_VAL;
+        half->error = std::max(half->error, share_under_edges(*half) * unseen(*half));
+        if (missed == 0)
+            half->error = 0;
+        else if (missed < HUGE_VAL)
+            half->error = std::max(half->error, missed);
+    }
     total_ += one.integral + two.integral - cell.integral;
     squared_error_ += one.error * one.error + two.error * two.error - cell.error * cell.error;
     for (const Cell& half : {one, two}) {
@@ -202,10 +225,11 @@ void ClutteredExchange::halve_worst() {
     }
 }
 
-double ClutteredExchange::operator()(const OccludedPair& pair, double allowed, double share, double ratio,
+double ClutteredExchange::operator()(const OccludedPair& pair, const Allowance& allowance, double ratio,
                                      bool& unoccluded) {
     unoccluded = false;
     ratio_ = ratio;
+    brightest_ = 0;
     pair_ = pair;
     visible_.set(pair.source, pair.blockers);
     if (visible_.is_hidden_from(pair.receiver)) return 0;
@@ -221,16 +245,25 @@ double ClutteredExchange::operator()(const OccludedPair& pair, double allowed, d
     find_edges(slack);
     cut_under_edges(slack);
     add_cells();
+    if (brightest_ == 0) {
+        Vec2 middle{};
+        for (Vec2 p : whole) middle = middle + (1 / static_cast<double>(whole.size())) * p;
+        brightest_ = unseen_brightness * visible_.unoccluded(frame_.at(middle), frame_.n);
+    }
     for (Cell& cell : heap_) {
         const double cell_area = area_of(std::span(cell.corner).first(cell.count));
-        cell.error = std::max(cell.integral, total_ * cell_area / area_);  // unknown
+        cell.error = std::max({cell.integral, total_ * cell_area / area_, brightest_ * cell_area});  // unknown
         squared_error_ += cell.error * cell.error;
     }
     // Halved evenly at first: a sum of all that is seen must not rest on where the first few points happened to lie.
     std::make_heap(heap_.begin(), heap_.end());
     const std::size_t enough = evaluations + most_evaluations;
     while (heap_.size() < least_cells && total_ + std::sqrt(squared_error_) > 0) halve_worst();
-    const auto good = [&] { return std::sqrt(std::max(0.0, squared_error_)) <= std::max(allowed, share * total_); };
+    const auto good = [&] {
+        const double error = std::sqrt(std::max(0.0, squared_error_));
+        return error <= std::max(allowance.absolute, allowance.relative * total_) ||
+               total_ + 2 * error < allowance.ignored;
+    };
     while (!good() && evaluations < enough) halve_worst();
     if (all_lit_) return unoccluded = true, 0;
     double sum = 0;  // anew: the running one has rounded

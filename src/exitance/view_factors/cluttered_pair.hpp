@@ -15,12 +15,17 @@ namespace exitance {
 /// darkens a strip that no point of a large cell may meet. One object serves one thread and many pairs.
 class ClutteredExchange {
   public:
+    /// The error that may be left, as it is estimated: the larger of the first two.
+    struct Allowance {
+        double relative = 1e-4;  ///< Of the value.
+        double absolute = 0;     ///< m^2
+        double ignored = 0;      ///< m^2: smaller values need no digits.
+    };
+
     /// A_i F_ij, m^2, of a pair as for OccludedExchange. `unoccluded` tells that nothing was seen to stand between; the
     /// value is then left to others.
-    /// allowed  m^2: the error that may be left, as it is estimated
-    /// share    of the value, that may be left in place of that if it is more
-    /// ratio    where cells are cut in two: with another ratio other points are looked from
-    double operator()(const OccludedPair& pair, double allowed, double share, double ratio, bool& unoccluded);
+    /// ratio  where cells are cut in two: with another ratio other points are looked from
+    double operator()(const OccludedPair& pair, const Allowance& allowance, double ratio, bool& unoccluded);
 
     std::size_t evaluations = 0;  ///< Exact visible parts so far.
 
@@ -44,6 +49,7 @@ class ClutteredExchange {
     void cut_under_edges(double slack);
     double share_under_edges(const Cell& cell) const;
     double unseen(const Cell& cell) const;
+    double dark(const Cell& cell);
     double visible_at(Vec2 p, double weight);
 
     OccludedPair pair_;
@@ -57,6 +63,7 @@ class ClutteredExchange {
     };
     std::vector<Edge> edges_;  ///< Of the blockers, off the receiver.
     double area_ = 0, ratio_ = 0.5, total_ = 0, squared_error_ = 0;
+    double brightest_ = 0;  ///< The largest form factor seen, or what may have been missed.
     bool all_lit_ = true;
 };
 

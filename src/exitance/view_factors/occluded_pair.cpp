@@ -8,9 +8,11 @@
 namespace exitance {
 namespace {
 
-constexpr int deepest = 20;                ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
-constexpr double dominating = 0.03;        ///< An entry above it makes its row's error.
-constexpr double dominating_share = 0.25;  ///< Of the tolerance, for such an entry.
+constexpr int deepest = 20;                 ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
+constexpr double dominating = 0.03;         ///< An entry above it makes its row's error.
+constexpr double dominating_share = 0.25;   ///< Of the tolerance, for such an entry.
+constexpr double dark_corner = 0.05;        ///< Of a dark cell's share of light, where it may be lit.
+constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may be seen where no point saw anything.
 constexpr double near_share = 0.5;  ///< Of the difference of two rules that the better one may leave, at an edge.
 
 double cross_area(std::span<const Vec2> corners) {
@@ -212,6 +214,13 @@ double OccludedExchange::share_left(const Task& task) const {
     return visible_.seen_edges().size() > 1 ? 0.1 : 0.03;
 }
 
+/// What a cell of which no point has seen anything may hold: nothing to speak of when no line crosses it, else a corner
+/// that the points missed, at the slope at which light fades over the whole receiver.
+double OccludedExchange::dark(const Cell& cell) const {
+    if (cell.complete) return 0;
+    return dark_corner * brightest_seen_ * cell.area * std::sqrt(cell.area / receiver_area_);
+}
+
 /// Applies a rule to the cells of all tasks.
 void OccludedExchange::apply(int points) {
     nodes_.clear(), weights_.clear(), lasts_.clear();
@@ -252,8 +261,8 @@ double OccludedExchange::integrate_tasks() {
             std::size_t i = 0;
             std::erase_if(tasks_, [&](const Task& task) {
                 const double before = befores_[i++];
-                if (task.glance.black == task.glance.count) return true;
                 const Cell& cell = task.cell;
+                if (task.glance.black == task.glance.count) return dark(cell) <= std::max(task.allowed, ignored_);
                 const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
                 const double far = 2 * cell.area * brightest(task.distance);
                 const bool good =
@@ -298,12 +307,16 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
 
     bool all = true;
     double estimate = 0;
+    brightest_seen_ = unseen_brightness * visible_.unoccluded(middle_of(whole.corners()));
+    receiver_area_ = std::max(cross_area(whole.corners()), 1e-300);
     for (const Cell& cell : cells_) {
         all &= cell.complete && cell.glance.lit == cell.glance.count;
         estimate += cell.two_points;
+        if (cell.glance.black < cell.glance.count) brightest_seen_ = std::max(brightest_seen_, cell.glance.highest);
     }
     if (all) return unoccluded = true, 0;
 
+    ignored_ = 0.1 * demand.ignored;
     matters_ = estimate > demand.large;
     dominates_ = estimate > dominating * norm(area_vector(pair.receiver));
     const double allowed = std::max((dominates_ ? dominating_share : 1) * demand.relative * estimate, demand.absolute);

@@ -20,6 +20,7 @@ struct OccludedPair {
 struct Demand {
     double relative = 1e-4;  ///< Error over the pair's exchange area.
     double absolute = 0;     ///< m^2: an error that never matters.
+    double ignored = 0;      ///< m^2: smaller exchange areas need no digits.
     double large = 0;        ///< m^2: larger exchange areas are integrated with more care.
 };
 
@@ -94,6 +95,7 @@ class OccludedExchange {
     void look_from_middles();
     bool is_settled_by_two_points(const Task& task) const;
     double share_left(const Task& task) const;
+    double dark(const Cell& cell) const;
     void apply(int points);
     void halve(const Task& task);
     double integrate_tasks();
@@ -113,7 +115,9 @@ class OccludedExchange {
     std::vector<CriticalLine> lines_;
     std::vector<Part> parts_;
     std::vector<Cell> cells_;
-    double size_ = 0, source_area_ = 0;
+    double size_ = 0, source_area_ = 0, receiver_area_ = 0;
+    double ignored_ = 0;
+    double brightest_seen_ = 0;  ///< The largest form factor, or what may have been missed.
     double relative_ = 0;
     bool matters_ = false, dominates_ = false;
     std::size_t enough_ = 0;  ///< Evaluations after which nothing is halved any more: a bound on the worst pairs.

@@ -1,265 +1,137 @@
 #include "exitance/view_factors/view_factors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
 
 #include "exitance/core/parallel.hpp"
-#include "exitance/form_factors/pair_form_factor.hpp"
-#include "exitance/form_factors/point_to_polygon_batch.hpp"
-#include "exitance/geometry/quadrature.hpp"
-#include "exitance/view_factors/cluttered_pair.hpp"
-#include "exitance/view_factors/occluded_pair.hpp"
+#include "exitance/view_factors/row_worker.hpp"
 #include "exitance/view_factors/view_pairs.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr double smallest_entry = 1e-6;   ///< Entries below it need no digits of their own.
-constexpr double large_entry = 3e-4;      ///< Entries above it may be among the largest of their rows.
-constexpr std::size_t few_blockers = 8;   ///< With more, their critical lines would cut faces into thousands of cells.
-constexpr double alike_areas = 4;         ///< Areas of one order: either face may receive.
-constexpr double cluttered_share = 1e-3;  ///< Entry below which cluttered pairs keep fewer digits.
-constexpr double largest_share = 0.25;    ///< Of the tolerance: many such entries make a row.
-constexpr double much_larger = 16;        ///< Than another face.
-/// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance one was wrong by 0.6%.
-constexpr double contour_share = 1e-4;
-constexpr double usual_largest = 0.25;  ///< Entry of a row that is not being computed.
-constexpr int most_points = 8;          ///< Gauss points a side; nearer pairs take the contour integral.
+constexpr double agreeing = 0.7;  ///< Of the tolerance: rows that differ by less need no second look.
+constexpr std::size_t rows_a_step = 64, pairs_a_step = 512;  ///< Between reports.
 
-/// Computes rows, one after the other, with scratch memory of its own.
-class RowWorker {
-  public:
-    RowWorker(const ViewPairs& pairs, double tolerance) : pairs_(pairs), tolerance_(tolerance) {}
+Error stopped(const std::string& what) {
+    return {ErrorCode::limit, "stopped " + what, "", "allow more time or a larger --tolerance"};
+}
 
-    void compute(std::size_t i, std::span<double> row);
+/// Where both rows hold a pair of faces, computed from either: how far they are apart, of the larger.
+double disagreement(const ViewFactors& table, std::size_t i, std::size_t j) {
+    const double there = table.areas[i] * table.row(i)[j], back = table.areas[j] * table.row(j)[i];
+    const double larger = std::max(there, back);
+    return larger > 0 ? std::abs(there - back) / larger : 0;
+}
 
-  private:
-    int points_for(const ViewFace& receiver, const ViewFace& source) const;
-    double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
-    double occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
-                           std::span<const Point> s, bool& unoccluded);
-    void add_clipped(ConvexBlocker&& part, const ViewFace& receiver, const ViewFace& source);
-    void add_unoccluded(std::size_t i, std::size_t j, bool cut);
-    void flush_batches(std::size_t i, std::span<double> row);
-    void make_nodes(const ViewFace& receiver, int points);
+bool matters(const ViewFactors& table, std::size_t i, std::size_t j) {
+    return std::max(table.row(i)[j], table.row(j)[i]) > ViewFactors::smallest_entry;
+}
 
-    struct Batch {
-        QuadBatch quads;
-        std::vector<std::uint32_t> faces;
-    };
-    struct Node {
-        Point at;
-        double weight;
-    };
-
-    const ViewPairs& pairs_;
-    double tolerance_;
-    std::vector<std::uint32_t> of_row_, of_pair_;
-    std::array<Batch, most_points + 1> batches_;
-    std::vector<std::uint32_t> exact_;  ///< Unoccluded pairs for the contour integral.
-    std::vector<Node> nodes_;
-    std::vector<double> values_;
-    std::vector<const ConvexBlocker*> standing_between_;
-    std::deque<ConvexBlocker> clipped_;
-    std::vector<Point> front_r_, front_s_;
-    OccludedExchange exchange_;
-    ClutteredExchange cluttered_exchange_;
-    bool is_cluttered_ = false;  ///< May many things hide some of the pair at hand?
+struct Pair {
+    std::uint32_t i, j;
 };
 
-/// How many Gauss points a side an unoccluded receiver takes; more than most_points when the pair is too near. What
-/// the receiver sees of the source is analytic but at the source, g of the receiver's sizes away.
-int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) const {
-    const Vec3 apart = max(max(source.box.lo - receiver.box.hi, receiver.box.lo - source.box.hi), Vec3{});
-    const double g = norm(apart) / receiver.diameter, rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
-    if (rho < 1.5) return most_points + 1;
-    // A source that is near to a large receiver is brighter somewhere than on average, by about the receiver's area
-    // over the square of their distance: so many digits more.
-    const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), 1e-300));
-    return std::max(2, static_cast<int>(std::ceil(std::log(peak / (0.01 * tolerance_)) / (2 * std::log(rho)))));
+/// Pairs whose rows disagree by more than `most`, i < j.
+std::vector<Pair> disagreeing(const ViewFactors& table, double most) {
+    std::vector<Pair> found;
+    for (std::uint32_t i = 0; i < table.size(); ++i)
+        for (std::uint32_t j = i + 1; j < table.size(); ++j)
+            if (matters(table, i, j) && disagreement(table, i, j) > most) found.push_back({i, j});
+    return found;
 }
 
-void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {
-    const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
-    const int points = cut || !source.is_quad ? most_points + 1 : points_for(receiver, source);
-    if (points > most_points) {
-        exact_.push_back(static_cast<std::uint32_t>(j));
-        return;
-    }
-    Batch& batch = batches_[static_cast<std::size_t>(points)];
-    const std::span<const Point> o = source.outline;
-    batch.quads.add({o[0], o[1], o[2], o.back()});
-    batch.faces.push_back(static_cast<std::uint32_t>(j));
-}
-
-/// Gauss points of all of a receiver, weights summing to one.
-void RowWorker::make_nodes(const ViewFace& receiver, int points) {
-    nodes_.clear();
-    for (const std::vector<Point>& piece : receiver.pieces)
-        for (std::size_t first = 1; first + 1 < piece.size(); first += 2) {
-            const Point& o = piece[0];
-            const Vec3 a = piece[first] - o;
-            if (first + 2 == piece.size()) {  // a triangle
-                const Vec3 b = piece[first + 1] - o;
-                const double area = 0.5 * dot(receiver.plane.n, cross(a, b)) / receiver.area;
-                for (const PlanarNode& k : triangle_rule(2 * points - 1))
-                    nodes_.push_back({o + k.at.x * a + k.at.y * b, area * k.weight});
-                continue;
-            }
-            const Vec3 b = piece[first + 2] - o, c = piece[first + 1] - piece[first] - b;
-            for (const PlanarNode& k : square_rule(points)) {
-                const double u = k.at.x, v = k.at.y;
-                const double area = dot(receiver.plane.n, cross(a + v * c, b + u * c)) / receiver.area;
-                nodes_.push_back({o + u * a + v * b + (u * v) * c, area * k.weight});
-            }
-        }
-}
-
-/// Unoccluded pairs: analytic in the source, Gauss points on the receiver, many sources at a time.
-void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
-    const ViewFace& receiver = pairs_.faces()[i];
-    for (std::size_t points = 2; points < batches_.size(); ++points) {
-        Batch& batch = batches_[points];
-        if (batch.faces.empty()) continue;
-        make_nodes(receiver, static_cast<int>(points));
-        values_.resize(batch.faces.size());
-        for (const Node& node : nodes_) {
-            point_to_quads(node.at, receiver.plane.n, batch.quads, values_);
-            for (std::size_t k = 0; k < values_.size(); ++k) row[batch.faces[k]] += node.weight * values_[k];
-        }
-        batch.quads.clear();
-        batch.faces.clear();
-    }
-    for (std::uint32_t j : exact_)
-        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, contour_share * tolerance_) / receiver.area;
-    exact_.clear();
-}
-
-/// One convex piece of the receiver and one of the source, both before each other's plane.
-double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
-                                  std::span<const Point> s, bool& unoccluded) {
-    // What a large face sees of a small one changes within the size of the small one: there the small one looks back,
-    // from points of this row's own. Of faces of about one size that one receives which less stands close to.
-    const bool alike =
-        is_cluttered_ && source.area < alike_areas * receiver.area && receiver.area < alike_areas * source.area;
-    const bool turned =
-        alike ? crowding(source.plane, source.diameter, standing_between_) <
-                    crowding(receiver.plane, receiver.diameter, standing_between_)
-              : source.area < receiver.area && (is_cluttered_ || much_larger * source.area < receiver.area);
-    const double needless = is_cluttered_ ? cluttered_share * tolerance_ * std::min(source.area, receiver.area)
-                                          : largest_share * tolerance_ * usual_largest * source.area;
-    if (turned)
-        return cluttered_exchange_({s, r, source.plane, receiver.plane, standing_between_}, needless, tolerance_, 0.45,
-                                   unoccluded);
-    if (is_cluttered_)
-        return cluttered_exchange_({r, s, receiver.plane, source.plane, standing_between_}, needless, tolerance_, 0.5,
-                                   unoccluded);
-    const Demand demand{tolerance_, tolerance_ * smallest_entry * receiver.area, large_entry * receiver.area};
-    return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
-}
-
-/// Keeps what is left of a blocker, if it may still hide something.
-void RowWorker::add_clipped(ConvexBlocker&& part, const ViewFace& receiver, const ViewFace& source) {
-    const std::uint8_t by_r = pairs_.standing(part, receiver.plane), by_s = pairs_.standing(part, source.plane);
-    if (!(by_r & ViewPairs::in_front) || !(by_s & ViewPairs::in_front)) return;
-    if (sides(part, receiver.outline, pairs_.slack()) & sides(part, source.outline, pairs_.slack())) return;
-    clipped_.push_back(std::move(part));
-    standing_between_.push_back(&clipped_.back());
-}
-
-/// F_ij with blockers between. A blocker that crosses the plane of either face counts with its part before both.
-double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded) {
-    const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
-    standing_between_.clear();
-    clipped_.clear();
-    for (std::uint32_t b : blockers) {
-        const ConvexBlocker& blocker = pairs_.blockers()[b];
-        if (!pairs_.crosses(i, b) && !pairs_.crosses(j, b)) {
-            standing_between_.push_back(&blocker);
-            continue;
-        }
-        ConvexBlocker before_source, before_both;
-        if (blocker.is_solid() && clip_body(blocker, source.plane, pairs_.slack(), before_source) &&
-            clip_body(before_source, receiver.plane, pairs_.slack(), before_both)) {
-            if (!before_both.points.empty()) add_clipped(std::move(before_both), receiver, source);
-            continue;
-        }
-        for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
-            front_r_.clear();
-            for (std::uint32_t c : blocker.loops[k]) front_r_.push_back(blocker.points[c]);
-            clip(front_r_, source.plane, front_s_);
-            clip(front_s_, receiver.plane, front_r_);
-            if (!front_r_.empty()) add_clipped(make_sheet(front_r_, blocker.faces[k]), receiver, source);
-        }
-    }
-    if (standing_between_.empty()) return unoccluded = true, 0;
-
-    double total = 0;
-    bool all = true;
-    for (const std::vector<Point>& piece_r : receiver.pieces)
-        for (const std::vector<Point>& piece_s : source.pieces) {
-            clip(piece_r, source.plane, front_r_);
-            clip(piece_s, receiver.plane, front_s_);
-            if (front_r_.empty() || front_s_.empty()) continue;
-            bool free = false;
-            const std::vector<const ConvexBlocker*> between = standing_between_;
-            std::erase_if(standing_between_, [&](const ConvexBlocker* b) {
-                return sides(*b, front_r_, pairs_.slack()) & sides(*b, front_s_, pairs_.slack());
-            });
-            double part = 0;
-            if (standing_between_.empty())
-                free = true;
-            else
-                part = occluded_pieces(receiver, source, front_r_, front_s_, free);
-            standing_between_ = between;
-            all &= free;
-            if (free) part = exchange_area(front_r_, front_s_, contour_share * tolerance_);
-            total += part;
-        }
-    unoccluded = all;
-    return total / receiver.area;
-}
-
-void RowWorker::compute(std::size_t i, std::span<double> row) {
-    pairs_.find_blockers(i, of_row_);
-    for (std::size_t j = 0; j < pairs_.faces().size(); ++j) {
-        bool cut = false;
-        if (j == i || !pairs_.face_each_other(i, j, cut)) continue;
-        pairs_.find_blockers(i, j, of_row_, of_pair_);
-        is_cluttered_ = of_pair_.size() > few_blockers;
-        bool unoccluded = of_pair_.empty();
-        if (!unoccluded) row[j] = occluded(i, j, of_pair_, unoccluded);
-        if (!unoccluded) continue;
-        row[j] = 0;
-        add_unoccluded(i, j, cut);
-    }
-    flush_batches(i, row);
-    for (double& F : row) F = std::clamp(F, 0.0, 1.0);
-}
-
-/// max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij).
-double defect(const ViewFactors& table) {
-    double worst = 0;
+/// Sets both defects of a table.
+void find_defects(ViewFactors& table) {
     for (std::size_t i = 0; i < table.size(); ++i) {
         const std::span<const double> row = table.row(i);
         const double largest = *std::max_element(row.begin(), row.end());
         if (largest == 0) continue;
         for (std::size_t j = 0; j < table.size(); ++j) {
-            const double difference = table.areas[i] * row[j] - table.areas[j] * table.factors[j * table.size() + i];
-            worst = std::max(worst, std::abs(difference) / (table.areas[i] * largest));
+            const double difference = table.areas[i] * row[j] - table.areas[j] * table.row(j)[i];
+            table.reciprocity_defect =
+                std::max(table.reciprocity_defect, std::abs(difference) / (table.areas[i] * largest));
+            if (matters(table, i, j)) table.entry_defect = std::max(table.entry_defect, disagreement(table, i, j));
         }
     }
-    return worst;
 }
+
+/// One run: rows first, then those entries again where rows disagree.
+class TableMaker {
+  public:
+    TableMaker(const ViewPairs& pairs, ViewFactors& table, double tolerance, Progress& progress,
+               const StopRequest& stop)
+        : pairs_(pairs), table_(table), tolerance_(tolerance), progress_(progress), stop_(stop) {}
+
+    Result<void> compute_rows() {
+        const std::size_t n = table_.size();
+        progress_.phase("view factors");
+        for (std::size_t first = 0; first < n; first += rows_a_step) {
+            const std::size_t count = std::min(rows_a_step, n - first);
+            parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
+                RowWorker worker(pairs_, tolerance_, stop_);
+                for (std::size_t i = first + from; i < first + to && !stop_.requested(); ++i)
+                    worker.compute(i, std::span(table_.factors).subspan(i * n, n));
+            });
+            if (stop_.requested()) return stopped(fmt::format("after {} of {} rows of view factors", first, n));
+            progress_.advance(static_cast<double>(first + count) / static_cast<double>(n));
+        }
+        return {};
+    }
+
+    /// Two faces that look at each other from points of their own agree, or at least one of them is wrong. Both look
+    /// again more closely then, a few times, at last by other means.
+    Result<void> mend() {
+        struct Round {
+            double share;  ///< Of the tolerance.
+            RowWorker::Means means;
+        };
+        constexpr Round rounds[] = {{0.2, RowWorker::Means::usual},
+                                    {0.04, RowWorker::Means::usual},
+                                    {0.2, RowWorker::Means::without_lines},
+                                    {0.04, RowWorker::Means::without_lines}};
+        progress_.phase("look again");
+        for (const Round& round : rounds) {
+            const std::vector<Pair> pairs = disagreeing(table_, agreeing * tolerance_);
+            if (&round == &rounds[0]) table_.mended = pairs.size();
+            for (std::size_t first = 0; first < pairs.size(); first += pairs_a_step) {
+                const std::size_t count = std::min(pairs_a_step, pairs.size() - first);
+                parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
+                    RowWorker worker(pairs_, tolerance_, stop_);
+                    for (std::size_t k = first + from; k < first + to && !stop_.requested(); ++k) {
+                        const auto [i, j] = pairs[k];
+                        set(i, j) = worker.entry(i, j, round.share * tolerance_, round.means);
+                        set(j, i) = worker.entry(j, i, round.share * tolerance_, round.means);
+                    }
+                });
+                if (stop_.requested())
+                    return stopped(fmt::format("while {} pairs of faces were looked at again", pairs.size()));
+                progress_.advance(static_cast<double>(first + count) / static_cast<double>(pairs.size()));
+            }
+        }
+        table_.unsettled = disagreeing(table_, tolerance_).size();
+        return {};
+    }
+
+  private:
+    double& set(std::size_t i, std::size_t j) { return table_.factors[i * table_.size() + j]; }
+
+    const ViewPairs& pairs_;
+    ViewFactors& table_;
+    double tolerance_;
+    Progress& progress_;
+    const StopRequest& stop_;
+};
 
 }  // namespace
 
 Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
                                          const StopRequest& stop) {
     tolerance = std::clamp(tolerance, 1e-12, 0.1);
-    const ViewPairs pairs(scene);
+    const ViewPairs pairs(scene, stop);
+    if (stop.requested()) return stopped("before the first row of view factors");
     const std::size_t n = scene.surfaces().size();
     ViewFactors table;
     for (SurfaceId s : scene.surfaces().ids()) {
@@ -267,28 +139,15 @@ Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, P
         table.emittances.push_back(1 - mean(scene.material(s).reflectance));
     }
     table.factors.assign(n * n, 0);
-    progress.phase("view factors");
-    constexpr std::size_t rows_a_step = 128;  // between looks at the clock
-    for (std::size_t first = 0; first < n; first += rows_a_step) {
-        if (stop.requested())
-            return Error{
-                ErrorCode::limit,
-                "stopped after " + std::to_string(first) + " of " + std::to_string(n) + " rows of view factors", "",
-                "allow more time or a larger --tolerance"};
-        const std::size_t count = std::min(rows_a_step, n - first);
-        parallel_ranges(count, 8, [&](std::size_t from, std::size_t to) {
-            RowWorker worker(pairs, tolerance);
-            for (std::size_t i = first + from; i < first + to; ++i)
-                worker.compute(i, std::span(table.factors).subspan(i * n, n));
-        });
-        progress.advance(static_cast<double>(first + count) / static_cast<double>(n));
-    }
+    TableMaker maker(pairs, table, tolerance, progress, stop);
+    if (const Result<void> done = maker.compute_rows(); !done) return done.error();
+    if (const Result<void> done = maker.mend(); !done) return done.error();
     for (std::size_t i = 0; i < n; ++i) {
         double sum = 0;
         for (double F : table.row(i)) sum += F;
         table.row_sums.push_back(sum);
     }
-    table.reciprocity_defect = defect(table);
+    find_defects(table);
     return table;
 }
 

@@ -165,6 +165,42 @@ TEST(ViewFactors, OfAWallBehindBoardsAFingersBreadthAwayAreReciprocal) {
     EXPECT_LT(table.reciprocity_defect, tolerance);
 }
 
+/// Houses of several heights without bottoms, touching nothing but the ground: as the town of real models.
+Scene small_town() {
+    std::vector<Outline> faces;
+    for (int x = 0; x < 4; ++x)
+        for (int y = 0; y < 3; ++y) {
+            const Point lo = {20.0 * x, 20.0 * y, 0};
+            std::vector<Outline> house;
+            add_box(house, lo, lo + Vec3{10, 10, 12.0 + (5 * x + 7 * y) % 11}, false, 1);
+            house.erase(house.begin() + 4);  // its bottom
+            faces.insert(faces.end(), house.begin(), house.end());
+            const auto tile = [&](double u, double v) {
+                faces.push_back({lo + Vec3{u, v, 0}, lo + Vec3{u + 10, v, 0}, lo + Vec3{u + 10, v + 10, 0},
+                                 lo + Vec3{u, v + 10, 0}});
+            };
+            tile(10, 0), tile(0, 10), tile(10, 10);
+        }
+    return scene_of(faces);
+}
+
+TEST(ViewFactors, EveryEntryOfATownAbove1e6HoldsTheTolerance) {
+    const Scene scene = small_town();
+    const double tolerance = 1e-3;
+    const ViewFactors coarse = factors_of(scene, tolerance), fine = factors_of(scene, 0.02 * tolerance);
+    std::size_t entries = 0;
+    for (std::size_t i = 0; i < coarse.size(); ++i)
+        for (std::size_t j = 0; j < coarse.size(); ++j) {
+            const double F = coarse.row(i)[j], exact = fine.row(i)[j];
+            if (exact <= 1e-6) continue;
+            ++entries;
+            EXPECT_NEAR(F / exact, 1, tolerance) << i << ' ' << j << ' ' << exact;
+        }
+    EXPECT_GT(entries, 1000U);
+    EXPECT_LE(coarse.entry_defect, tolerance);
+    EXPECT_EQ(coarse.unsettled, 0U);
+}
+
 TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
     std::vector<Outline> whole, cut;
     add_box(whole, {0, 0, 0}, {4, 3, 2.5}, true, 1);

@@ -73,7 +73,7 @@ class Shaft {
 
 }  // namespace
 
-ViewPairs::ViewPairs(const Scene& scene)
+ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
     : occluders_(scene), slack_(std::max(1e-8 * scene.size(), occluders_.rounding())) {
     for (SurfaceId s : scene.surfaces().ids()) faces_.push_back(make_face(scene, s));
     blockers_ = make_convex_blockers(occluders_, slack_);
@@ -85,6 +85,7 @@ ViewPairs::ViewPairs(const Scene& scene)
     sides_.resize(faces_.size() * blockers_.size());
     standing_.resize(sides_.size());
     parallel_for(faces_.size(), 16, [&](std::size_t i) {
+        if (stop.requested()) return;
         for (std::size_t b = 0; b < blockers_.size(); ++b) {
             sides_[i * blockers_.size() + b] = sides(blockers_[b], faces_[i].outline, slack_);
             standing_[i * blockers_.size() + b] = standing(blockers_[b], faces_[i].plane);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/core/progress.hpp"
 #include "exitance/visibility/convex_blockers.hpp"
 #include "exitance/visibility/occluders.hpp"
 
@@ -26,8 +27,8 @@ class ViewPairs {
     /// Where a blocker stands to a plane, as bits.
     enum Standing : std::uint8_t { in_front = 1, behind = 2 };
 
-    /// O(faces x blockers) time, five bytes a pair of them.
-    explicit ViewPairs(const Scene& scene);
+    /// O(faces x blockers) time, five bytes a pair of them. Of no use when a stop is requested meanwhile.
+    ViewPairs(const Scene& scene, const StopRequest& stop);
 
     const std::vector<ViewFace>& faces() const { return faces_; }
     const std::vector<ConvexBlocker>& blockers() const { return blockers_; }

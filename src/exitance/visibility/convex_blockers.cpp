@@ -23,16 +23,21 @@ class Bodies {
         match_edges();
     }
 
-    /// Groups of regions that close a convex body, in the order of their first regions.
+    /// Groups of regions that close a convex body, in the order of their first regions. One that is open on one side,
+    /// as houses stand on the ground, blocks as if it were closed, as long as nothing stands within: what enters by the
+    /// opening meets a face from behind.
     std::vector<ConvexBlocker> solids(std::vector<bool>& used) {
         std::map<std::uint32_t, std::vector<RegionId>> groups;
         for (std::uint32_t r = 0; r < parent_.size(); ++r) groups[root(r)].push_back(RegionId(r));
         std::vector<ConvexBlocker> found;
         for (const auto& [first, group] : groups) {
             const bool sound = std::none_of(group.begin(), group.end(), [&](RegionId r) { return spoilt_[r.value]; });
-            if (!sound || group.size() < 4 || group.size() > ConvexBlocker::most_faces) continue;
-            ConvexBlocker body = make_body(group);
-            if (!is_convex_body(body)) continue;
+            const auto open = open_.find(first);
+            const bool is_open = open != open_.end();
+            if (!sound || group.size() + is_open < 4 || group.size() + is_open > ConvexBlocker::most_faces) continue;
+            ConvexBlocker body = make_body(group, is_open ? open->second : std::vector<Side>());
+            if (body.points.empty() || !is_convex_body(body)) continue;
+            if (is_open && holds_a_face(body, group)) continue;
             for (RegionId r : group) used[r.value] = true;
             found.push_back(std::move(body));
         }
@@ -69,12 +74,66 @@ class Bodies {
         for (const auto& [ends, regions] : by_ends) {
             const auto back = by_ends.find({ends.second, ends.first});
             const bool matched = regions.size() == 1 && back != by_ends.end() && back->second.size() == 1;
+            const bool open = regions.size() == 1 && back == by_ends.end();
             for (std::uint32_t r : regions) {
-                if (!matched) spoilt_[r] = true;
+                if (!matched && !open) spoilt_[r] = true;
                 if (back != by_ends.end())
                     for (std::uint32_t other : back->second) parent_[root(other)] = root(r);
             }
         }
+        for (const Side& side : sides_)
+            if (!by_ends.contains({side.to, side.from})) open_[root(side.region)].push_back(side);
+    }
+
+    /// Adds the face that closes a body whose edges `open` have a face on one side only. False unless they are one loop
+    /// in a plane.
+    bool add_cap(const std::vector<Side>& open, std::map<Place, std::uint32_t>& numbers, ConvexBlocker& body) const {
+        std::map<std::uint32_t, std::uint32_t> next;
+        for (const Side& side : open)
+            if (!next.try_emplace(numbers.at(side.to), numbers.at(side.from)).second) return false;
+        std::vector<std::uint32_t> loop;
+        for (std::uint32_t at = next.begin()->first; loop.size() < next.size(); at = next[at]) {
+            if (!next.contains(at)) return false;
+            loop.push_back(at);
+        }
+        if (loop.size() < 3 || next[loop.back()] != loop.front()) return false;
+        std::vector<Point> corners;
+        for (std::uint32_t c : loop) corners.push_back(body.points[c]);
+        const Vec3 area = area_vector(corners);
+        if (!(norm(area) > slack_ * slack_)) return false;
+        const Normal n = normalized(area);
+        const Plane plane{n, dot(n, corners[0])};
+        for (const Point& p : corners)
+            if (std::abs(plane.signed_distance(p)) > slack_) return false;
+        body.faces.push_back(plane);
+        body.loops.push_back(std::move(loop));
+        return true;
+    }
+
+    /// Does any face of the scene but those of the group reach into a body?
+    bool holds_a_face(const ConvexBlocker& body, const std::vector<RegionId>& group) const {
+        const Scene& scene = occluders_.scene();
+        Box inner;
+        for (const Point& p : body.points) inner.add(p);
+        std::vector<Point> inside, next;
+        for (const Surface& surface : scene.surfaces()) {
+            if (std::find(group.begin(), group.end(), surface.region) != group.end()) continue;
+            const auto first = static_cast<std::size_t>(&surface - &*scene.surfaces().begin());
+            const std::span<const Point> outline = scene.outline(SurfaceId(first));
+            Box box;
+            for (const Point& p : outline) box.add(p);
+            bool apart = false;
+            for (std::size_t s = 0; s < 3; ++s) apart |= box.lo[s] >= inner.hi[s] || box.hi[s] <= inner.lo[s];
+            if (apart) continue;
+            inside.assign(outline.begin(), outline.end());
+            for (const Plane& face : body.faces) {
+                clip(inside, {-face.n, -face.offset + 2 * slack_}, next);
+                inside.swap(next);
+                if (inside.size() < 3) break;
+            }
+            if (inside.size() >= 3) return true;
+        }
+        return false;
     }
 
     std::uint32_t root(std::uint32_t r) {
@@ -82,12 +141,12 @@ class Bodies {
         return r;
     }
 
-    ConvexBlocker make_body(const std::vector<RegionId>& group) const {
+    /// The body that regions close, with one more face where edges are open; no points when these close nothing.
+    ConvexBlocker make_body(const std::vector<RegionId>& group, const std::vector<Side>& open) const {
         ConvexBlocker body;
         std::map<Place, std::uint32_t> numbers;
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::int32_t> faces_of_edges;
         for (RegionId r : group) {
-            const auto face = static_cast<std::int32_t>(body.faces.size());
             const PieceId piece = occluders_.pieces(r).front();
             body.faces.push_back(occluders_.pieces()[piece].plane);
             std::vector<std::uint32_t>& loop = body.loops.emplace_back();
@@ -97,7 +156,12 @@ class Bodies {
                 if (is_new) body.points.push_back(p);
                 loop.push_back(known->second);
             }
-            for (std::size_t i = 0; i < loop.size(); ++i) faces_of_edges[{loop[i], loop[(i + 1) % loop.size()]}] = face;
+        }
+        if (!open.empty() && !add_cap(open, numbers, body)) return {};
+        for (std::size_t face = 0; face < body.loops.size(); ++face) {
+            const std::vector<std::uint32_t>& loop = body.loops[face];
+            for (std::size_t i = 0; i < loop.size(); ++i)
+                faces_of_edges[{loop[i], loop[(i + 1) % loop.size()]}] = static_cast<std::int32_t>(face);
         }
         for (const auto& [ends, face] : faces_of_edges)
             if (ends.first < ends.second) {
@@ -123,6 +187,7 @@ class Bodies {
     std::vector<std::uint32_t> parent_;
     std::vector<bool> spoilt_;
     std::vector<Side> sides_;
+    std::map<std::uint32_t, std::vector<Side>> open_;  ///< Edges with a face on one side only, by group.
 };
 
 }  // namespace

@@ -84,15 +84,37 @@ TEST(ConvexBlockers, AreClosedAgainWhenAPlaneCutsThem) {
     EXPECT_EQ(front.faces.size(), 6u);
 }
 
-TEST(ConvexBlockers, ABoxWithoutItsBottomIsFiveSheets) {
+SceneDescription room_with_a_house() {
     SceneDescription d;
     d.materials.push_back({"grey", Spectrum(0.5), Spectrum()});
     d.groups.push_back("all");
     add_box(d, {0, 0, 0}, {4, 4, 3}, false);
     add_box(d, {1, 1, 0}, {2, 2, 1}, true);
-    d.faces.erase(d.faces.begin() + 6);
+    d.faces.erase(d.faces.begin() + 6);  // it stands on the ground without a bottom
+    return d;
+}
+
+TEST(ConvexBlockers, ABoxWithoutItsBottomBlocksAsOneBody) {
+    const Scene scene = *make_scene(room_with_a_house()).scene;
+    const std::vector<ConvexBlocker> blockers = make_convex_blockers(Occluders(scene), 1e-7);
+    ASSERT_EQ(blockers.size(), 1u);
+    EXPECT_EQ(blockers[0].faces.size(), 6u);
+    EXPECT_EQ(blockers[0].edges.size(), 12u);
+    EXPECT_NEAR(volume(blockers[0]), 1, 1e-12);
+}
+
+TEST(ConvexBlockers, ABoxWithoutItsBottomIsFiveSheetsWhenSomethingStandsWithin) {
+    SceneDescription d = room_with_a_house();
+    add_box(d, {1.4, 1.4, 0.2}, {1.6, 1.6, 0.4}, true);
     const Scene scene = *make_scene(d).scene;
-    EXPECT_EQ(make_convex_blockers(Occluders(scene), 1e-7).size(), 5u);
+    EXPECT_EQ(make_convex_blockers(Occluders(scene), 1e-7).size(), 5u + 1u);
+}
+
+TEST(ConvexBlockers, ABoxWithoutTwoOfItsSidesStaysInSheets) {
+    SceneDescription d = room_with_a_house();
+    d.faces.pop_back();
+    const Scene scene = *make_scene(d).scene;
+    EXPECT_EQ(make_convex_blockers(Occluders(scene), 1e-7).size(), 4u);
 }
 
 TEST(ConvexBlockers, PolygonsOnOneSideOfAFaceSeeEachOtherPastTheBody) {

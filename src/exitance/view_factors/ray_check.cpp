@@ -1,0 +1,194 @@
+#include "exitance/view_factors/ray_check.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <unordered_set>
+#include <vector>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
+#include "exitance/geometry/triangulation.hpp"
+#include "exitance/visibility/rays.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t batches = 64;  ///< Means of so many are near enough to normal.
+constexpr double near_sizes = 0.2;   ///< Of the larger face's size: what is nearer has kernels without a bound.
+
+/// Draws points of a polygon, evenly.
+class FaceSampler {
+  public:
+    FaceSampler(const Scene& scene, SurfaceId s) : normal_(scene.surfaces()[s].normal) {
+        const std::span<const Point> outline = scene.outline(s);
+        for (const auto& piece : convex_pieces(outline, normal_))
+            for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
+                const Point& o = outline[piece[0]];
+                const Vec3 a = outline[piece[k]] - o, b = outline[piece[k + 1]] - o;
+                area_ += 0.5 * std::max(0.0, dot(normal_, cross(a, b)));
+                triangles_.push_back({o, a, b, area_});
+            }
+        for (const Point& p : outline) box_.add(p);
+    }
+    Point operator()(double u, double v) const {
+        const double wanted = u * area_;
+        std::size_t k = 0;
+        double before = 0;
+        while (k + 1 < triangles_.size() && triangles_[k].area_up_to <= wanted) before = triangles_[k++].area_up_to;
+        const Triangle& t = triangles_[k];
+        const double share = std::clamp((wanted - before) / std::max(t.area_up_to - before, 1e-300), 0.0, 1.0);
+        const double root = std::sqrt(share);
+        return t.o + (root * (1 - v)) * t.a + (root * v) * t.b;
+    }
+    double area() const { return area_; }
+    const Normal& normal() const { return normal_; }
+    const Box& box() const { return box_; }
+
+  private:
+    struct Triangle {
+        Point o;
+        Vec3 a, b;
+        double area_up_to;
+    };
+    Normal normal_;
+    std::vector<Triangle> triangles_;
+    double area_ = 0;
+    Box box_;
+};
+
+/// Means of batches: their mean, and how far it may be off.
+struct BatchSums {
+    double sum = 0, squares = 0;
+    void add(double mean) { sum += mean, squares += mean * mean; }
+    double mean() const { return sum / batches; }
+    double squared_error() const {
+        const double variance = (squares - sum * sum / batches) / (batches - 1);
+        return std::max(0.0, variance) / batches;
+    }
+};
+
+/// Points on both faces; the kernel cos cos / (pi r^2) where nothing stands between.
+RayEntry by_points(const RayTracer& tracer, const FaceSampler& from, RegionId own, const FaceSampler& to,
+                   RegionId other, std::size_t rays, std::uint64_t seed) {
+    const std::size_t each = (rays + batches - 1) / batches;
+    std::vector<Point> xs, ys;
+    std::vector<double> kernels;
+    const std::unique_ptr<bool[]> blocked(new bool[each]);
+    BatchSums sums;
+    double unoccluded = 0;
+    for (std::size_t b = 0; b < batches; ++b) {
+        const ScrambledSobol points(hash(seed, b));
+        xs.clear(), ys.clear(), kernels.clear();
+        for (std::uint32_t k = 0; k < each; ++k) {
+            const Point x = from(points(k, 0), points(k, 1)), y = to(points(k, 2), points(k, 3));
+            const Vec3 d = y - x;
+            const double near = dot(from.normal(), d), far = -dot(to.normal(), d), squared = dot(d, d);
+            if (near <= 0 || far <= 0) continue;
+            xs.push_back(x), ys.push_back(y);
+            kernels.push_back(near * far / (pi * squared * squared) * to.area());
+        }
+        tracer.occluded(xs, ys, own, other, std::span(blocked.get(), xs.size()));
+        double sum = 0;
+        for (std::size_t k = 0; k < xs.size(); ++k) unoccluded += kernels[k], sum += blocked[k] ? 0 : kernels[k];
+        sums.add(sum / static_cast<double>(each));
+    }
+    // One ray more may have come through: where few do, their spread tells too little.
+    const double all = static_cast<double>(each * batches), one = unoccluded / all / all;
+    return {sums.mean(), std::sqrt(sums.squared_error() + one * one), each * batches};
+}
+
+/// Directions from a face, by the cosine law: how many meet the other's front first.
+RayEntry by_directions(const RayTracer& tracer, const FaceSampler& from, RegionId own, SurfaceId target,
+                       std::size_t rays, std::uint64_t seed) {
+    const std::size_t each = (rays + batches - 1) / batches;
+    std::vector<Point> xs(each);
+    std::vector<Vec3> directions(each);
+    std::vector<RayHit> hits(each);
+    const Frame frame(from.normal());
+    BatchSums sums;
+    for (std::size_t b = 0; b < batches; ++b) {
+        const ScrambledSobol points(hash(seed, b));
+        for (std::uint32_t k = 0; k < each; ++k) {
+            xs[k] = from(points(k, 0), points(k, 1));
+            const double r = std::sqrt(points(k, 2)), phi = 2 * pi * points(k, 3);
+            directions[k] = (r * std::cos(phi)) * frame.u + (r * std::sin(phi)) * frame.v +
+                            std::sqrt(std::max(1e-12, 1 - r * r)) * from.normal();
+        }
+        tracer.nearest(xs, directions, own, hits);
+        const auto met = std::count_if(hits.begin(), hits.end(),
+                                       [&](const RayHit& hit) { return hit.surface == target && hit.front; });
+        sums.add(static_cast<double>(met) / static_cast<double>(each));
+    }
+    const double one = 1 / static_cast<double>(each * batches);
+    return {sums.mean(), std::sqrt(sums.squared_error() + one * one), each * batches};
+}
+
+/// Ranks of entries above the smallest, each once.
+std::vector<std::size_t> draw_entries(const ViewFactors& table, const RayCheckOptions& options) {
+    std::vector<std::size_t> above;
+    for (std::size_t k = 0; k < table.factors.size(); ++k)
+        if (table.factors[k] > ViewFactors::smallest_entry) above.push_back(k);
+    const std::size_t count = std::min(options.entries, above.size());
+    RandomStream random(options.seed, Stream::reference, table.size());
+    for (std::size_t k = 0; k < count; ++k) {  // the first steps of a shuffle
+        const auto rest = static_cast<double>(above.size() - k);
+        std::swap(above[k], above[std::min(above.size() - 1, k + static_cast<std::size_t>(random.uniform() * rest))]);
+    }
+    above.resize(count);
+    return above;
+}
+
+}  // namespace
+
+RayEntry view_factor_by_rays(const Scene& scene, const RayTracer& tracer, SurfaceId i, SurfaceId j, std::size_t rays,
+                             std::uint64_t seed) {
+    const FaceSampler one(scene, i), two(scene, j);
+    const Surface &a = scene.surfaces()[i], &b = scene.surfaces()[j];
+    const Vec3 apart = max(max(two.box().lo - one.box().hi, one.box().lo - two.box().hi), Vec3{});
+    const double size = std::max(one.box().diagonal(), two.box().diagonal());
+    if (norm(apart) > near_sizes * size) return by_points(tracer, one, a.region, two, b.region, rays, seed);
+    // From the smaller face more directions meet the other.
+    if (one.area() <= two.area()) return by_directions(tracer, one, a.region, j, rays, seed);
+    RayEntry back = by_directions(tracer, two, b.region, i, rays, seed);
+    back.F *= two.area() / one.area(), back.standard_error *= two.area() / one.area();
+    return back;
+}
+
+RayCheck check_by_rays(const Scene& scene, const ViewFactors& table, const RayCheckOptions& options,
+                       const StopRequest& stop) {
+    RayCheck check;
+    const std::vector<std::size_t> drawn = draw_entries(table, options);
+    if (drawn.empty()) return check;
+    const RayTracer tracer(scene);
+    std::vector<RayEntry> found(drawn.size());
+    std::atomic<bool> stopped{false};
+    parallel_for(drawn.size(), 1, [&](std::size_t k) {
+        if (stop.requested()) stopped = true;
+        if (stopped) return;
+        const std::size_t i = drawn[k] / table.size(), j = drawn[k] % table.size();
+        found[k] =
+            view_factor_by_rays(scene, tracer, SurfaceId(static_cast<std::uint32_t>(i)),
+                                SurfaceId(static_cast<std::uint32_t>(j)), options.rays, hash(options.seed, drawn[k]));
+    });
+    std::vector<double> relative_errors;
+    check.is_complete = !stopped;
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+        if (found[k].rays == 0) continue;
+        const double F = table.factors[drawn[k]], off = std::abs(F - found[k].F);
+        const double relative_error = found[k].standard_error / F;
+        ++check.entries, check.rays += found[k].rays;
+        relative_errors.push_back(relative_error);
+        check.largest_deviation = std::max(check.largest_deviation, off / found[k].standard_error);
+        if (off / F <= check.largest_relative) continue;
+        check.largest_relative = off / F, check.relative_error_there = relative_error;
+    }
+    if (relative_errors.empty()) return check;
+    std::nth_element(relative_errors.begin(), relative_errors.begin() + std::ptrdiff_t(relative_errors.size() / 2),
+                     relative_errors.end());
+    check.usual_relative_error = relative_errors[relative_errors.size() / 2];
+    return check;
+}
+
+}  // namespace exitance

@@ -1,0 +1,210 @@
+#include "exitance/view_factors/row_worker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "exitance/form_factors/pair_form_factor.hpp"
+#include "exitance/geometry/quadrature.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double smallest_entry = 1e-6;   ///< Entries below it need no digits of their own.
+constexpr double large_entry = 3e-4;      ///< Entries above it may be among the largest of their rows.
+constexpr std::size_t few_blockers = 12;  ///< With more, their critical lines would cut faces into thousands of cells.
+constexpr double alike_areas = 4;         ///< Areas of one order: either face may receive.
+constexpr double much_less = 8;           ///< Crowded than the other face.
+constexpr double much_larger = 16;        ///< Than another face.
+/// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance one was wrong by 0.6%.
+constexpr double contour_share = 1e-4;
+
+}  // namespace
+
+/// How many Gauss points a side an unoccluded receiver takes; more than most_points when the pair is too near. What
+/// the receiver sees of the source is analytic but at the source, g of the receiver's sizes away.
+int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) const {
+    const Vec3 apart = max(max(source.box.lo - receiver.box.hi, receiver.box.lo - source.box.hi), Vec3{});
+    const double g = norm(apart) / receiver.diameter, rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
+    if (rho < 1.5) return most_points + 1;
+    // A source that is near to a large receiver is brighter somewhere than on average, by about the receiver's area
+    // over the square of their distance: so many digits more.
+    const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), 1e-300));
+    return std::max(2, static_cast<int>(std::ceil(std::log(peak / (0.01 * tolerance_)) / (2 * std::log(rho)))));
+}
+
+void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {
+    const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
+    const int points = cut || !source.is_quad ? most_points + 1 : points_for(receiver, source);
+    if (points > most_points) {
+        exact_.push_back(static_cast<std::uint32_t>(j));
+        return;
+    }
+    Batch& batch = batches_[static_cast<std::size_t>(points)];
+    const std::span<const Point> o = source.outline;
+    batch.quads.add({o[0], o[1], o[2], o.back()});
+    batch.faces.push_back(static_cast<std::uint32_t>(j));
+}
+
+/// Gauss points of all of a receiver, weights summing to one.
+void RowWorker::make_nodes(const ViewFace& receiver, int points) {
+    nodes_.clear();
+    for (const std::vector<Point>& piece : receiver.pieces)
+        for (std::size_t first = 1; first + 1 < piece.size(); first += 2) {
+            const Point& o = piece[0];
+            const Vec3 a = piece[first] - o;
+            if (first + 2 == piece.size()) {  // a triangle
+                const Vec3 b = piece[first + 1] - o;
+                const double area = 0.5 * dot(receiver.plane.n, cross(a, b)) / receiver.area;
+                for (const PlanarNode& k : triangle_rule(2 * points - 1))
+                    nodes_.push_back({o + k.at.x * a + k.at.y * b, area * k.weight});
+                continue;
+            }
+            const Vec3 b = piece[first + 2] - o, c = piece[first + 1] - piece[first] - b;
+            for (const PlanarNode& k : square_rule(points)) {
+                const double u = k.at.x, v = k.at.y;
+                const double area = dot(receiver.plane.n, cross(a + v * c, b + u * c)) / receiver.area;
+                nodes_.push_back({o + u * a + v * b + (u * v) * c, area * k.weight});
+            }
+        }
+}
+
+/// Unoccluded pairs: analytic in the source, Gauss points on the receiver, many sources at a time.
+void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
+    const ViewFace& receiver = pairs_.faces()[i];
+    for (std::size_t points = 2; points < batches_.size(); ++points) {
+        Batch& batch = batches_[points];
+        if (batch.faces.empty()) continue;
+        make_nodes(receiver, static_cast<int>(points));
+        values_.resize(batch.faces.size());
+        for (const Node& node : nodes_) {
+            point_to_quads(node.at, receiver.plane.n, batch.quads, values_);
+            for (std::size_t k = 0; k < values_.size(); ++k) row[batch.faces[k]] += node.weight * values_[k];
+        }
+        batch.quads.clear();
+        batch.faces.clear();
+    }
+    for (std::uint32_t j : exact_)
+        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, contour_share * tolerance_) / receiver.area;
+    exact_.clear();
+}
+
+/// One convex piece of the receiver and one of the source, both before each other's plane.
+double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
+                                  std::span<const Point> s, bool& unoccluded) {
+    // What a large face sees of a small one changes within the size of the small one: there the small one looks back,
+    // from points of this row's own. Of faces of about one size that one receives which less stands close to.
+    const bool alike = source.area < alike_areas * receiver.area && receiver.area < alike_areas * source.area;
+    const bool turned =
+        alike && is_cluttered_
+            ? much_less * crowding(source.plane, source.diameter, standing_between_) <
+                  crowding(receiver.plane, receiver.diameter, standing_between_)
+            : source.area < receiver.area && (is_cluttered_ || much_larger * source.area < receiver.area);
+    const double smallest = smallest_entry * std::min(source.area, receiver.area);
+    const ClutteredExchange::Allowance allowance{0.5 * tolerance_, tolerance_ * smallest, is_alone_ ? 0 : smallest};
+    if (turned)
+        return cluttered_exchange_({s, r, source.plane, receiver.plane, standing_between_}, allowance, 0.45,
+                                   unoccluded);
+    if (is_cluttered_)
+        return cluttered_exchange_({r, s, receiver.plane, source.plane, standing_between_}, allowance, 0.5, unoccluded);
+    const Demand demand{tolerance_, tolerance_ * smallest, smallest, large_entry * receiver.area};
+    return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
+}
+
+/// Keeps what is left of a blocker, if it may still hide something.
+void RowWorker::add_clipped(ConvexBlocker&& part, const ViewFace& receiver, const ViewFace& source) {
+    const std::uint8_t by_r = pairs_.standing(part, receiver.plane), by_s = pairs_.standing(part, source.plane);
+    if (!(by_r & ViewPairs::in_front) || !(by_s & ViewPairs::in_front)) return;
+    if (sides(part, receiver.outline, pairs_.slack()) & sides(part, source.outline, pairs_.slack())) return;
+    clipped_.push_back(std::move(part));
+    standing_between_.push_back(&clipped_.back());
+}
+
+/// F_ij with blockers between. A blocker that crosses the plane of either face counts with its part before both.
+double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded) {
+    const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
+    standing_between_.clear();
+    clipped_.clear();
+    for (std::uint32_t b : blockers) {
+        const ConvexBlocker& blocker = pairs_.blockers()[b];
+        if (!pairs_.crosses(i, b) && !pairs_.crosses(j, b)) {
+            standing_between_.push_back(&blocker);
+            continue;
+        }
+        ConvexBlocker before_source, before_both;
+        if (blocker.is_solid() && clip_body(blocker, source.plane, pairs_.slack(), before_source) &&
+            clip_body(before_source, receiver.plane, pairs_.slack(), before_both)) {
+            if (!before_both.points.empty()) add_clipped(std::move(before_both), receiver, source);
+            continue;
+        }
+        for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
+            front_r_.clear();
+            for (std::uint32_t c : blocker.loops[k]) front_r_.push_back(blocker.points[c]);
+            clip(front_r_, source.plane, front_s_);
+            clip(front_s_, receiver.plane, front_r_);
+            if (!front_r_.empty()) add_clipped(make_sheet(front_r_, blocker.faces[k]), receiver, source);
+        }
+    }
+    if (standing_between_.empty()) return unoccluded = true, 0;
+
+    double total = 0;
+    bool all = true;
+    for (const std::vector<Point>& piece_r : receiver.pieces)
+        for (const std::vector<Point>& piece_s : source.pieces) {
+            clip(piece_r, source.plane, front_r_);
+            clip(piece_s, receiver.plane, front_s_);
+            if (front_r_.empty() || front_s_.empty()) continue;
+            bool free = false;
+            const std::vector<const ConvexBlocker*> between = standing_between_;
+            std::erase_if(standing_between_, [&](const ConvexBlocker* b) {
+                return sides(*b, front_r_, pairs_.slack()) & sides(*b, front_s_, pairs_.slack());
+            });
+            double part = 0;
+            if (standing_between_.empty())
+                free = true;
+            else
+                part = occluded_pieces(receiver, source, front_r_, front_s_, free);
+            standing_between_ = between;
+            all &= free;
+            if (free) part = exchange_area(front_r_, front_s_, contour_share * tolerance_);
+            total += part;
+        }
+    unoccluded = all;
+    return total / receiver.area;
+}
+
+double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means means) {
+    bool cut = false;
+    if (i == j || !pairs_.face_each_other(i, j, cut)) return 0;
+    const double usual = std::exchange(tolerance_, tolerance);
+    is_alone_ = true;
+    pairs_.find_blockers(i, of_row_);
+    pairs_.find_blockers(i, j, of_row_, of_pair_);
+    is_cluttered_ = of_pair_.size() > few_blockers || means == Means::without_lines;
+    bool unoccluded = of_pair_.empty();
+    double F = unoccluded ? 0 : occluded(i, j, of_pair_, unoccluded);
+    const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
+    if (unoccluded) F = exchange_area(receiver.outline, source.outline, contour_share * tolerance_) / receiver.area;
+    tolerance_ = usual, is_alone_ = false;
+    return std::clamp(F, 0.0, 1.0);
+}
+
+void RowWorker::compute(std::size_t i, std::span<double> row) {
+    pairs_.find_blockers(i, of_row_);
+    for (std::size_t j = 0; j < pairs_.faces().size(); ++j) {
+        bool cut = false;
+        if (j % 16 == 0 && stop_.requested()) return;
+        if (j == i || !pairs_.face_each_other(i, j, cut)) continue;
+        pairs_.find_blockers(i, j, of_row_, of_pair_);
+        is_cluttered_ = of_pair_.size() > few_blockers;
+        bool unoccluded = of_pair_.empty();
+        if (!unoccluded) row[j] = occluded(i, j, of_pair_, unoccluded);
+        if (!unoccluded) continue;
+        row[j] = 0;
+        add_unoccluded(i, j, cut);
+    }
+    flush_batches(i, row);
+    for (double& F : row) F = std::clamp(F, 0.0, 1.0);
+}
+
+}  // namespace exitance
