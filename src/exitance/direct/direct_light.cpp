@@ -24,7 +24,8 @@ DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
     for (RegionId r : scene.regions().ids()) {
         if (!scene.material(r).emits()) continue;
         const Region& region = scene.regions()[r];
-        Emitter emitter{r, scene.material(r).exitance, region.plane, {}, 0, occluders.pieces(r)};
+        Emitter emitter{
+            r, scene.material(r).exitance, region.plane, {}, 0, occluders.pieces(r), scene.relative_radiance(r)};
         Box box;
         for (PieceId p : emitter.pieces)
             for (const Point& corner : occluders.corners(p)) box.add(corner);
@@ -39,7 +40,7 @@ DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
 double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const {
     if (emitter.region == at.own || !may_see(at, emitter, occluders_->rounding())) return 0;
     double sum = 0;
-    for (PieceId piece : emitter.pieces) sum += visible_form_factor(*occluders_, at, piece, scratch);
+    for (PieceId piece : emitter.pieces) sum += visible_form_factor(*occluders_, at, piece, scratch, emitter.radiance);
     return sum;
 }
 
@@ -141,7 +142,7 @@ void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, Re
 
 void DirectLight::add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const {
     const std::span<const Point> corners = occluders_->corners(piece);
-    const bool in_batch = corners.size() <= 4;
+    const bool in_batch = corners.size() <= 4 && !emitters_[emitter].radiance.is_directed();
     light.sources.push_back({emitter, piece, 0, 0, in_batch});
     if (!in_batch) return;
     light.open.add({corners[0], corners[1], corners[2], corners[corners.size() - 1]});
@@ -158,8 +159,9 @@ Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Wor
     for (const ReceiverLight::Source& source : light.sources) {
         if (source.in_batch) continue;
         const auto candidates = std::span(light.candidates).subspan(source.first, source.count);
-        const double f = visible_form_factor(*occluders_, at, source.piece, candidates, scratch);
-        if (f > 0) sum += f * emitters_[source.emitter].exitance;
+        const Emitter& emitter = emitters_[source.emitter];
+        const double f = visible_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance);
+        if (f > 0) sum += f * emitter.exitance;
     }
     return light.beams.empty() ? sum : sum + beams_.irradiance(at, light.beams, light.candidates, parallel);
 }

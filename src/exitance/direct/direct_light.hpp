@@ -43,11 +43,12 @@ class DirectLight {
 
     /// Irradiance (W/m^2) at x on a surface of normal n:
     ///
-    ///     E = sum over emitters s of  M_s F(x, visible part of s)
+    ///     E = sum over emitters s of  M_s F(x, visible part of s),
     ///
-    /// and what lights without extent bring (beams.hpp). Exact but for rounding (1e-12 relative where F is not tiny). x
-    /// lies on region `own`, into whose plane it is moved, or own is none. A point that another surface covers is for
-    /// the caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
+    /// F weighted by relative radiance where s is not diffuse (directed_form_factor.hpp; to 1e-3 there), and what
+    /// lights without extent bring (beams.hpp). Exact but for rounding (1e-12 relative where F is not tiny). x lies on
+    /// region `own`, into whose plane it is moved, or own is none. A point that another surface covers is for the
+    /// caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
     /// A convex piece of an emitter.
@@ -84,11 +85,12 @@ class DirectLight {
         Point centre;
         double radius = 0;  ///< m
         IdRange<PieceId> pieces;
+        RelativeRadiance radiance = {};
     };
     const std::vector<Emitter>& emitters() const { return emitters_; }
     const Occluders& occluders() const { return *occluders_; }
 
-    /// Form factor from a receiver to the visible part of an emitter.
+    /// Form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.
     double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
 
   private:

@@ -44,6 +44,12 @@ class Dealer {
     double sum_;
 };
 
+/// Relative radiance towards a point, not below what a beam's edge may hide from an element about it.
+double likely_radiance(const DirectLight::Emitter& emitter, const Point& x) {
+    constexpr double least = 0.05;
+    return std::max(least, emitter.radiance.towards(x, emitter.centre));
+}
+
 constexpr std::size_t quad = 4;  ///< Corners; a triangle repeats its last one.
 
 }  // namespace
@@ -75,10 +81,19 @@ void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, d
             const std::span<const Point> corners = direct_.occluders().corners(piece);
             const double F = corners.size() <= quad ? F_[first + k] : point_to_polygon(x, n, corners);
             if (F <= 0) continue;
+            const double weighted = F * likely_radiance(emitter, x);
             const double both = radius + emitter.radius;
             const double near = std::min(1.0, both * both / squared_norm(emitter.centre - x));
-            sources_.push_back(
-                {{i, piece}, emitter.region, F, area_[first + k], F * emitter.exitance, 0, near, {}, 0, 0});
+            sources_.push_back({{i, piece},
+                                emitter.region,
+                                weighted,
+                                area_[first + k],
+                                weighted * emitter.exitance,
+                                0,
+                                near,
+                                {},
+                                0,
+                                0});
             all += mean(sources_.back().light);
         }
     }
@@ -102,7 +117,8 @@ void SampledLight::add_rays(const ElementTree& tree, ElementId e, std::uint32_t 
         const double above = dot(n, d), below = -dot(plane.n, d), squared = squared_norm(d);
         if (above <= 0 || below <= 0) continue;
         from_.push_back({x, own}), to_.push_back({y, source.region});
-        rays_.push_back({above * below / (pi * squared * squared), s});
+        const double p = direct_.emitters()[source.name.emitter].radiance.towards(x, y);
+        rays_.push_back({p * above * below / (pi * squared * squared), s});
     }
 }
 

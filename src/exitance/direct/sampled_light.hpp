@@ -40,7 +40,7 @@ class SampledLight {
     struct Source {
         DirectLight::SourceName name;
         RegionId region;
-        double F;           ///< From the element's middle, as if nothing stood in between.
+        double F;           ///< From the element's middle, as if nothing stood in between, by relative radiance.
         double area;        ///< m^2
         Spectrum light;     ///< At the middle.
         double share;       ///< In the light of all sources, as if nothing stood in between.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "exitance/core/result.hpp"
 #include "exitance/core/spectrum.hpp"
 #include "exitance/geometry/polygon.hpp"
+#include "exitance/scene/emission_profile.hpp"
 #include "exitance/scene/point_light.hpp"
 #include "exitance/scene/scene_camera.hpp"
 
@@ -18,13 +20,15 @@ using MaterialId = Id<struct MaterialTag>;  ///< One material of the input.
 using GroupId = Id<struct GroupTag>;        ///< One named object of the input.
 using RegionId = Id<struct RegionTag>;      ///< Coplanar faces of one material joined along edges.
 
-/// How a surface reflects and emits, both diffusely.
+/// How a surface reflects, diffusely, and emits, diffusely or by a profile.
 struct Material {
     std::string name;
     Spectrum reflectance;  ///< Share of the arriving flux that leaves again, in [0, 1).
     Spectrum exitance;     ///< Emitted flux per area, W/m^2 (or lm/m^2).
+    DirectedEmission emission = {};
 
     bool emits() const { return max(exitance) > 0; }
+    bool is_directed() const { return emits() && !emission.profile.is_none(); }
 };
 
 /// What takes the place of a reflectance from 1 to `whitest_reflectance`, at which light would never die out. That some
@@ -99,6 +103,7 @@ struct SceneDescription {
     std::string file;
     std::vector<Point> points;
     std::vector<Material> materials;
+    std::vector<EmissionProfile> profiles;  ///< That materials emit by.
     std::vector<std::string> groups;
     std::vector<Face> faces;
     std::vector<PunctualLight> lights;
@@ -124,6 +129,18 @@ class Scene {
     const Box& box() const { return box_; }
     double size() const { return box_.diagonal(); }  ///< Diagonal of its box, metres.
 
+    /// How light leaves a region's front: its radiance by direction, over that of a diffuse one.
+    RelativeRadiance relative_radiance(RegionId r) const {
+        const Material& m = material(r);
+        return m.is_directed() ? RelativeRadiance(profiles_[m.emission.profile], m.emission, regions_[r].plane.n)
+                               : RelativeRadiance();
+    }
+    const Field<ProfileId, EmissionProfile>& profiles() const { return profiles_; }
+    /// Is there anything that emits, and not diffusely?
+    bool has_directed_emission() const {
+        return std::any_of(emitters_.begin(), emitters_.end(), [&](SurfaceId s) { return material(s).is_directed(); });
+    }
+
     /// Faces that emit, in the order of their ids.
     const std::vector<SurfaceId>& emitters() const { return emitters_; }
     /// Sources without extent, in the order of the file.
@@ -139,6 +156,7 @@ class Scene {
     std::string file_;
     Field<SurfaceId, Surface> surfaces_;
     Field<MaterialId, Material> materials_;
+    Field<ProfileId, EmissionProfile> profiles_;
     Field<GroupId, std::string> groups_;
     Field<RegionId, Region> regions_;
     std::vector<Point> corners_;

@@ -68,6 +68,10 @@ Scene SceneBuilder::make() {
     }
     add_regions(scene, join_coplanar(mesh_, tol_));
     for (Material& m : in_.materials) scene.materials_.add(std::move(m));
+    for (EmissionProfile& p : in_.profiles) {
+        p.find_smooth_width();
+        scene.profiles_.add(std::move(p));
+    }
     for (const std::string& g : in_.groups) scene.groups_.add(g);
     for (PunctualLight& light : in_.lights)
         if (max(light.intensity) > 0) scene.lights_.push_back(std::move(light));

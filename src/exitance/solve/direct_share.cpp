@@ -60,7 +60,8 @@ Moments moments_at(const Stage& stage, const GlobalLight& light, const ElementLo
 
 Spectrum find_direct_share(const Stage& stage, const GlobalLight& light, const ElementLocator& locator,
                            std::uint64_t seed) {
-    if (!emitters_are_large(stage.scene)) return {};
+    // Emitters have to be diffuse: what a gather of M finds is their light then.
+    if (!emitters_are_large(stage.scene) || stage.scene.has_directed_emission()) return {};
     // One leaf in each of many strata of equal area.
     constexpr std::size_t count = 128;
     std::vector<ElementId> chosen;

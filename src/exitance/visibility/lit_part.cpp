@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {
@@ -132,6 +133,17 @@ double LitPart::form_factor(const Normal& n) const {
         }
     }
     return std::clamp(sum.total(), 0.0, 1.0);
+}
+
+double LitPart::form_factor(const Normal& n, const RelativeRadiance& p, std::vector<Vec3>& corners) const {
+    double sum = 0;
+    for (const Fragment& fragment : fragments_) {
+        corners.clear();
+        for (const Vec2& c : std::span(corners_).subspan(fragment.first, fragment.count))
+            corners.push_back(to_space(c));
+        sum += directed_form_factor(n, corners, p);
+    }
+    return sum;
 }
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/geometry/vec.hpp"
+#include "exitance/scene/emission_profile.hpp"
 
 namespace exitance {
 
@@ -35,6 +36,9 @@ class LitPart {
 
     /// Form factor from x with normal n to the fragments.
     double form_factor(const Normal& n) const;
+
+    /// The same of a source that does not shine diffusely (directed_form_factor). `corners`: room to work in.
+    double form_factor(const Normal& n, const RelativeRadiance& p, std::vector<Vec3>& corners) const;
 
     std::size_t size() const { return fragments_.size(); }
 

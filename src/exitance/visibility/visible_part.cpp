@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/edge_sum.hpp"
 
@@ -191,9 +192,13 @@ bool cut_lit(std::size_t first, Workspace& scratch) {
 }
 
 /// The form factor to what the shadows leave, the first `cut` of which have cut the source already.
-double finish(const Normal& n, std::size_t cut, Workspace& scratch, VisiblePartMethod method) {
+double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLight& light) {
+    if (light.radiance.is_directed()) {
+        if (scratch.shadows.empty()) return directed_form_factor(n, scratch.source, light.radiance);
+        return cut_lit(cut, scratch) ? scratch.lit.form_factor(n, light.radiance, scratch.clipped) : 0;
+    }
     if (scratch.shadows.empty()) return std::max(0.0, contour_sum(n, scratch.source));
-    if (method == VisiblePartMethod::edge_sums) {
+    if (light.method == VisiblePartMethod::edge_sums) {
         const double f = edge_sum(n, scratch);
         if (!std::isnan(f)) return std::clamp(f, 0.0, 1.0);
         cut = 0;
@@ -212,11 +217,11 @@ void begin(const Occluders& occluders, const Receiver& at, PieceId source, Works
 }  // namespace
 
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
-                           VisiblePartMethod method) {
+                           const PartLight& light) {
     begin(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
     const bool in_scene = !at.own.is_none();  // what lies on the scene's hull stands between none of its points
-    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, method);
+    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     PieceId& likely = scratch.last_blocker(occluders, source);
@@ -240,20 +245,19 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
     const std::size_t large = scratch.shadows.size();
     if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
     if (visit(Occluders::Size::small)) return 0;
-    return finish(at.n, large > 1 ? large : 0, scratch, method);
+    return finish(at.n, large > 1 ? large : 0, scratch, light);
 }
 
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
-                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch,
-                           VisiblePartMethod method) {
+                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch, const PartLight& light) {
     begin(occluders, at, source, scratch);
     if (scratch.source.empty()) return 0;
-    if (candidates.empty()) return finish(at.n, 0, scratch, method);
+    if (candidates.empty()) return finish(at.n, 0, scratch, light);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     for (PieceId p : candidates)
         if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
-    return finish(at.n, 0, scratch, method);
+    return finish(at.n, 0, scratch, light);
 }
 
 }  // namespace exitance

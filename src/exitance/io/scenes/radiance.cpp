@@ -6,9 +6,10 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "exitance/geometry/polygon.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
-#include "exitance/io/scenes/rad_materials.hpp"
+#include "exitance/io/scenes/rad_emission.hpp"
 #include "exitance/io/scenes/rad_shapes.hpp"
 #include "exitance/io/scenes/xform.hpp"
 
@@ -26,6 +27,13 @@ struct Call {
     std::size_t depth = 0;
 };
 
+Normal normal_of(const SceneDescription::Face& face, const std::vector<Point>& points) {
+    std::vector<Point> corners;
+    for (const std::uint32_t c : face.corners) corners.push_back(points[c]);
+    const Vec3 area = area_vector(corners);
+    return norm(area) > 0 ? normalized(area) : Normal{0, 0, 1};
+}
+
 class RadianceReader {
   public:
     explicit RadianceReader(const std::string& path) : path_(path) { out_.description.file = path; }
@@ -37,36 +45,33 @@ class RadianceReader {
     void take(RadPrimitive p, const Call& call);
     void take_surface(const RadPrimitive& p, const Call& call);
     void take_source(const RadPrimitive& p, const Call& call);
-    bool has_readable_light(const RadMeaning& meaning, const RadPrimitive& p, const std::string& file);
+    void note_patterns(const RadMeaning& meaning);
 
     const std::string& path_;
     ReadScene out_;
     RadFindings findings_;
     RadMaterials materials_{findings_};
+    RadEmission emission_{materials_, findings_, path_};
     std::unordered_map<std::string, std::string> texts_;  ///< Files that commands name, read once.
     std::unordered_map<std::string, std::uint32_t> groups_;
     std::vector<const std::string*> open_;  ///< Files being read, which may not call themselves.
     std::size_t copies_ = 0, bytes_ = 0;
 };
 
-/// Patterns on what reflects are left out; what changes an emitter's light has to be read.
-bool RadianceReader::has_readable_light(const RadMeaning& meaning, const RadPrimitive& p, const std::string& file) {
-    if (meaning.pattern_count == 0) return true;
+/// Patterns on what reflects.
+void RadianceReader::note_patterns(const RadMeaning& meaning) {
+    if (meaning.pattern_count == 0) return;
     const RadPattern& pattern = materials_.patterns[meaning.pattern];
-    if (meaning.kind != RadMeaning::Kind::emits)
-        return findings_.note("patterns and textures", {pattern.file, pattern.primitive.line}), true;
-    findings_.error({file, p.line},
-                    fmt::format("'{}' emits by the {} '{}', which is not read", shown(p.name), pattern.primitive.type,
-                                shown(pattern.primitive.name)),
-                    "without it the light would be another");
-    return false;
+    findings_.note("patterns and textures", {pattern.file, pattern.primitive.line});
 }
 
 void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
     const std::string& file = *call.file;
     const RadMeaning* meaning = materials_.meaning_of(p, file);
     const std::optional<RadShape> shape = meaning ? rad_shape(p, file, findings_) : std::nullopt;
-    if (!shape || meaning->kind == RadMeaning::Kind::left_out || !has_readable_light(*meaning, p, file)) return;
+    if (!shape || meaning->kind == RadMeaning::Kind::left_out) return;
+    const bool emits = meaning->kind == RadMeaning::Kind::emits;
+    if (!emits) note_patterns(*meaning);
     auto& d = out_.description;
     // A line of text can ask for any number of copies. Most scenes have no more than these.
     if (const std::size_t most = 300'000 + bytes_ / 20; d.faces.size() + 2 * shape->facets.size() > most) {
@@ -88,6 +93,12 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
             d.points.push_back(call.to_world.point(corner));
         }
         if (turned) std::reverse(face.corners.begin(), face.corners.end());
+        if (emits) {
+            const std::optional<std::uint32_t> material =
+                emission_.material_of(*meaning, p, file, normal_of(face, d.points));
+            if (!material) return;
+            face.material = *material;
+        }
         d.faces.push_back(face);
         // What reflects is seen from both sides; of a ball the other one is nowhere in view.
         if (meaning->kind != RadMeaning::Kind::reflects || shape->is_closed) continue;
@@ -110,7 +121,9 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
         return findings_.error(at, fmt::format("source '{}' has no direction or size", p.name));
     if (meaning->kind != RadMeaning::Kind::emits || angle > small)
         return findings_.note("skies and other wide sources", at);
-    if (!has_readable_light(*meaning, p, at.file)) return;
+    if (meaning->pattern_count > 0)
+        return findings_.error(at,
+                               fmt::format("the light of source '{}' has a pattern, which is not read", shown(p.name)));
     PunctualLight light;
     light.name = call.prefix + shown(p.name), light.kind = PunctualLight::Kind::directional;
     light.direction = -towards / length;
@@ -200,6 +213,7 @@ ReadScene RadianceReader::read() {
         findings_.error({path_, 0}, text.error().message);
     }
     out_.description.materials = std::move(materials_.materials);
+    out_.description.profiles = std::move(emission_.profiles);
     out_.findings = findings_.take();
     return std::move(out_);
 }

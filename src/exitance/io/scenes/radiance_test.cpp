@@ -189,7 +189,7 @@ TEST_F(RadianceFiles, PatternsLieOnPatternsAndMixturesAreOfTheirFirstMaterial) {
 TEST_F(RadianceFiles, WhatCannotBeReadUnderAnEmitterIsAnError) {
     const std::string pattern = "lamp brightfunc d 2 ripple ripple.cal 0 0\n";
     EXPECT_EQ(first_error(pattern + "d polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"),
-              "s.rad:5: 'p' emits by the brightfunc 'd', which is not read");
+              "s.rad:5: 'p' emits by the brightfunc 'd', which cannot be read: the function 'ripple' is not known");
     const CheckedScene unused = load(pattern + std::string("lamp ") + square);
     EXPECT_TRUE(unused.scene) << "a distribution that no face has changes nothing";
     const CheckedScene sky = load(pattern + std::string("d source s 0 0 4 0 0 1 180\nlamp ") + square);

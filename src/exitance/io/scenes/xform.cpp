@@ -128,7 +128,6 @@ Result<Xform> XformParser::parse() {
             out.file = word;
         }
     }
-    if (out.file.empty()) return bad("xform is given no file");
     lay_out(out.copies);
     return out;
 }
@@ -136,7 +135,17 @@ Result<Xform> XformParser::parse() {
 }  // namespace
 
 Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t most_copies) {
-    return XformParser(words, most_copies).parse();
+    Result<Xform> out = XformParser(words, most_copies).parse();
+    if (out && out->file.empty()) return Error{ErrorCode::bad_input, "xform is given no file", "", ""};
+    return out;
+}
+
+Result<Affine> parse_transform(const std::vector<std::string>& words) {
+    const Result<Xform> parsed = XformParser(words, 1).parse();
+    if (!parsed) return parsed.error();
+    if (!parsed->file.empty())
+        return Error{ErrorCode::bad_input, fmt::format("'{}' is no transform", shown(parsed->file)), "", ""};
+    return parsed->copies[0];
 }
 
 }  // namespace exitance

@@ -21,4 +21,7 @@ struct Xform {
 /// Everything else is an error that says so.
 Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t most_copies);
 
+/// The same for a transform by itself, without a file and copies.
+Result<Affine> parse_transform(const std::vector<std::string>& words);
+
 }  // namespace exitance

@@ -72,7 +72,21 @@ std::string scene_fingerprint(const Scene& scene) {
         for (const Point& p : scene.outline(s)) all.add(p);
         all.add(surface.material.value), all.add(surface.region.value);
     }
-    for (const Material& material : scene.materials()) all.add(material.reflectance), all.add(material.exitance);
+    for (const Material& material : scene.materials()) {
+        all.add(material.reflectance), all.add(material.exitance);
+        if (!material.is_directed()) continue;
+        const DirectedEmission& emission = material.emission;
+        all.add(static_cast<double>(emission.profile.value)), all.add(emission.scale);
+        all.add(emission.x), all.add(emission.y), all.add(emission.z);
+    }
+    for (const EmissionProfile& profile : scene.profiles()) {
+        all.add(static_cast<double>(profile.body)), all.add(profile.size);
+        for (const double v : profile.values) all.add(v);
+        for (const EmissionProfile::Axis& axis : profile.axes) {
+            all.add(static_cast<double>(axis.angle)), all.add(axis.offset);
+            for (const double v : axis.at) all.add(v);
+        }
+    }
     for (const PunctualLight& light : scene.lights()) {
         all.add(static_cast<double>(light.kind));
         all.add(light.position), all.add(light.direction), all.add(light.intensity);

@@ -2,96 +2,11 @@
 #include <cmath>
 
 #include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/io/solution/stored_columns.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
 
 namespace exitance {
 namespace {
-
-std::vector<double> flat(const std::vector<Point>& points) {
-    std::vector<double> out;
-    out.reserve(3 * points.size());
-    for (const Point& p : points) out.insert(out.end(), {p.x, p.y, p.z});
-    return out;
-}
-
-/// One column of a pool, as the file holds it.
-template <class T, class Pool, class Get>
-std::vector<T> column(const Pool& pool, const Get& get) {
-    std::vector<T> out;
-    out.reserve(pool.size());
-    for (const auto& item : pool) out.push_back(static_cast<T>(get(item)));
-    return out;
-}
-
-template <class Pool, class Get>
-std::vector<double> spectra(const Pool& pool, const Get& get) {
-    std::vector<double> out;
-    for (const auto& item : pool) {
-        const Spectrum s = get(item);
-        out.insert(out.end(), s.value.begin(), s.value.end());
-    }
-    return out;
-}
-
-/// Reads columns of a group and checks what is in them.
-class Columns {
-  public:
-    Columns(Hdf5Reader& file, const std::string& group) : file_(file), group_(group + "/") {}
-
-    template <class T>
-    std::vector<T> read(const char* name, std::size_t columns = 1, std::optional<std::size_t> rows = {}) {
-        std::vector<T> values = file_.read<T>(group_ + name, columns, rows);
-        if constexpr (std::is_floating_point_v<T>)
-            for (T value : values)
-                if (!std::isfinite(value))
-                    return file_.fail(group_ + name, "holds a number that is not finite"), std::vector<T>();
-        return values;
-    }
-    std::vector<std::uint32_t> indices(const char* name, std::size_t below, std::optional<std::size_t> rows = {}) {
-        std::vector<std::uint32_t> values = read<std::uint32_t>(name, 1, rows);
-        for (std::uint32_t value : values)
-            if (value >= below)
-                return file_.fail(group_ + name,
-                                  "holds " + std::to_string(value) + ", not below " + std::to_string(below)),
-                       std::vector<std::uint32_t>();
-        return values;
-    }
-    /// Counts that add up to `sum`, each at least `least`.
-    std::vector<std::uint32_t> counts(const char* name, std::size_t least, std::size_t sum,
-                                      std::optional<std::size_t> rows = {}) {
-        std::vector<std::uint32_t> values = read<std::uint32_t>(name, 1, rows);
-        std::size_t total = 0;
-        bool enough = true;
-        for (std::uint32_t value : values) total += value, enough = enough && value >= least;
-        if (!file_.failed() && (total != sum || !enough))
-            return file_.fail(group_ + name, "holds counts that do not fit the sets they count"),
-                   std::vector<std::uint32_t>();
-        return values;
-    }
-    std::vector<Point> points(const char* name, std::optional<std::size_t> rows = {}) {
-        const std::vector<double> values = read<double>(name, 3, rows);
-        std::vector<Point> out(values.size() / 3);
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-        return out;
-    }
-    std::vector<Normal> normals(const char* name, std::size_t rows) {
-        std::vector<Normal> out = points(name, rows);
-        for (const Normal& n : out)
-            if (std::abs(norm(n) - 1) > 1e-6)
-                return file_.fail(group_ + name, "holds a normal whose length is not 1"), out;
-        return out;
-    }
-
-  private:
-    Hdf5Reader& file_;
-    std::string group_;
-};
-
-Spectrum spectrum(const std::vector<double>& values, std::size_t row) {
-    Spectrum s;
-    for (std::size_t b = 0; b < bands; ++b) s[b] = values[row * bands + b];
-    return s;
-}
 
 /// Lights and views, which few scenes have: without them the file has no sets for them.
 void write_lights(Hdf5Writer& file, const std::string& group, const std::vector<PunctualLight>& lights) {
@@ -238,6 +153,7 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     file.write(in("emitter"), column<std::uint32_t>(scene.emitters_, [](SurfaceId s) { return s.value; }), 1,
                {"1", "faces that emit"});
     file.write(in("box"), flat({scene.box_.lo, scene.box_.hi}), 3, {"m", "lower and upper corner of the scene's box"});
+    write_emission(file, group, scene.materials_, scene.profiles_);
     write_lights(file, group, scene.lights_);
     write_cameras(file, group, scene.cameras_);
 }
@@ -277,6 +193,8 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     const auto loop_count = in.counts("region_loop_count", 1, loop_corners.size(), region_count);
     const auto emitters = in.indices("emitter", face_count);
     const auto box = in.points("box", 2);
+    scene.profiles_ = read_profiles(file, group);
+    const std::vector<DirectedEmission> emission = read_emission(file, group, material_count, scene.profiles_.size());
     scene.lights_ = read_lights(file, group);
     scene.cameras_ = read_cameras(file, group);
     for (std::size_t i = 0; i < face_count && !file.failed(); ++i)
@@ -286,7 +204,7 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     if (file.failed()) return {};
 
     for (std::size_t i = 0; i < material_count; ++i)
-        scene.materials_.add({material_names[i], spectrum(reflectance, i), spectrum(exitance, i)});
+        scene.materials_.add({material_names[i], spectrum(reflectance, i), spectrum(exitance, i), emission[i]});
     for (const std::string& name : group_names) scene.groups_.add(name);
     for (std::size_t i = 0; i < face_count; ++i)
         scene.surfaces_.add({first_corner[i], corner_count[i], MaterialId(material[i]), GroupId(group_of[i]),

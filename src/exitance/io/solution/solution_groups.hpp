@@ -17,6 +17,14 @@ class StoredScene {
     static Scene read(Hdf5Reader& file, const std::string& group);
 };
 
+/// How materials emit that do not do so diffusely; nothing where all do.
+void write_emission(Hdf5Writer& file, const std::string& group, const Field<MaterialId, Material>& materials,
+                    const Field<ProfileId, EmissionProfile>& profiles);
+Field<ProfileId, EmissionProfile> read_profiles(Hdf5Reader& file, const std::string& group);
+/// One for every material.
+std::vector<DirectedEmission> read_emission(Hdf5Reader& file, const std::string& group, std::size_t material_count,
+                                            std::size_t profile_count);
+
 /// A tree as its roots' patches and how every element was cut, which gives all patches back bit for bit; values in the
 /// order of the leaves and their patches' corners.
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function);

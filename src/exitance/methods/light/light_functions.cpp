@@ -135,7 +135,8 @@ bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumberin
 }  // namespace
 
 Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed) {
-    if (!stage.scene.lights().empty()) return Spectrum(1.0);
+    // Whether all light arrives is found by diffuse rays.
+    if (!stage.scene.lights().empty() || stage.scene.has_directed_emission()) return Spectrum(1.0);
     const auto exitance = [&](ElementId e) { return stage.scene.material(direct.tree.region(e)).exitance; };
     if (!all_arrives(stage, direct.tree, LeafNumbering(direct.tree), exitance, seed)) return Spectrum(1.0);
     Spectrum emitted, received;  // W

@@ -8,7 +8,8 @@ PathTracer::PathTracer(const Stage& stage) : stage_(stage) {
     for (const auto& [region, patch] : stage_.pieces) {
         const Material& material = stage.scene.material(region);
         if (!material.emits()) continue;
-        lights_.push_back({region, patch, stage.scene.regions()[region].plane.n, patch.area(), material.exitance});
+        lights_.push_back({region, patch, stage.scene.regions()[region].plane.n, patch.area(), material.exitance,
+                           stage.scene.relative_radiance(region)});
     }
 }
 
@@ -27,7 +28,10 @@ Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream&
         const std::optional<Vertex> next = follow(*y, cosine_direction(Frame(y->n), u, v));
         if (next) {
             const Spectrum& exitance = stage_.scene.material(next->region).exitance;
-            if (max(exitance) > 0) sum += throughput * exitance * (1 - weight_of_shadow_ray(*y, *next));
+            if (max(exitance) > 0)
+                sum += throughput * exitance *
+                       (stage_.scene.relative_radiance(next->region).towards(y->x, next->x) *
+                        (1 - weight_of_shadow_ray(*y, *next)));
         }
         y = next;
     }
@@ -109,7 +113,8 @@ Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
     if (!seen || seen->region != light.region) return {};
     const double density = shadow_density(y, target);
     if (density <= 0) return {};
-    return light.exitance * (at_y / pi / density * weight_of_shadow_ray(y, target));
+    return light.exitance *
+           (light.radiance.towards(y.x, target.x) * at_y / pi / density * weight_of_shadow_ray(y, target));
 }
 
 }  // namespace exitance

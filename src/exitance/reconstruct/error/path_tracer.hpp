@@ -34,6 +34,7 @@ class PathTracer {
         Normal n;
         double area;
         Spectrum exitance;
+        RelativeRadiance radiance;
     };
 
     std::optional<Vertex> follow(const Vertex& from, const Vec3& direction) const;

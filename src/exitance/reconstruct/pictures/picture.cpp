@@ -110,9 +110,22 @@ class TilePainter {
         }
     }
 
+    /// Of an emitter, over that of a diffuse one: mean over a spot.
+    double radiance_towards_eye(const Spot& spot) const {
+        const RelativeRadiance radiance = scene_.relative_radiance(spot.region);
+        if (!radiance.is_directed()) return 1;
+        const bool parallel = options_.camera.projection == Projection::orthographic;
+        double sum = 0;
+        for (std::uint32_t i = 0; i < spot.count; ++i)
+            sum += parallel ? radiance(-normalized(directions_.front()))
+                            : radiance.towards(options_.camera.eye, points_[spot.first + i]);
+        return sum / spot.count;
+    }
+
     void add(const Spot& spot, Pixel& pixel) const {
         const Material& material = scene_.material(spot.region);
-        const Spectrum radiosity = material.exitance + material.reflectance * spot.irradiance;
+        Spectrum radiosity = material.reflectance * spot.irradiance;
+        if (material.emits()) radiosity += radiance_towards_eye(spot) * material.exitance;
         pixel.irradiance += spot.count * spot.irradiance;
         pixel.radiosity += spot.count * radiosity;
         if (!material.emits()) return;

@@ -109,7 +109,7 @@ const ReceiverLight* TileLight::look_at_block(std::span<const Spot> spots, const
 /// Is a spot so small beside its distance from every emitter that direct light is linear over it? E ~ 1 / d^2 over
 /// r = d / 30 departs from its tangent by at most (r / d)^2 times a few: less than 1%, and its mean by a fraction.
 bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const {
-    constexpr double small = 1.0 / 30;
+    constexpr double small = 1.0 / 30, part_of_step = 1.0 / 8;
     double radius_squared = 0;
     for (std::uint32_t i = 0; i < spot.count; ++i)
         radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));
@@ -121,7 +121,10 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const 
     }
     for (const ReceiverLight::Source& source : known.sources) {
         const DirectLight::Emitter& emitter = light_.stage().direct.emitters()[source.emitter];
-        const double distance = small * (norm(emitter.centre - middle) - emitter.radius);
+        // Beams are as sharp as the steps of their tables.
+        const double angle =
+            emitter.radiance.is_directed() ? std::min(small, part_of_step * emitter.radiance.smooth_width()) : small;
+        const double distance = angle * (norm(emitter.centre - middle) - emitter.radius);
         if (distance <= 0 || radius_squared > distance * distance) return false;
     }
     return true;

@@ -1,0 +1,114 @@
+#include "exitance/form_factors/directed_form_factor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "exitance/form_factors/point_to_polygon.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double accepted_difference = 1e-3;  ///< Of the means of three places and of six; the latter's error is less.
+constexpr double agreement = 0.3;             ///< Of that: where one place and three differ by less, three will do.
+constexpr double least_mean = 0.02;           ///< Of p: errors are relative to this where it is less.
+constexpr double finest = 2 * pi / 180;       ///< Triangles that look narrower count as smooth.
+constexpr double coarse = 0.3;                ///< Radians, of the triangles that the mean is guessed by.
+constexpr int deepest = 20;                   ///< Bisections of a triangle.
+
+using Triangle = std::array<Vec3, 3>;
+
+/// Sums over places of a triangle: of the kernel, and of the kernel times p.
+struct Sums {
+    double kernel = 0, weighted = 0;
+    double mean() const { return kernel > 0 ? weighted / kernel : 0; }
+};
+
+class DirectedIntegral {
+  public:
+    DirectedIntegral(const Normal& n, const RelativeRadiance& p)
+        : n_(n), p_(p), widest_(std::max(p.smooth_width(), finest)) {}
+
+    double operator()(std::span<const Vec3> corners) {
+        Sums guess;
+        for (std::size_t i = 2; i < corners.size(); ++i) add_coarse({corners[0], corners[i - 1], corners[i]}, 0, guess);
+        allowed_ = accepted_difference * std::max(least_mean, 0.5 * guess.mean());  // it may well be twice the mean
+        double sum = 0;
+        for (std::size_t i = 2; i < corners.size(); ++i) sum += part({corners[0], corners[i - 1], corners[i]}, 0);
+        return sum;
+    }
+
+  private:
+    /// r leads from the point to a place of the polygon.
+    void add(const Vec3& r, double weight, Sums& sums) const {
+        const double r2 = squared_norm(r), above = dot(n_, r), before = -dot(p_.normal(), r);
+        if (!(above > 0 && before > 0)) return;
+        const double kernel = weight * above * before / (r2 * r2);
+        sums.kernel += kernel;
+        sums.weighted += kernel * p_(-r / std::sqrt(r2));
+    }
+    /// Three places, each with barycentric coordinates a, b, b.
+    void add_three(const Triangle& t, double a, double weight, Sums& sums) const {
+        const double b = 0.5 * (1 - a);
+        for (std::size_t i = 0; i < 3; ++i) add(a * t[i] + b * (t[(i + 1) % 3] + t[(i + 2) % 3]), weight, sums);
+    }
+
+    static bool looks_wider(const Triangle& t, double angle) {
+        const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+        const double longest =
+            std::max({squared_norm(t[1] - t[0]), squared_norm(t[2] - t[1]), squared_norm(t[0] - t[2])});
+        return longest > angle * angle * squared_norm(middle);
+    }
+    /// The two halves on either side of the middle of the longest edge.
+    static std::array<Triangle, 2> bisected(const Triangle& t) {
+        std::size_t i = 0;
+        double longest = -1;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const double length = squared_norm(t[(k + 1) % 3] - t[k]); length > longest) longest = length, i = k;
+        const Vec3 &a = t[i], &b = t[(i + 1) % 3], &c = t[(i + 2) % 3], m = (a + b) / 2;
+        return {Triangle{a, m, c}, Triangle{m, b, c}};
+    }
+
+    /// The mean of p, roughly: by the middles of triangles that look small.
+    void add_coarse(const Triangle& t, int depth, Sums& sums) const {
+        if (depth < deepest / 2 && looks_wider(t, coarse)) {
+            for (const Triangle& half : bisected(t)) add_coarse(half, depth + 1, sums);
+            return;
+        }
+        add((t[0] + t[1] + t[2]) / 3, norm(cross(t[1] - t[0], t[2] - t[0])), sums);
+    }
+
+    double part(const Triangle& t, int depth) const {
+        if (depth == deepest || !looks_wider(t, widest_)) {
+            Sums one, three, six;
+            add_three(t, 2.0 / 3, 1, three);
+            if (!looks_wider(t, 0.5 * widest_)) {
+                add((t[0] + t[1] + t[2]) / 3, 1, one);
+                if (std::abs(three.mean() - one.mean()) <=
+                    agreement * std::max(allowed_, accepted_difference * one.mean()))
+                    return three.mean() * std::max(0.0, contour_sum(n_, t));
+            }
+            add_three(t, 0.108103018168070, 0.223381589678011, six);  // degree 4 [Dunavant85]
+            add_three(t, 0.816847572980459, 0.109951743655322, six);
+            if (depth == deepest ||
+                std::abs(six.mean() - three.mean()) <= std::max(allowed_, accepted_difference * six.mean()))
+                return six.mean() * std::max(0.0, contour_sum(n_, t));
+        }
+        double sum = 0;
+        for (const Triangle& half : bisected(t)) sum += part(half, depth + 1);
+        return sum;
+    }
+
+    const Normal& n_;
+    const RelativeRadiance& p_;
+    double widest_;       ///< Radians, a triangle's longest edge.
+    double allowed_ = 0;  ///< Error of p.
+};
+
+}  // namespace
+
+double directed_form_factor(const Normal& n, std::span<const Vec3> corners, const RelativeRadiance& p) {
+    return DirectedIntegral(n, p)(corners);
+}
+
+}  // namespace exitance
