@@ -75,7 +75,7 @@ async function check_models(page, origin) {
     fs.writeFileSync(path.join(folder, 'three.html'), page_text);
     await page.goto(`${origin}/three.html`);
     await page.waitForFunction('window.ready');
-    let failed = 0, camera;
+    let failed = 0, camera = process.env.CAMERA;
     for (const kind of ['emissive', 'unlit']) {
         const manifest = JSON.parse(fs.readFileSync(path.join(folder, kind, 'lightmaps.json')));
         const [reference, chosen] = render(kind, camera, manifest.exposure);

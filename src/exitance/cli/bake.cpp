@@ -3,6 +3,8 @@
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 
 namespace exitance {
@@ -20,7 +22,12 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     terminal.progress().finish();
     if (!maps) return terminal.fail(maps.error());
-    const Result<void> written = write_light_maps(*solution, *maps, arguments.format, arguments.output);
+    LightMapFormat format = arguments.format;
+    const std::string scene_file = solution->scene.file();
+    format.scene_file = find_scene_file(solution->scene, arguments.solution);
+    if (format.scene_file.empty() && (ending(scene_file) == ".glb" || ending(scene_file) == ".gltf"))
+        terminal.note(fmt::format("{} is not there: scene.glb goes without its textures", scene_file));
+    const Result<void> written = write_light_maps(*solution, *maps, format, arguments.output);
     if (!written) return terminal.fail(written.error());
     std::string sizes;
     for (const LightMap& map : maps->maps)

@@ -144,7 +144,7 @@ Result<void> write_light_maps(const Solution& solution, const LightMaps& light, 
     }
     ToneMap tone = make_tone_map(solution);
     tone.curve = ToneCurve::filmic;
-    const Result<void> written = write_light_map_glb(solution, light, format.material, tone, folder + "/scene.glb");
+    const Result<void> written = write_light_map_glb(solution, light, format, tone, folder + "/scene.glb");
     if (!written) return written;
     return write_file(folder + "/lightmaps.json", manifest(scene, light, format.quantity, tone));
 }

@@ -27,6 +27,7 @@ struct LightMapFormat {
     LightMapQuantity quantity = LightMapQuantity::irradiance;
     Precision precision = Precision::single;
     LightMapMaterial material = LightMapMaterial::emissive;
+    std::string scene_file;  ///< Where the scene's own textures are, if it is glTF; empty: nowhere.
 };
 
 /// Writes what a folder of light maps holds, and makes the folder where there is none:
@@ -53,15 +54,16 @@ void for_each_texel(const LightMaps& light, std::size_t map, const Visit& visit)
     }
 }
 
-/// Binary glTF 2.0: a triangle mesh of the input's faces, Y up, metres. TEXCOORD_0: places in the face's plane, metres;
-/// TEXCOORD_1: places in the light maps. Colours are radiosity times `tone.scale`:
+/// Binary glTF 2.0: a triangle mesh of the input's faces, Y up, metres. TEXCOORD_0 and 1: the scene's own texture
+/// coordinates, as many as it has; without any, TEXCOORD_0 are places in the face's plane, metres. The next one: places
+/// in the light maps. Colours are radiosity times `tone.scale`:
 ///  emissive      black surfaces that emit rho E (stored from 0 to a peak), lamps a constant. Nothing but the light
 ///  that
 ///                was computed is seen, whatever lights a viewer brings along;
 ///  unlit         the picture of B, toned by `tone`;
 ///  moz_lightmap  reflectance as base colour, E in the extension, pi times as strong since such light maps are divided
 ///                by pi again.
-Result<void> write_light_map_glb(const Solution& solution, const LightMaps& light, LightMapMaterial material,
+Result<void> write_light_map_glb(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
                                  const ToneMap& tone, const std::string& path);
 
 }  // namespace exitance

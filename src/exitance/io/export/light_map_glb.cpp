@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/io/export/glb_container.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/export/reflected_maps.hpp"
 #include "exitance/io/pictures/png.hpp"
 
 namespace exitance {
@@ -32,25 +34,32 @@ struct Primitive {
 
 struct Mesh {
     std::vector<Float3> position, normal;
-    std::vector<Float2> plane_place, map_place;
-    std::vector<std::uint32_t> index;  ///< Counted from the first vertex of its primitive.
+    std::vector<Float2> place, second_place, map_place;  ///< Second ones: of the scene, or none.
+    std::vector<std::uint32_t> index;                    ///< Counted from the first vertex of its primitive.
     std::vector<Primitive> primitives;
 };
 
-void add_face(const Scene& scene, SurfaceId s, const Chart& chart, const LightMaps& light, Mesh& mesh) {
+Float2 floats(Vec2 v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y)};
+}
+
+void add_face(const Scene& scene, SurfaceId s, const Chart& chart, const LightMaps& light,
+              const SceneTextures* textures, Mesh& mesh) {
     Primitive& primitive = mesh.primitives.back();
     const MapSize size = light.maps[chart.map].size;
-    const Normal& n = scene.surfaces()[s].normal;
-    for (const auto& triangle : triangulate(scene.outline(s), n))
+    const Surface& face = scene.surfaces()[s];
+    const std::span<const Point> outline = scene.outline(s);
+    for (const auto& triangle : triangulate(outline, face.normal))
         for (const std::uint32_t corner : triangle)
             mesh.index.push_back(static_cast<std::uint32_t>(primitive.vertices + corner));
-    for (const Point& p : scene.outline(s)) {
-        const Vec2 place = chart.place(p);
-        mesh.position.push_back(y_up(p)), mesh.normal.push_back(y_up(n));
-        mesh.plane_place.push_back(
-            {static_cast<float>(place.x / light.density), static_cast<float>(place.y / light.density)});
-        mesh.map_place.push_back({static_cast<float>((chart.x + place.x) / size.width),
-                                  static_cast<float>((chart.y + place.y) / size.height)});
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+        const Vec2 place = chart.place(outline[k]);
+        mesh.position.push_back(y_up(outline[k])), mesh.normal.push_back(y_up(face.normal));
+        mesh.place.push_back(floats(textures ? textures->places[0][face.first_corner + k]
+                                             : Vec2{place.x / light.density, place.y / light.density}));
+        if (textures && textures->has_second_set())
+            mesh.second_place.push_back(floats(textures->places[1][face.first_corner + k]));
+        mesh.map_place.push_back(floats({(chart.x + place.x) / size.width, (chart.y + place.y) / size.height}));
         for (std::size_t axis = 0; axis < 3; ++axis) {
             primitive.lo[axis] = std::min(primitive.lo[axis], mesh.position.back()[axis]);
             primitive.hi[axis] = std::max(primitive.hi[axis], mesh.position.back()[axis]);
@@ -60,7 +69,7 @@ void add_face(const Scene& scene, SurfaceId s, const Chart& chart, const LightMa
     primitive.indices = mesh.index.size() - primitive.first_index;
 }
 
-Mesh make_mesh(const Scene& scene, const LightMaps& light) {
+Mesh make_mesh(const Scene& scene, const LightMaps& light, const SceneTextures* textures) {
     const auto primitive_of = [&](SurfaceId s) {
         const Surface& face = scene.surfaces()[s];
         return Primitive{face.group.value, face.material.value, light.charts[face.region.value].map};
@@ -76,14 +85,9 @@ Mesh make_mesh(const Scene& scene, const LightMaps& light) {
             primitive.first_vertex = mesh.position.size(), primitive.first_index = mesh.index.size();
             mesh.primitives.push_back(primitive);
         }
-        add_face(scene, s, light.charts[scene.surfaces()[s].region.value], light, mesh);
+        add_face(scene, s, light.charts[scene.surfaces()[s].region.value], light, textures, mesh);
     }
     return mesh;
-}
-
-/// What textures hold, W/m^2: what reflecting surfaces send out, or for MOZ_lightmap what they receive.
-Spectrum stored(const Scene& scene, const LightMap& map, const Chart& chart, std::size_t i, LightMapMaterial way) {
-    return way == LightMapMaterial::moz_lightmap ? map.at(i) : scene.material(chart.region).reflectance * map.at(i);
 }
 
 struct TextureLevels {
@@ -91,7 +95,7 @@ struct TextureLevels {
     std::vector<Spectrum> mean;  ///< Mean irradiance of a material, W/m^2.
 };
 
-TextureLevels find_levels(const Scene& scene, const LightMaps& light, LightMapMaterial way, const ToneMap& tone) {
+TextureLevels find_levels(const Scene& scene, const LightMaps& light, const LightMaps& shown, const ToneMap& tone) {
     // Eight bits are spent on what a display shows: two stops above white are kept, at least.
     constexpr double whites = 4;
     TextureLevels levels;
@@ -104,7 +108,7 @@ TextureLevels find_levels(const Scene& scene, const LightMaps& light, LightMapMa
             const std::uint32_t material = scene.regions()[chart.region].material.value;
             levels.mean[material] += share * light.maps[m].at(i), weights[material] += share;
             if (scene.material(chart.region).emits()) return;
-            const auto rgb = red_green_blue(stored(scene, light.maps[m], chart, i, way));
+            const auto rgb = red_green_blue(shown.maps[m].at(i));
             peak = std::max({peak, rgb[0], rgb[1], rgb[2]});
         });
     for (std::size_t i = 0; i < weights.size(); ++i)
@@ -113,15 +117,32 @@ TextureLevels find_levels(const Scene& scene, const LightMaps& light, LightMapMa
     return levels;
 }
 
-/// What a texture shows: light over the peak, or the toned picture of radiosity.
-Image texture(const Scene& scene, const LightMaps& light, std::size_t m, LightMapMaterial way, const ToneMap& tone,
+/// One of the arrays that vertices have a row of each in.
+struct VertexArray {
+    std::string name;
+    std::size_t stride;  ///< Bytes.
+    std::span<const std::byte> bytes;
+};
+
+std::vector<VertexArray> vertex_arrays(const Mesh& mesh) {
+    std::vector<VertexArray> out{{"POSITION", sizeof(Float3), std::as_bytes(std::span(mesh.position))},
+                                 {"NORMAL", sizeof(Float3), std::as_bytes(std::span(mesh.normal))}};
+    for (const auto* places : {&mesh.place, &mesh.second_place, &mesh.map_place})
+        if (!places->empty())
+            out.push_back(
+                {fmt::format("TEXCOORD_{}", out.size() - 2), sizeof(Float2), std::as_bytes(std::span(*places))});
+    return out;
+}
+
+/// What a texture shows: light over the peak, or the toned picture of it with what surfaces emit by themselves.
+Image texture(const Scene& scene, const LightMaps& shown, std::size_t m, LightMapMaterial way, const ToneMap& tone,
               double peak) {
-    const LightMap& map = light.maps[m];
+    const LightMap& map = shown.maps[m];
     Image image(map.size.width, map.size.height);
-    for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
+    for_each_texel(shown, m, [&](const Chart& chart, std::size_t i) {
         const DisplayColour colour = way == LightMapMaterial::unlit
-                                         ? tone(texel_value(scene, map, chart, i, LightMapQuantity::radiosity))
-                                         : red_green_blue(stored(scene, map, chart, i, way) / peak);
+                                         ? tone(scene.material(chart.region).exitance + map.at(i))
+                                         : red_green_blue(map.at(i) / peak);
         for (std::size_t c = 0; c < 3; ++c)
             image.rgb[3 * i + c] =
                 static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(std::clamp(colour[c], 0.0, 1.0))));
@@ -142,25 +163,50 @@ std::string emission(std::array<double, 3> colour, const std::string& texture, s
     return fmt::format(",\"emissiveFactor\":{}{}", triple(colour), texture);
 }
 
-std::string material_json(const Material& material, std::size_t map, LightMapMaterial way, const ToneMap& tone,
-                          const TextureLevels& levels, const Spectrum& mean_irradiance) {
+/// Pictures of a document and textures that show them: the maps, then one a material that has a picture of its own.
+struct Textures {
+    std::vector<std::string> files;  ///< PNG or JPEG.
+    std::string images, textures, samplers;
+    int light_set = 1;                    ///< Which texture coordinates are places in the maps.
+    Field<MaterialId, std::string> base;  ///< Of every material, what it says of its own picture, or nothing.
+
+    void add_file(const std::string& file, const std::string& name, const std::string& kind, std::size_t first_view) {
+        images += fmt::format("{}{{\"name\":{},\"mimeType\":\"{}\",\"bufferView\":{}}}", images.empty() ? "" : ",",
+                              json_text(name), kind, first_view + files.size());
+        files.push_back(file);
+    }
+    std::size_t add_texture(std::size_t source, int wrap_s, int wrap_t) {
+        const char* comma = count == 0 ? "" : ",";
+        textures += fmt::format("{}{{\"sampler\":{},\"source\":{}}}", comma, count, source);
+        samplers +=
+            fmt::format("{}{{\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":{},\"wrapT\":{}}}", comma, wrap_s, wrap_t);
+        return count++;
+    }
+    std::size_t count = 0;
+};
+
+std::string material_json(const Scene& scene, MaterialId id, std::size_t map, LightMapMaterial way, const ToneMap& tone,
+                          const TextureLevels& levels, const Textures& textures) {
+    const Material& material = scene.materials()[id];
     const auto rho = red_green_blue(material.reflectance), exitance = red_green_blue(material.exitance);
-    const std::string texture = fmt::format("{{\"index\":{},\"texCoord\":1}}", map);
+    const std::string light = fmt::format("{{\"index\":{},\"texCoord\":{}}}", map, textures.light_set);
     std::string base = "[0,0,0,1]", base_texture, emitted, extensions;
+    if (way != LightMapMaterial::unlit) base_texture = textures.base[id];
     if (way == LightMapMaterial::unlit) {
-        base = "[1,1,1,1]", base_texture = ",\"baseColorTexture\":" + texture;
+        base = "[1,1,1,1]", base_texture = ",\"baseColorTexture\":" + light;
         extensions = ",\"KHR_materials_unlit\":{}";
     } else if (material.emits()) {
-        emitted = emission(red_green_blue(tone.scale * (material.exitance + material.reflectance * mean_irradiance)),
-                           "", extensions);
+        const Spectrum radiosity = material.exitance + material.reflectance * levels.mean[id.value];
+        emitted = emission(red_green_blue(tone.scale * radiosity), "", extensions);
     } else if (way == LightMapMaterial::emissive) {
         // The factor is grey: the importer of Blender 3.4 mixes up coloured ones.
         const double strength = tone.scale * levels.peak;
-        emitted = emission({strength, strength, strength}, ",\"emissiveTexture\":" + texture, extensions);
+        emitted = emission({strength, strength, strength}, ",\"emissiveTexture\":" + light, extensions);
     } else {
-        base = fmt::format("[{},{},{},1]", rho[0], rho[1], rho[2]);
-        extensions = fmt::format(",\"MOZ_lightmap\":{{\"index\":{},\"texCoord\":1,\"intensity\":{}}}", map,
-                                 pi * tone.scale * levels.peak);
+        // Of a textured one the picture says it, as far as a factor of 1 goes.
+        base = base_texture.empty() ? fmt::format("[{},{},{},1]", rho[0], rho[1], rho[2]) : "[1,1,1,1]";
+        extensions = fmt::format(",\"MOZ_lightmap\":{{\"index\":{},\"texCoord\":{},\"intensity\":{}}}", map,
+                                 textures.light_set, pi * tone.scale * levels.peak);
     }
     // A black surface without highlights, told in both ways: a viewer's own lights add nothing.
     if (way != LightMapMaterial::unlit)
@@ -178,7 +224,7 @@ void add(std::string& list, const std::string& item) {
 /// JSON of a document in the making; the binary chunk has a view an array, then one a texture.
 class Document {
   public:
-    Document(const Scene& scene, const Mesh& mesh, std::span<const std::string> textures)
+    Document(const Scene& scene, const Mesh& mesh, const Textures& textures)
         : scene_(scene), mesh_(mesh), textures_(textures) {
         add_views();
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> numbers;
@@ -209,98 +255,117 @@ class Document {
             add(nodes_, placed.nodes), cameras = fmt::format("\"cameras\":[{}],", placed.cameras);
             for (std::size_t i = 0; i < placed.count; ++i) add(scene_nodes_, std::to_string(nodes_count_ + i));
         }
-        std::string images, sources;
-        for (std::size_t m = 0; m < textures_.size(); ++m) {
-            add(images, fmt::format("{{\"name\":\"lightmap_{}\",\"mimeType\":\"image/png\",\"bufferView\":{}}}", m,
-                                    arrays + m));
-            add(sources, fmt::format("{{\"sampler\":0,\"source\":{}}}", m));
-        }
         std::string json = fmt::format(
             "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"exposure\":{},"
             "\"texturePeak\":{},\"unit\":\"W/"
             "m^2\"}}}},\"extensionsUsed\":[{}],\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}"
-            "],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"images\":[{}],\"textures\":[{}],\"samplers\":[{{"
-            "\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":33071,\"wrapT\":33071}}],{}\"accessors\":[{}],"
+            "],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"images\":[{}],\"textures\":[{}],\"samplers\":[{}],{}"
+            "\"accessors\":[{}],"
             "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
-            EXITANCE_VERSION, tone.scale, levels.peak, used, scene_nodes_, nodes_, meshes_, materials, images, sources,
-            cameras, accessors_, views_, bytes_);
+            EXITANCE_VERSION, tone.scale, levels.peak, used, scene_nodes_, nodes_, meshes_, materials, textures_.images,
+            textures_.textures, textures_.samplers, cameras, accessors_, views_, bytes_);
         json.resize((json.size() + 3) / 4 * 4, ' ');
         return json;
     }
 
   private:
-    static constexpr std::size_t arrays = 5;
-
     void add_view(std::size_t bytes, const std::string& more) {
         add(views_, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}{}}}", bytes_, bytes, more));
         bytes_ += (bytes + 3) / 4 * 4;
     }
     void add_views() {
-        const std::size_t n = mesh_.position.size();
-        for (const std::size_t size : {sizeof(Float3), sizeof(Float3), sizeof(Float2), sizeof(Float2)})
-            add_view(n * size, fmt::format(",\"byteStride\":{},\"target\":34962", size));
+        for (const VertexArray& array : vertex_arrays(mesh_))
+            add_view(array.bytes.size(), fmt::format(",\"byteStride\":{},\"target\":34962", array.stride));
         add_view(mesh_.index.size() * 4, ",\"target\":34963");
-        for (const std::string& texture : textures_) add_view(texture.size(), "");
+        for (const std::string& file : textures_.files) add_view(file.size(), "");
     }
 
     std::string primitive_json(const Primitive& p, std::size_t material) {
-        constexpr std::array<const char*, 4> names{"POSITION", "NORMAL", "TEXCOORD_0", "TEXCOORD_1"};
         std::string attributes;
-        for (std::size_t a = 0; a < names.size(); ++a) {
-            const std::size_t size = a < 2 ? sizeof(Float3) : sizeof(Float2);
+        const std::vector<VertexArray> arrays = vertex_arrays(mesh_);
+        for (std::size_t a = 0; a < arrays.size(); ++a) {
             std::string accessor =
                 fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"{}\"",
-                            a, p.first_vertex * size, p.vertices, a < 2 ? "VEC3" : "VEC2");
+                            a, p.first_vertex * arrays[a].stride, p.vertices, a < 2 ? "VEC3" : "VEC2");
             if (a == 0) accessor += fmt::format(",\"min\":{},\"max\":{}", triple(p.lo), triple(p.hi));
             add(accessors_, accessor + "}");
-            add(attributes, fmt::format("\"{}\":{}", names[a], accessor_count_++));
+            add(attributes, fmt::format("\"{}\":{}", arrays[a].name, accessor_count_++));
         }
         add(accessors_,
             fmt::format(
-                "{{\"bufferView\":4,\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
-                p.first_index * 4, p.indices));
+                "{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
+                arrays.size(), p.first_index * 4, p.indices));
         return fmt::format("{{\"attributes\":{{{}}},\"indices\":{},\"material\":{}}}", attributes, accessor_count_++,
                            material);
     }
 
     const Scene& scene_;
     const Mesh& mesh_;
-    std::span<const std::string> textures_;
+    const Textures& textures_;
     std::string nodes_, scene_nodes_, meshes_, accessors_, views_;
     std::size_t nodes_count_ = 0, accessor_count_ = 0, bytes_ = 0;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> material_of_;
 };
 
+/// The maps as pictures, and the scene's own pictures where materials show them.
+Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, LightMapMaterial way, const ToneMap& tone,
+                               double peak, const SceneTextures* own) {
+    constexpr int clamp = 33071;
+    Textures out;
+    const bool two_sets = own && own->has_second_set();
+    out.light_set = two_sets ? 2 : 1;
+    out.base.resize(scene.materials().size());
+    const std::size_t first_view = two_sets ? 6 : 5;  // after the arrays of vertices and indices
+    for (std::size_t m = 0; m < shown.maps.size(); ++m) {
+        const Result<std::string> png = encode_png(texture(scene, shown, m, way, tone, peak), {});
+        if (!png) return png.error();
+        out.add_file(*png, fmt::format("lightmap_{}", m), "image/png", first_view);
+        out.add_texture(m, clamp, clamp);
+    }
+    if (!own || way == LightMapMaterial::unlit) return out;
+    for (std::size_t p = 0; p < own->pictures.size(); ++p)
+        out.add_file({own->pictures[p].file.begin(), own->pictures[p].file.end()}, fmt::format("picture_{}", p),
+                     own->pictures[p].kind, first_view);
+    for (MaterialId id : scene.materials().ids()) {
+        const SceneTextures::Coat& coat = own->coats[id];
+        if (coat.picture < 0 || own->places[coat.set].empty()) continue;
+        const std::size_t number =
+            out.add_texture(shown.maps.size() + static_cast<std::size_t>(coat.picture), coat.wrap_s, coat.wrap_t);
+        out.base[id] = fmt::format(",\"baseColorTexture\":{{\"index\":{},\"texCoord\":{}}}", number, coat.set);
+    }
+    return out;
+}
+
 }  // namespace
 
-Result<void> write_light_map_glb(const Solution& solution, const LightMaps& light, LightMapMaterial material,
+Result<void> write_light_map_glb(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
                                  const ToneMap& tone, const std::string& path) {
     const Scene& scene = solution.scene;
-    const TextureLevels levels = find_levels(scene, light, material, tone);
-    std::vector<std::string> textures;
-    for (std::size_t m = 0; m < light.maps.size(); ++m) {
-        Result<std::string> png = encode_png(texture(scene, light, m, material, tone, levels.peak), {});
-        if (!png) return png.error();
-        textures.push_back(std::move(*png));
-    }
-    const Mesh mesh = make_mesh(scene, light);
-    Document document(scene, mesh, textures);
+    const std::optional<SceneTextures> own = load_scene_textures(scene, format.scene_file);
+    const LightMapMaterial material = format.material;
+    const SceneTextures* textures_of_scene = own ? &*own : nullptr;
+    const bool as_received = material == LightMapMaterial::moz_lightmap;
+    const LightMaps reflected = as_received ? LightMaps() : reflected_maps(scene, light, textures_of_scene);
+    const LightMaps& shown = as_received ? light : reflected;
+    const TextureLevels levels = find_levels(scene, light, shown, tone);
+    Result<Textures> textures = make_textures(scene, shown, material, tone, levels.peak, textures_of_scene);
+    if (!textures) return textures.error();
+    const Mesh mesh = make_mesh(scene, light, textures_of_scene);
+    Document document(scene, mesh, *textures);
     std::string materials, used;
     for (const auto& [number, map] : document.materials())
-        add(materials,
-            material_json(scene.materials()[MaterialId(number)], map, material, tone, levels, levels.mean[number]));
+        add(materials, material_json(scene, MaterialId(number), map, material, tone, levels, *textures));
     for (const char* extension : {"KHR_materials_unlit", "KHR_materials_emissive_strength", "MOZ_lightmap",
                                   "KHR_materials_specular", "KHR_materials_ior"})
         if (materials.find(fmt::format("\"{}\":", extension)) != std::string::npos)
             add(used, fmt::format("\"{}\"", extension));
     const std::string json = document.text(materials, used, tone, levels);
-    std::vector<std::span<const std::byte>> parts{
-        std::as_bytes(std::span(mesh.position)), std::as_bytes(std::span(mesh.normal)),
-        std::as_bytes(std::span(mesh.plane_place)), std::as_bytes(std::span(mesh.map_place)),
-        std::as_bytes(std::span(mesh.index))};
-    for (std::string& texture : textures) {
-        texture.resize((texture.size() + 3) / 4 * 4);
-        parts.push_back(std::as_bytes(std::span(texture)));
+    std::vector<std::span<const std::byte>> parts;
+    for (const VertexArray& array : vertex_arrays(mesh)) parts.push_back(array.bytes);
+    parts.push_back(std::as_bytes(std::span(mesh.index)));
+    for (std::string& file : textures->files) {
+        file.resize((file.size() + 3) / 4 * 4);
+        parts.push_back(std::as_bytes(std::span(file)));
     }
     return write_glb_container(path, json, parts, "bake with a smaller --density");
 }

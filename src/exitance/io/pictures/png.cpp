@@ -116,4 +116,21 @@ Result<std::array<double, 3>> mean_of_png(std::span<const std::uint8_t> file, co
     return mean.mean();
 }
 
+Result<TexturePixels> decode_png(std::span<const std::uint8_t> file) {
+    const Error unreadable{ErrorCode::bad_input, "is a PNG that cannot be read", "", ""};
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_memory(&image, file.data(), file.size())) return unreadable;
+    if (std::uint64_t(image.width) * image.height > most_texture_pixels) return png_image_free(&image), unreadable;
+    image.format = PNG_FORMAT_RGBA;
+    std::vector<std::uint8_t> rgba(std::size_t(4) * image.width * image.height);
+    if (!png_image_finish_read(&image, nullptr, rgba.data(), 0, nullptr)) return unreadable;
+    TexturePixels out{image.width, image.height, {}};
+    out.rgb.reserve(rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < rgba.size(); i += 4)
+        out.rgb.insert(out.rgb.end(), rgba.begin() + static_cast<std::ptrdiff_t>(i),
+                       rgba.begin() + static_cast<std::ptrdiff_t>(i + 3));
+    return out;
+}
+
 }  // namespace exitance

@@ -64,7 +64,8 @@ bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*,
 
 class GltfReader {
   public:
-    GltfReader(const std::string& path, std::vector<Finding>& findings) : path_(path), findings_(findings) {}
+    GltfReader(const std::string& path, std::vector<Finding>& findings, bool with_textures)
+        : path_(path), findings_(findings), with_textures_(with_textures) {}
     Result<GltfModel> read();
 
   private:
@@ -78,6 +79,9 @@ class GltfReader {
     bool rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out);
     GltfAccessor accessor_of(const tinygltf::Accessor& in) const;
     void read_views_and_lamps();
+    void read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out);
+    void read_base_texture(const tinygltf::TextureInfo& in, GltfModel::Material& out);
+    void read_pictures();
     bool read_nodes();
     bool read_node(const tinygltf::Node& in, std::size_t number);
 
@@ -98,6 +102,7 @@ class GltfReader {
 
     const std::string& path_;
     std::vector<Finding>& findings_;
+    bool with_textures_;
     tinygltf::Model in_;
     GltfModel out_;
     std::optional<GltfAccessorCheck> accessors_;
@@ -234,8 +239,67 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
     if (in.material >= 0 && !names_one(in.material, in_.materials))
         return error(fmt::format("mesh '{}' has material {} of {}", mesh, in.material, in_.materials.size()));
     p.material = in.material;
+    if (with_textures_) read_places(in, p);
     out.primitives.push_back(p);
     return true;
+}
+
+double number_in(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key, double otherwise) {
+    const auto found = extensions.find(extension);
+    if (found == extensions.end() || !found->second.IsObject() || !found->second.Has(key)) return otherwise;
+    const tinygltf::Value& value = found->second.Get(key);
+    return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+}
+
+void GltfReader::read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
+    for (std::size_t set = 0; set < out.places.size(); ++set) {
+        const auto found = in.attributes.find(fmt::format("TEXCOORD_{}", set));
+        if (found == in.attributes.end() || !names_one(found->second, in_.accessors)) continue;
+        const tinygltf::Accessor& accessor = in_.accessors[static_cast<std::size_t>(found->second)];
+        if (accessor.type != TINYGLTF_TYPE_VEC2) continue;
+        const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), 2, false, "places");
+        if (held && held->size() >= out.positions.size()) out.places[set] = *held;
+    }
+}
+
+void GltfReader::read_base_texture(const tinygltf::TextureInfo& in, GltfModel::Material& out) {
+    if (!names_one(in.index, in_.textures) || (in.texCoord != 0 && in.texCoord != 1)) return;
+    const tinygltf::Texture& texture = in_.textures[static_cast<std::size_t>(in.index)];
+    if (!names_one(texture.source, in_.images)) return;
+    out.picture = texture.source, out.place_set = in.texCoord;
+    if (names_one(texture.sampler, in_.samplers)) {
+        const tinygltf::Sampler& sampler = in_.samplers[static_cast<std::size_t>(texture.sampler)];
+        out.wrap_s = sampler.wrapS, out.wrap_t = sampler.wrapT;
+    }
+    const auto found = in.extensions.find("KHR_texture_transform");
+    if (found == in.extensions.end() || !found->second.IsObject()) return;
+    const auto pair = [&](const char* key, double otherwise) {
+        std::array<double, 2> value{otherwise, otherwise};
+        if (!found->second.Has(key) || found->second.Get(key).ArrayLen() != 2) return value;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const tinygltf::Value& number = found->second.Get(key).Get(k);
+            if (number.IsNumber()) value[k] = number.GetNumberAsDouble();
+        }
+        return value;
+    };
+    const auto offset = pair("offset", 0), scale = pair("scale", 1);
+    const double turn = number_in(in.extensions, "KHR_texture_transform", "rotation", 0);
+    const double c = std::cos(turn), s = std::sin(turn);
+    out.transform = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    const double set = number_in(in.extensions, "KHR_texture_transform", "texCoord", out.place_set);
+    if (set == 0 || set == 1) out.place_set = static_cast<int>(set);
+}
+
+/// Pictures stay where they are in buffers; those beside the file move to the model.
+void GltfReader::read_pictures() {
+    for (tinygltf::Image& image : in_.images) {
+        if (image.bufferView >= 0) {
+            out_.pictures.push_back(view_bytes(image.bufferView).value_or(std::span<const std::uint8_t>()));
+            continue;
+        }
+        out_.bytes.push_back(std::move(image.image));
+        out_.pictures.push_back(out_.bytes.back());
+    }
 }
 
 bool GltfReader::read_meshes() {
@@ -272,13 +336,6 @@ GltfModel::Colour GltfReader::texture_mean(int texture, const ByteCurve& decode,
     return {(*mean)[0], (*mean)[1], (*mean)[2]};
 }
 
-double number_in(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key, double otherwise) {
-    const auto found = extensions.find(extension);
-    if (found == extensions.end() || !found->second.IsObject() || !found->second.Has(key)) return otherwise;
-    const tinygltf::Value& value = found->second.Get(key);
-    return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
-}
-
 GltfModel::Colour colour_of(const std::vector<double>& factor, double otherwise) {
     if (factor.size() < 3) return {otherwise, otherwise, otherwise};
     return {factor[0], factor[1], factor[2]};
@@ -304,6 +361,7 @@ void GltfReader::read_materials() {
         if (m.emission.r != 0 || m.emission.g != 0 || m.emission.b != 0)
             m.emission = times(m.emission, texture_mean(in.emissiveTexture.index, srgb_curve(), m.name));
         m.double_sided = in.doubleSided;
+        if (with_textures_) read_base_texture(pbr.baseColorTexture, m);
         m.transparent =
             in.alphaMode == "BLEND" || in.alphaMode == "MASK" || in.extensions.count("KHR_materials_transmission") > 0;
         out_.materials.push_back(std::move(m));
@@ -392,6 +450,7 @@ Result<GltfModel> GltfReader::read() {
     if (check_extensions() && read_meshes()) {
         read_materials();
         read_nodes();
+        if (with_textures_) read_pictures();
     }
     for (tinygltf::Buffer& buffer : in_.buffers) out_.bytes.push_back(std::move(buffer.data));
     return std::move(out_);
@@ -399,8 +458,8 @@ Result<GltfModel> GltfReader::read() {
 
 }  // namespace
 
-Result<GltfModel> load_gltf_model(const std::string& path, std::vector<Finding>& findings) {
-    return GltfReader(path, findings).read();
+Result<GltfModel> load_gltf_model(const std::string& path, std::vector<Finding>& findings, bool with_textures) {
+    return GltfReader(path, findings, with_textures).read();
 }
 
 }  // namespace exitance

@@ -60,6 +60,8 @@ struct GltfModel {
         int accessor = -1;  ///< Of the positions: primitives that share it share their points.
         int material = -1;
         Mode mode = Mode::triangles;
+        std::array<GltfRows, 2>
+            places;  ///< TEXCOORD_0 and 1 where textures were asked for; of no rows where there are none.
     };
     struct Mesh {
         std::string name;
@@ -73,6 +75,10 @@ struct GltfModel {
         Colour base, emission;  ///< Factors times the means of their textures; emission in W/(m^2 sr).
         double metallic = 1;
         bool double_sided = false, transparent = false;
+        /// The texture of its base colour where textures were asked for: a picture, which set of places, how places go
+        /// beyond its borders (glTF's numbers), and KHR_texture_transform.
+        int picture = -1, place_set = 0, wrap_s = 10497, wrap_t = 10497;
+        std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};  ///< s' = t0 s + t1 t + t2, t' = t3 s + t4 t + t5
     };
     struct View {
         std::string name;
@@ -101,6 +107,8 @@ struct GltfModel {
     std::vector<Node> nodes;
     std::vector<int> roots;  ///< Nodes of the default scene.
 
+    std::vector<std::span<const std::uint8_t>> pictures;  ///< Files, where textures were asked for; none: not there.
+
     std::vector<std::vector<std::uint8_t>> bytes;  ///< What the rows point into; moved, never copied.
 
     GltfModel() = default;
@@ -115,7 +123,7 @@ std::optional<Affine> gltf_transform(std::span<const double> matrix, std::span<c
 
 /// Reads the model out of glTF's JSON or binary container; buffers and pictures beside the file are read too. What can
 /// be done without goes to `findings`. Every index, count, offset and stride is checked against the data before use,
-/// and nothing is copied out of buffers.
-Result<GltfModel> load_gltf_model(const std::string& path, std::vector<Finding>& findings);
+/// and nothing is copied out of buffers. `with_textures`: places and pictures, too; those that are faulty are left out.
+Result<GltfModel> load_gltf_model(const std::string& path, std::vector<Finding>& findings, bool with_textures = false);
 
 }  // namespace exitance

@@ -29,8 +29,9 @@ void count_passes(j_common_ptr info) {
 }
 
 /// libjpeg reports errors by a jump: nothing with a destructor may live in this function.
+template <class Rows>
 bool decode_rows(jpeg_decompress_struct& info, Failure& failure, std::span<const std::uint8_t> file,
-                 std::vector<std::uint8_t>& row, MeanOfRows& mean) {
+                 std::vector<std::uint8_t>& row, Rows& out) {
     if (setjmp(failure.jump)) return false;
     jpeg_create_decompress(&info);
     failure.progress.progress_monitor = count_passes;
@@ -50,25 +51,47 @@ bool decode_rows(jpeg_decompress_struct& info, Failure& failure, std::span<const
     while (info.output_scanline < info.output_height) {
         std::uint8_t* rows[1] = {row.data()};
         jpeg_read_scanlines(&info, rows, 1);
-        mean.add(row.data(), info.output_width);
+        out.add(row.data(), info.output_width);
     }
     return true;
 }
 
-}  // namespace
+/// All rows, one after the other.
+struct AllRows {
+    TexturePixels pixels;
+    void add(const std::uint8_t* rgb, std::size_t count) {
+        pixels.rgb.insert(pixels.rgb.end(), rgb, rgb + 3 * count);
+        pixels.width = count, ++pixels.height;
+    }
+};
 
-Result<std::array<double, 3>> mean_of_jpeg(std::span<const std::uint8_t> file, const ByteCurve& decode) {
+template <class Rows>
+bool decode(std::span<const std::uint8_t> file, Rows& out) {
     jpeg_decompress_struct info{};
     Failure failure{};
     info.err = jpeg_std_error(&failure.manager);
     failure.manager.error_exit = fail;
     failure.manager.output_message = ignore;
     std::vector<std::uint8_t> row;
-    MeanOfRows mean(decode);
-    const bool done = decode_rows(info, failure, file, row, mean);
+    const bool done = decode_rows(info, failure, file, row, out);
     jpeg_destroy_decompress(&info);
-    if (!done) return Error{ErrorCode::bad_input, "is a JPEG that cannot be read", "", ""};
+    return done;
+}
+
+const Error unreadable{ErrorCode::bad_input, "is a JPEG that cannot be read", "", ""};
+
+}  // namespace
+
+Result<std::array<double, 3>> mean_of_jpeg(std::span<const std::uint8_t> file, const ByteCurve& curve) {
+    MeanOfRows mean(curve);
+    if (!decode(file, mean)) return unreadable;
     return mean.mean();
+}
+
+Result<TexturePixels> decode_jpeg(std::span<const std::uint8_t> file) {
+    AllRows rows;
+    if (!decode(file, rows)) return unreadable;
+    return std::move(rows.pixels);
 }
 
 }  // namespace exitance

@@ -32,11 +32,28 @@ const ByteCurve& linear_curve() {
     return curve;
 }
 
+namespace {
+
+bool is_png(std::span<const std::uint8_t> file) {
+    return file.size() > 8 && file[0] == 0x89 && file[1] == 'P' && file[2] == 'N' && file[3] == 'G';
+}
+bool is_jpeg(std::span<const std::uint8_t> file) {
+    return file.size() > 3 && file[0] == 0xff && file[1] == 0xd8;
+}
+const Error unknown{ErrorCode::bad_input, "is neither a PNG nor a JPEG", "", ""};
+
+}  // namespace
+
 Result<std::array<double, 3>> mean_colour(std::span<const std::uint8_t> file, const ByteCurve& decode) {
-    if (file.size() > 8 && file[0] == 0x89 && file[1] == 'P' && file[2] == 'N' && file[3] == 'G')
-        return mean_of_png(file, decode);
-    if (file.size() > 3 && file[0] == 0xff && file[1] == 0xd8) return mean_of_jpeg(file, decode);
-    return Error{ErrorCode::bad_input, "is neither a PNG nor a JPEG", "", ""};
+    if (is_png(file)) return mean_of_png(file, decode);
+    if (is_jpeg(file)) return mean_of_jpeg(file, decode);
+    return unknown;
+}
+
+Result<TexturePixels> decode_texture(std::span<const std::uint8_t> file) {
+    if (is_png(file)) return decode_png(file);
+    if (is_jpeg(file)) return decode_jpeg(file);
+    return unknown;
 }
 
 }  // namespace exitance

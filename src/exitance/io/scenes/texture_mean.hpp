@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "exitance/core/result.hpp"
 
@@ -46,6 +47,16 @@ class MeanOfRows {
     std::array<double, 3> sum_{};
     std::size_t count_ = 0;
 };
+
+/// A picture in a file's bytes, three bytes a pixel as the file codes them, rows from top to bottom. The limits are
+/// those of mean_colour.
+struct TexturePixels {
+    std::size_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgb;
+};
+Result<TexturePixels> decode_texture(std::span<const std::uint8_t> file);
+Result<TexturePixels> decode_png(std::span<const std::uint8_t> file);
+Result<TexturePixels> decode_jpeg(std::span<const std::uint8_t> file);
 
 /// More pixels than this are not read: a small file can claim any number.
 inline constexpr std::uint64_t most_texture_pixels = std::uint64_t(1) << 26;
