@@ -115,5 +115,38 @@ TEST(RealModels, WhiteAndBentFacesAreMendedAndSaidOnce) {
     EXPECT_GT(irradiance_at(*solution, checked.scene->outline(SurfaceId(0))[0]), 0);
 }
 
+TEST(RealModels, ALuminaireShinesAsItsDataSay) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const TemporaryFolder temporary;
+    const CheckedScene checked = load_real("luminaire.rad");
+    ASSERT_TRUE(checked.scene) << checked.scene.error().message;
+    const Result<Solution> solution = solve_direct(*checked.scene);
+    ASSERT_TRUE(solution);
+    // 1000 W/(m^2 sr) of 0.04 m^2 over 2.5^2 m^2 is 6.4; the lamp's size takes 0.7% of that.
+    EXPECT_NEAR(irradiance_at(*solution, {0, 0, 0}), 6.355, 0.006);
+    EXPECT_NEAR(irradiance_at(*solution, {1.5, 0, 0}), 3.16, 0.005);
+    ASSERT_TRUE(write_solution(temporary / "s.h5", *solution));
+    const Result<Solution> again = load_solution(temporary / "s.h5");
+    ASSERT_TRUE(again) << again.error().message;
+    for (const double x : {0.0, 1.5}) EXPECT_EQ(irradiance_at(*again, {x, 0, 0}), irradiance_at(*solution, {x, 0, 0}));
+}
+
+TEST(RealModels, PatternsOnPatternsAreLeftOutAndSaid) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const CheckedScene checked = load_real("chained_patterns.rad");
+    ASSERT_TRUE(checked.scene) << checked.scene.error().message;
+    EXPECT_EQ(count(checked, Finding::Kind::warning), 2u) << "patterns, and that there is no light";
+}
+
+TEST(RealModels, TwoFilesMakeAScene) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const std::vector<std::string> files = {(shared_scenes() / "real" / "materials.rad").string(),
+                                            (shared_scenes() / "real" / "room_part.rad").string()};
+    const CheckedScene checked = load_scene(files, {});
+    ASSERT_TRUE(checked.scene) << checked.scene.error().message;
+    EXPECT_EQ(checked.scene->surfaces().size(), 3u);
+    EXPECT_EQ(checked.scene->emitters().size(), 1u);
+}
+
 }  // namespace
 }  // namespace exitance

@@ -206,9 +206,14 @@ void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
                "auto: a bar on a terminal, a line every ten seconds otherwise");
 }
 
-void declare_faults(CLI::App& app, Faults& faults) {
+void declare_scene(CLI::App& app, SceneArguments& scene) {
+    app.add_option("SCENE", scene.files, "Scene (.obj with its .mtl, .gltf, .glb, .rad); several files make one")
+        ->required();
     app.add_flag_callback(
-        "--strict", [&faults] { faults = Faults::refuse; }, "Faults of the scene are errors; else they are repaired");
+        "--strict", [&scene] { scene.load.faults = Faults::refuse; },
+        "Faults of the scene are errors; else they are repaired");
+    app.add_flag("--run-commands", scene.load.run_commands,
+                 "Have lines of .rad files that begin with '!' done by Radiance's programs, where they are installed");
 }
 
 /// on or off, into a bool or an optional one.
@@ -285,8 +290,7 @@ void declare_limits(CLI::App& app, SolveArguments& arguments) {
 
 void declare(CLI::App& app, SolveArguments& arguments) {
     SolveOptions& o = arguments.options;
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
-    declare_faults(app, arguments.faults);
+    declare_scene(app, arguments.scene);
     app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE");
     add_choice(app, "--method", method_names, o.method, "Default auto: what is best for the scene");
     add_choice(app, "--basis", basis_names, o.basis,
@@ -455,8 +459,7 @@ void declare(CLI::App& app, ReportArguments& arguments) {
 }
 
 void declare(CLI::App& app, CheckArguments& arguments) {
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
-    declare_faults(app, arguments.faults);
+    declare_scene(app, arguments.scene);
     app.add_option("--picture", arguments.picture, "Picture of the scene that marks what was found (.png)")
         ->type_name("FILE");
     declare_json(app, arguments);
@@ -469,8 +472,7 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
 }
 
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
-    app.add_option("SCENE", arguments.scene, "Scene (.obj with its .mtl, .gltf, .glb, .rad)")->required();
-    declare_faults(app, arguments.faults);
+    declare_scene(app, arguments.scene);
     app.add_option("-o,--output", arguments.output, "Matrix to write: .csv, or .vf as View3D does")
         ->type_name("FILE")
         ->required();

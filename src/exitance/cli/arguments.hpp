@@ -28,8 +28,15 @@ struct CommonArguments {
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
+/// Of verbs that read a scene.
+struct SceneArguments {
+    std::vector<std::string> files;  ///< That make it, in their order.
+    LoadOptions load;
+};
+
 struct SolveArguments : CommonArguments {
-    std::string scene, output;
+    SceneArguments scene;
+    std::string output;
     SolveOptions options;
     std::optional<double> time_limit;        ///< Of the whole run, seconds.
     std::string importance;                  ///< Points that light is looked at; empty: everywhere.
@@ -37,7 +44,6 @@ struct SolveArguments : CommonArguments {
     std::optional<double> checkpoint_every;  ///< Seconds.
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
-    Faults faults = Faults::repair;
 };
 
 struct ProbeArguments : CommonArguments {
@@ -100,8 +106,8 @@ struct ReportArguments : CommonArguments {
 };
 
 struct CheckArguments : CommonArguments {
-    std::string scene, picture;
-    Faults faults = Faults::repair;
+    SceneArguments scene;
+    std::string picture;
 };
 
 struct GenerateArguments : CommonArguments {
@@ -110,8 +116,8 @@ struct GenerateArguments : CommonArguments {
 };
 
 struct ViewFactorArguments : CommonArguments {
-    std::string scene, output;
-    Faults faults = Faults::repair;
+    SceneArguments scene;
+    std::string output;
     double tolerance = 1e-4;  ///< Relative error of every entry above 1e-6.
     int threads = 0;
 };

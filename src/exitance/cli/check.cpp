@@ -58,17 +58,21 @@ ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
     if (!arguments.picture.empty() && ending(arguments.picture) != ".png")
         return terminal.fail(
             {ErrorCode::usage, "the picture is written as .png", arguments.picture, "name it something.png"});
-    CheckedScene checked = load_scene(arguments.scene, arguments.faults);
+    LoadedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
     Shell shell;
     if (checked.scene) {
         shell = inspect_shell(*checked.scene);
-        for (Finding& finding : findings_of(shell, *checked.scene)) checked.findings.push_back(std::move(finding));
+        for (Finding& finding : findings_of(shell, *checked.scene)) {
+            checked.lines.place(finding);
+            checked.findings.push_back(std::move(finding));
+        }
         sort_findings(checked.findings);
         checked.marks.insert(checked.marks.end(), shell.marks.begin(), shell.marks.end());
     }
     terminal.print(arguments.json ? check_json(checked) : report(checked, shell));
     if (!arguments.picture.empty()) {
-        const Image image = check_picture(read_description(arguments.scene), checked.marks, 1280, 720);
+        const Image image =
+            check_picture(read_description(arguments.scene.files, arguments.scene.load), checked.marks, 1280, 720);
         const Result<void> written = write_png(arguments.picture, image, {{"Software", "exitance"}});
         if (!written) return terminal.fail(written.error());
     }

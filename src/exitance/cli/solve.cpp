@@ -19,6 +19,7 @@
 #include "exitance/io/solution/stored_scene_check.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/methods/solve_scene.hpp"
+#include "exitance/scene/findings.hpp"
 
 namespace exitance {
 namespace {
@@ -43,12 +44,13 @@ double time_to_solve(double limit, double elapsed, double read_seconds) {
 }
 
 /// Whoever reads the solution later learns what was repaired.
-void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>& findings) {
+void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>& findings, const std::string& file) {
     std::vector<std::string> all;
     for (const Finding& finding : findings)
         if (finding.kind == Finding::Kind::warning)
-            all.push_back(finding.line > 0 ? fmt::format("line {}: {}", finding.line, finding.message)
-                                           : finding.message);
+            all.push_back(finding.file != file ? place_of(finding) + ": " + finding.message
+                          : finding.line > 0   ? fmt::format("line {}: {}", finding.line, finding.message)
+                                               : finding.message);
     warnings.insert(warnings.begin(), all.begin(), all.end());
 }
 
@@ -150,15 +152,18 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     Tracing tracing(arguments.trace, terminal.progress());
 
     Stopwatch reading;
-    const CheckedScene checked = load_scene(arguments.scene, arguments.faults);
+    StopRequest reading_stop;  // of programs that make parts of the scene
+    if (arguments.time_limit) reading_stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
+    arguments.scene.load.stop = &reading_stop;
+    const CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     const double read_seconds = reading.seconds();
     if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
     if (const auto nonsense = find_nonsense(*checked.scene))
         return terminal.fail({ErrorCode::failure,
-                              "makes a scene that its solution could not be read with: " + *nonsense, arguments.scene,
-                              "please report this file"});
+                              "makes a scene that its solution could not be read with: " + *nonsense,
+                              arguments.scene.files[0], "please report this file"});
     // From here on there is something to save.
     StopRequest stop;
     const SignalGuard signals(stop);
@@ -175,7 +180,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
 
     SolveStatistics& statistics = solution->statistics;
     solution->options = options_json(arguments.options);
-    add_findings(statistics.warnings, checked.findings);
+    add_findings(statistics.warnings, checked.findings, checked.scene->file());
     statistics.seconds["read"] = read_seconds;
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();

@@ -30,7 +30,7 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     if (const Result<AtomicFile> file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
 
-    const CheckedScene checked = load_scene(arguments.scene, arguments.faults);
+    const CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "exitance/io/scenes/scene_lines.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -11,6 +12,7 @@ namespace exitance {
 struct ReadScene {
     SceneDescription description;
     std::vector<Finding> findings;
+    SceneLines lines = {};  ///< Empty: all faces stand in the description's file.
 };
 
 /// Reads Wavefront OBJ with its MTL files: faces with any number of corners, 'g' and 'o' names, 'usemtl', several

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <list>
 #include <unordered_map>
 
 #include "exitance/geometry/polygon.hpp"
+#include "exitance/io/files/scene_program.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/rad_command.hpp"
 #include "exitance/io/scenes/rad_emission.hpp"
 #include "exitance/io/scenes/rad_shapes.hpp"
 #include "exitance/io/scenes/xform.hpp"
@@ -18,14 +22,19 @@ namespace {
 
 constexpr std::size_t most_copies = 100'000, deepest = 16;
 
-/// Where a file stands among those that call it.
+/// A text that is being read, and where it stands among those that call it.
 struct Call {
-    const std::string* file;
+    const std::string* name;  ///< Of the file; of a command's output what it came from.
     Affine to_world;
     std::string prefix;
-    int line_in_scene = 0;  ///< Of the command in the scene's own file; 0 in that file.
+    int first_line = 0;    ///< SceneLines of its file.
+    int command_line = 0;  ///< Of the command that printed it, in the same count; 0 for files.
     std::size_t depth = 0;
 };
+
+std::string folder_of(const std::string& path) {
+    return std::filesystem::path(path).parent_path().string();
+}
 
 Normal normal_of(const SceneDescription::Face& face, const std::vector<Point>& points) {
     std::vector<Point> corners;
@@ -36,25 +45,41 @@ Normal normal_of(const SceneDescription::Face& face, const std::vector<Point>& p
 
 class RadianceReader {
   public:
-    explicit RadianceReader(const std::string& path) : path_(path) { out_.description.file = path; }
+    RadianceReader(std::span<const std::string> paths, const LoadOptions& options) : paths_(paths), options_(options) {}
     ReadScene read();
 
   private:
-    void read_file(const std::string& path, std::string_view text, const Call& call);
+    void read_text(std::string_view text, const Call& call);
     void run_command(const std::string& command, int line, const Call& call);
+    /// A text and the transforms of its copies.
+    struct Copied {
+        const std::string* name = nullptr;
+        const std::string* text = nullptr;
+        int first_line = 0, command_line = 0;
+        std::string prefix;
+        std::vector<Affine> copies{1};
+    };
+    Result<Copied> copied_by(const std::vector<CommandWords>& stages, int line, const Call& call);
+    Result<void> add_file(const std::string& name, Copied& out);
+    Result<void> add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out);
+    int first_line(const std::string& path, std::string_view text);
     void take(RadPrimitive p, const Call& call);
     void take_surface(const RadPrimitive& p, const Call& call);
     void take_source(const RadPrimitive& p, const Call& call);
     void note_patterns(const RadMeaning& meaning);
 
-    const std::string& path_;
+    std::span<const std::string> paths_;
+    const LoadOptions& options_;
+    std::string root_;  ///< The one of them that is being read: what commands name stands beside it.
     ReadScene out_;
     RadFindings findings_;
     RadMaterials materials_{findings_};
-    RadEmission emission_{materials_, findings_, path_};
-    std::unordered_map<std::string, std::string> texts_;  ///< Files that commands name, read once.
+    RadEmission emission_{materials_, findings_, root_};
+    std::unordered_map<std::string, std::string> texts_;      ///< Files that commands name, read once.
+    std::list<std::pair<std::string, std::string>> outputs_;  ///< What commands were, and what they printed.
+    std::unordered_map<std::string, int> first_lines_;
     std::unordered_map<std::string, std::uint32_t> groups_;
-    std::vector<const std::string*> open_;  ///< Files being read, which may not call themselves.
+    std::vector<const std::string*> open_;  ///< Names of texts being read, which may not call themselves.
     std::size_t copies_ = 0, bytes_ = 0;
 };
 
@@ -66,7 +91,7 @@ void RadianceReader::note_patterns(const RadMeaning& meaning) {
 }
 
 void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
-    const std::string& file = *call.file;
+    const std::string& file = *call.name;
     const RadMeaning* meaning = materials_.meaning_of(p, file);
     const std::optional<RadShape> shape = meaning ? rad_shape(p, file, findings_) : std::nullopt;
     if (!shape || meaning->kind == RadMeaning::Kind::left_out) return;
@@ -87,7 +112,7 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
     for (const std::vector<Point>& facet : shape->facets) {
         SceneDescription::Face face;
         face.material = meaning->material, face.group = group->second;
-        face.line = call.line_in_scene > 0 ? call.line_in_scene : p.line;
+        face.line = call.command_line > 0 ? call.command_line : call.first_line + p.line;
         for (const Point& corner : facet) {
             face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
             d.points.push_back(call.to_world.point(corner));
@@ -109,7 +134,7 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
 
 /// A light infinitely far away: parallel, if it is small.
 void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
-    const RadPlace at{*call.file, p.line};
+    const RadPlace at{*call.name, p.line};
     const RadMeaning* meaning = materials_.meaning_of(p, at.file);
     if (!meaning) return;
     if (p.numbers.size() != 4)
@@ -136,56 +161,110 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
 void RadianceReader::take(RadPrimitive p, const Call& call) {
     if (is_rad_shape(p.type)) return take_surface(p, call);
     if (p.type == "source") return take_source(p, call);
-    materials_.take(std::move(p), *call.file, call.to_world);
+    materials_.take(std::move(p), *call.name, call.to_world);
 }
 
-void RadianceReader::run_command(const std::string& command, int line, const Call& call) {
-    const std::string& file = *call.file;
-    TextLines lines(command);
-    std::vector<std::string> words;
-    if (lines.next())
-        while (!lines.rest().empty()) words.emplace_back(lines.word());
-    const std::string name = words.empty() ? "" : words[0];
-    if (name != "xform" || command.find_first_of("|;<>`$&'\"") != command.npos)
-        return findings_.error(
-            {file, line}, fmt::format("the command '!{}' is not run", shown(command)),
-            "run it yourself, write what it prints to a file, and name that in a line '!xform FILE'; of "
-            "commands only xform is understood, without pipes and quotes");
-    const Result<Xform> xform = parse_xform({words.begin() + 1, words.end()}, most_copies);
-    if (!xform) return findings_.error({file, line}, xform.error().message, xform.error().hint);
-    copies_ += xform->copies.size();
-    if (call.depth >= deepest || copies_ > most_copies)
-        return findings_.error({file, line}, call.depth >= deepest
-                                                 ? fmt::format("files call each other {} deep", deepest)
-                                                 : fmt::format("there are more than {} copies", most_copies));
-    const std::string path = beside(path_, xform->file);
+int RadianceReader::first_line(const std::string& path, std::string_view text) {
+    const auto [at, is_new] = first_lines_.try_emplace(path);
+    if (is_new) at->second = out_.lines.add(path, 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n')));
+    return at->second;
+}
+
+Result<void> RadianceReader::add_file(const std::string& name, Copied& out) {
+    const std::string path = beside(root_, name);
     auto text = texts_.find(path);
     if (text == texts_.end()) {
         Result<std::string> read = read_whole_file(path);
         if (!read)
-            return findings_.error({file, line}, fmt::format("'{}' {}", shown(xform->file), read.error().message));
+            return Error{ErrorCode::bad_input, fmt::format("'{}' {}", shown(name), read.error().message), "", ""};
         bytes_ += read->size();
         text = texts_.emplace(path, std::move(*read)).first;
     }
     if (std::any_of(open_.begin(), open_.end(), [&](const std::string* open) { return *open == path; }))
-        return findings_.error({file, line}, fmt::format("'{}' calls itself", shown(xform->file)));
-    const std::string prefix = xform->name.empty() ? call.prefix : call.prefix + shown(xform->name) + ".";
-    for (const Affine& copy : xform->copies) {
+        return Error{ErrorCode::bad_input, fmt::format("'{}' calls itself", shown(name)), "", ""};
+    out.name = &text->first, out.text = &text->second, out.first_line = first_line(path, text->second);
+    return {};
+}
+
+/// What a row of programs prints, each reading what the one before it prints.
+Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out) {
+    if (!options_.run_commands)
+        return Error{
+            ErrorCode::bad_input, fmt::format("the command '!{}' is not run", shown(stages[0][0])), "",
+            "--run-commands has programs of Radiance's run where they are installed; or run it yourself, write "
+            "what it prints to a file, and name that in a line '!xform FILE'"};
+    const StopRequest never;
+    std::string text;
+    for (const CommandWords& words : stages) {
+        Result<std::string> printed =
+            run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
+        if (!printed) return printed.error();
+        text = std::move(*printed);
+    }
+    bytes_ += text.size();
+    const auto& [name, kept] =
+        outputs_.emplace_back(fmt::format("{}:{}: '!{}'", *call.name, line, stages[0][0]), std::move(text));
+    out.name = &name, out.text = &kept;
+    out.command_line = call.command_line > 0 ? call.command_line : call.first_line + line;
+    return {};
+}
+
+/// Copies are made here: by a first xform of a file, and by those that end a row of programs.
+Result<RadianceReader::Copied> RadianceReader::copied_by(const std::vector<CommandWords>& stages, int line,
+                                                         const Call& call) {
+    Copied out;
+    const auto multiply = [&](const Xform& xform) {
+        std::vector<Affine> copies;
+        for (const Affine& after : xform.copies)
+            for (const Affine& before : out.copies) copies.push_back(after * before);
+        out.copies = std::move(copies);
+        if (!xform.name.empty()) out.prefix = shown(xform.name) + "." + out.prefix;
+    };
+    std::size_t run = stages.size();
+    std::vector<Xform> last;
+    for (; run > 0 && stages[run - 1][0] == "xform"; --run) {
+        Result<Xform> xform = parse_xform({stages[run - 1].begin() + 1, stages[run - 1].end()}, most_copies);
+        if (!xform) return xform.error();
+        if (xform->file.empty() != (run > 1))
+            return Error{ErrorCode::bad_input,
+                         run > 1 ? "xform is given a file and what a command prints" : "xform is given no file", "",
+                         ""};
+        last.push_back(std::move(*xform));
+    }
+    const Result<void> added =
+        run > 0 ? add_output(std::span(stages).first(run), line, call, out) : add_file(last.back().file, out);
+    if (!added) return added.error();
+    std::size_t copies = 1;
+    for (const Xform& xform : last) copies = std::min(2 * most_copies, copies * xform.copies.size());
+    copies_ += copies;
+    if (copies_ > most_copies)
+        return Error{ErrorCode::bad_input, fmt::format("there are more than {} copies", most_copies), "", ""};
+    for (auto xform = last.rbegin(); xform != last.rend(); ++xform) multiply(*xform);
+    return out;
+}
+
+void RadianceReader::run_command(const std::string& command, int line, const Call& call) {
+    const RadPlace at{*call.name, line};
+    if (call.depth >= deepest) return findings_.error(at, fmt::format("files call each other {} deep", deepest));
+    const Result<std::vector<CommandWords>> stages = parse_command(command);
+    if (!stages) return findings_.error(at, stages.error().message, stages.error().hint);
+    const Result<Copied> copied = copied_by(*stages, line, call);
+    if (!copied) return findings_.error(at, copied.error().message, copied.error().hint);
+    for (const Affine& copy : copied->copies) {
         if (findings_.failed()) return;  // once is enough to say what is wrong with a file
-        read_file(
-            path, text->second,
-            {&path, call.to_world * copy, prefix, call.line_in_scene > 0 ? call.line_in_scene : line, call.depth + 1});
+        read_text(*copied->text, {copied->name, call.to_world * copy, call.prefix + copied->prefix, copied->first_line,
+                                  copied->command_line, call.depth + 1});
     }
 }
 
-void RadianceReader::read_file(const std::string& path, std::string_view text, const Call& call) {
-    open_.push_back(&path);
+void RadianceReader::read_text(std::string_view text, const Call& call) {
+    open_.push_back(call.name);
     RadWords words(text);
     constexpr std::size_t most_errors = 100;
     while (findings_.error_count() <= most_errors) {
         const std::optional<std::string_view> word = words.next();
         if (!word && words.is_open_quote())
-            findings_.error({path, words.line()}, "a quoted word does not end on its line");
+            findings_.error({*call.name, words.line()}, "a quoted word does not end on its line");
         if (!word) break;
         if (word->starts_with('!') && !words.was_quoted()) {
             const int line = words.line();
@@ -195,7 +274,7 @@ void RadianceReader::read_file(const std::string& path, std::string_view text, c
         RadPrimitive p;
         p.modifier = *word;
         if (const auto fault = read_primitive(words, p)) {
-            findings_.error({path, fault->line}, fault->message);
+            findings_.error({*call.name, fault->line}, fault->message);
             break;  // where the next one begins is anybody's guess
         }
         if (findings_.failed() && call.depth > 0) break;
@@ -205,12 +284,17 @@ void RadianceReader::read_file(const std::string& path, std::string_view text, c
 }
 
 ReadScene RadianceReader::read() {
-    const Result<std::string> text = read_whole_file(path_);
-    if (text) {
-        bytes_ = text->size();
-        read_file(path_, *text, {&path_, {}, "", 0, 0});
-    } else {
-        findings_.error({path_, 0}, text.error().message);
+    out_.description.file = paths_.front();
+    for (const std::string& path : paths_) {
+        root_ = path;
+        const Result<std::string> text = read_whole_file(path);
+        if (!text) {
+            findings_.error({path, 0}, text.error().message);
+            break;
+        }
+        bytes_ += text->size();
+        read_text(*text, {&path, {}, "", first_line(path, *text), 0, 0});
+        if (findings_.failed()) break;  // what it defines is missed by those that follow
     }
     out_.description.materials = std::move(materials_.materials);
     out_.description.profiles = std::move(emission_.profiles);
@@ -220,8 +304,12 @@ ReadScene RadianceReader::read() {
 
 }  // namespace
 
+ReadScene read_radiance(std::span<const std::string> paths, const LoadOptions& options) {
+    return RadianceReader(paths, options).read();
+}
+
 ReadScene read_radiance(const std::string& path) {
-    return RadianceReader(path).read();
+    return read_radiance(std::span(&path, 1), {});
 }
 
 }  // namespace exitance

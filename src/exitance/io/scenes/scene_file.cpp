@@ -1,7 +1,9 @@
 #include "exitance/io/scenes/scene_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf.hpp"
@@ -12,13 +14,13 @@
 namespace exitance {
 namespace {
 
-CheckedScene refused(ErrorCode code, const std::string& path, std::string message, std::string hint) {
-    return {Error{code, message, path, hint}, {{Finding::Kind::error, path, 0, message, hint}}};
+LoadedScene refused(ErrorCode code, const std::string& path, std::string message, std::string hint) {
+    return {{Error{code, message, path, hint}, {{Finding::Kind::error, path, 0, message, hint}}}};
 }
 
 /// Findings of the reader and of the checks together. A file with errors is still looked at in full, but not warned
 /// about light that may be among what could not be read.
-CheckedScene checked(ReadScene read) {
+CheckedScene checked(ReadScene read, const SceneLines& lines) {
     const bool broken = has_errors(read.findings);
     if (broken && read.description.faces.empty()) {
         sort_findings(read.findings);
@@ -26,6 +28,8 @@ CheckedScene checked(ReadScene read) {
         return {std::move(first), std::move(read.findings)};
     }
     CheckedScene out = make_scene(std::move(read.description));
+    for (Finding& finding : out.findings) lines.place(finding);
+    if (!out.scene && has_errors(out.findings)) sort_findings(out.findings), out.scene = error_of(out.findings);
     if (broken) std::erase_if(out.findings, [](const Finding& f) { return f.kind == Finding::Kind::warning; });
     out.findings.insert(out.findings.begin(), read.findings.begin(), read.findings.end());
     sort_findings(out.findings);
@@ -34,12 +38,11 @@ CheckedScene checked(ReadScene read) {
 }
 
 /// Repairs become errors.
-CheckedScene refuse_repairs(CheckedScene scene) {
+void refuse_repairs(CheckedScene& scene) {
     for (Finding& finding : scene.findings)
         if (finding.kind == Finding::Kind::repair) finding.kind = Finding::Kind::error;
     sort_findings(scene.findings);
     if (has_errors(scene.findings)) scene.scene = error_of(scene.findings);
-    return scene;
 }
 
 /// For files under other names: the container's first bytes.
@@ -59,21 +62,90 @@ Reader reader_of(const std::string& path) {
     return nullptr;
 }
 
-}  // namespace
-
-CheckedScene load_scene(const std::string& path, Faults faults) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored))
-        return refused(ErrorCode::cannot_read, path, "there is no such file", "");
-    if (const Reader read = reader_of(path))
-        return faults == Faults::refuse ? refuse_repairs(checked(read(path))) : checked(read(path));
-    return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
-                   "known endings: .obj, .gltf, .glb, .rad");
+template <class T>
+void append(std::vector<T>& all, std::vector<T>& more) {
+    all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-SceneDescription read_description(const std::string& path) {
-    const Reader read = reader_of(path);
-    return read ? read(path).description : SceneDescription();
+/// Adds a scene's description to another's.
+void append(SceneDescription& all, SceneDescription more) {
+    const auto size = [](const auto& pool) { return static_cast<std::uint32_t>(pool.size()); };
+    const std::uint32_t points = size(all.points), materials = size(all.materials), groups = size(all.groups),
+                        profiles = size(all.profiles);
+    for (SceneDescription::Face& face : more.faces) {
+        for (std::uint32_t& corner : face.corners) corner += points;
+        face.material += materials, face.group += groups;
+    }
+    for (Material& material : more.materials)
+        if (!material.emission.profile.is_none())
+            material.emission.profile = ProfileId(material.emission.profile.value + profiles);
+    append(all.points, more.points), append(all.materials, more.materials);
+    append(all.profiles, more.profiles), append(all.groups, more.groups), append(all.faces, more.faces);
+    append(all.lights, more.lights), append(all.cameras, more.cameras);
+}
+
+int last_line(const SceneDescription& description) {
+    int last = 0;
+    for (const SceneDescription::Face& face : description.faces) last = std::max(last, face.line);
+    return last;
+}
+
+/// All files as one; those of no known kind are left to the caller.
+ReadScene read_files(std::span<const std::string> paths, const LoadOptions& options) {
+    std::vector<std::string> radiance;
+    for (const std::string& path : paths)
+        if (reader_of(path) == Reader(read_radiance)) radiance.push_back(path);
+    ReadScene all;
+    bool is_first = true;
+    for (const std::string& path : paths) {
+        const Reader read = reader_of(path);
+        if (!read || (read == Reader(read_radiance) && path != radiance.front())) continue;
+        ReadScene one = read == Reader(read_radiance) ? read_radiance(radiance, options) : read(path);
+        if (one.lines.empty() && paths.size() > 1) one.lines.add(path, last_line(one.description));
+        if (is_first) {
+            all = std::move(one);
+        } else {
+            const int before = all.lines.append(one.lines);
+            for (SceneDescription::Face& face : one.description.faces)
+                if (face.line > 0) face.line += before;
+            append(all.description, std::move(one.description)), append(all.findings, one.findings);
+        }
+        is_first = false;
+    }
+    return all;
+}
+
+}  // namespace
+
+LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options) {
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        const std::string& path = paths[i];
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored))
+            return refused(ErrorCode::cannot_read, path, "there is no such file", "");
+        if (!reader_of(path))
+            return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
+                           "known endings: .obj, .gltf, .glb, .rad");
+        if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), path) !=
+            paths.begin() + static_cast<std::ptrdiff_t>(i))
+            return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");
+    }
+    ReadScene read = read_files(paths, options);
+    SceneLines lines = std::move(read.lines);
+    LoadedScene scene{checked(std::move(read), lines), {}};
+    scene.lines = std::move(lines);
+    if (!scene.scene && options.stop && options.stop->requested())
+        return refused(ErrorCode::limit, paths.front(), "a stop was asked for while the scene was being read", "");
+    if (options.faults == Faults::refuse) refuse_repairs(scene);
+    return scene;
+}
+
+CheckedScene load_scene(const std::string& path, Faults faults) {
+    return load_scene(std::span(&path, 1), {.faults = faults});
+}
+
+SceneDescription read_description(std::span<const std::string> paths, const LoadOptions& options) {
+    return read_files(paths, options).description;
 }
 
 }  // namespace exitance

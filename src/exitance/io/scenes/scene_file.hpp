@@ -1,7 +1,10 @@
 #pragma once
 
+#include <span>
 #include <string>
 
+#include "exitance/core/progress.hpp"
+#include "exitance/io/scenes/scene_lines.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -12,11 +15,27 @@ enum class Faults : std::uint8_t {
     refuse,  ///< They are errors.
 };
 
+/// How a scene is read.
+struct LoadOptions {
+    Faults faults = Faults::repair;
+    bool run_commands = false;  ///< Lets installed programs of Radiance's do what lines that begin with '!' say.
+    const StopRequest* stop = nullptr;  ///< Ends such programs.
+};
+
+/// A scene, and where its faces' lines stand: those of several files are counted on from one to the next.
+struct LoadedScene : CheckedScene {
+    SceneLines lines = {};
+};
+
+/// Reads and checks the files of one scene, in their order. Files of Radiance share the names of materials and stand
+/// where the first of them does; of faces in one plane the later one is on top. As below otherwise.
+LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options);
+
 /// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb, .rad). Every error of the file is
 /// among the findings. An unreadable file has the code cannot_read, everything else that is wrong bad_input.
 CheckedScene load_scene(const std::string& path, Faults faults = Faults::repair);
 
 /// What a scene file says, not yet checked; nothing, where it is of no known kind or cannot be read.
-SceneDescription read_description(const std::string& path);
+SceneDescription read_description(std::span<const std::string> paths, const LoadOptions& options);
 
 }  // namespace exitance

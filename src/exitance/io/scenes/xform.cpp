@@ -135,9 +135,7 @@ Result<Xform> XformParser::parse() {
 }  // namespace
 
 Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t most_copies) {
-    Result<Xform> out = XformParser(words, most_copies).parse();
-    if (out && out->file.empty()) return Error{ErrorCode::bad_input, "xform is given no file", "", ""};
-    return out;
+    return XformParser(words, most_copies).parse();
 }
 
 Result<Affine> parse_transform(const std::vector<std::string>& words) {

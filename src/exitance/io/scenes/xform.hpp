@@ -10,7 +10,7 @@ namespace exitance {
 
 /// What a Radiance command `xform ... file` asks for.
 struct Xform {
-    std::string file;
+    std::string file;            ///< Empty: it is given none.
     std::string name;            ///< Goes before the names of what is in the file, or empty.
     std::vector<Affine> copies;  ///< One, or as many as an array has.
 };
