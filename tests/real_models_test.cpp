@@ -125,6 +125,7 @@ TEST(RealModels, ALuminaireShinesAsItsDataSay) {
     // 1000 W/(m^2 sr) of 0.04 m^2 over 2.5^2 m^2 is 6.4; the lamp's size takes 0.7% of that.
     EXPECT_NEAR(irradiance_at(*solution, {0, 0, 0}), 6.355, 0.006);
     EXPECT_NEAR(irradiance_at(*solution, {1.5, 0, 0}), 3.16, 0.005);
+    EXPECT_LT(solution->statistics.energy.defect, 0.02) << "what misses the floor is told as such";
     ASSERT_TRUE(write_solution(temporary / "s.h5", *solution));
     const Result<Solution> again = load_solution(temporary / "s.h5");
     ASSERT_TRUE(again) << again.error().message;

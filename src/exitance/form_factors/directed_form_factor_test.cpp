@@ -84,6 +84,23 @@ TEST(EmissionProfile, FluxOfAPowerOfTheCosineIsKnown) {
     }
 }
 
+TEST(EmissionProfile, FacesOfABoxSendWhatItsIntensitySays) {
+    EmissionProfile p;
+    p.axes[0].at = {0, 15, 30, 45, 60, 75, 90};
+    p.values = {1000, 950, 800, 550, 250, 60, 0};
+    double flux = 0;  // of the intensity over all directions, in W
+    constexpr int rings = 20000;
+    for (int i = 0; i < rings; ++i) {
+        const double theta = 0.5 * pi * (i + 0.5) / rings;
+        flux += p.value({std::sin(theta), 0, -std::cos(theta)}) * 2 * pi * std::sin(theta) * 0.5 * pi / rings;
+    }
+    p.body = EmissionProfile::Body::box, p.size = {0.2, 0.4, 0.1};
+    const double faces = 0.08 * (exitance_of(p, {0, 0, -1}) + exitance_of(p, {0, 0, 1})) +
+                         0.04 * (exitance_of(p, {1, 0, 0}) + exitance_of(p, {-1, 0, 0})) +
+                         0.02 * (exitance_of(p, {0, 1, 0}) + exitance_of(p, {0, -1, 0}));
+    EXPECT_NEAR(faces, flux, 1e-3 * flux);
+}
+
 TEST(EmissionProfile, TurningFaceAndLampTogetherChangesNothing) {
     const EmissionProfile p = batwing();
     const double upright = exitance_of(p, {0, 0, -1});

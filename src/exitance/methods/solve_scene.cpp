@@ -439,7 +439,7 @@ class Solver {
             progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
                                        solution_.interpolant.tree.leaves().size(), 100 * own));
         }
-        const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_, stage_.rooms);
+        const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_, stage_);
         if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
             warn("no light reaches the front of any face: they may be turned inside out");
         statistics().seconds["reconstruct"] += watch.seconds();

@@ -2,6 +2,9 @@
 
 #include <numeric>
 
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
+
 namespace exitance {
 namespace {
 
@@ -9,9 +12,29 @@ double sum(const Spectrum& s) {
     return std::accumulate(s.value.begin(), s.value.end(), 0.0);
 }
 
+/// The share of what a piece emits by its profile that meets no front.
+double directed_loss(const Stage& stage, const Piece& piece) {
+    constexpr std::uint32_t rays = 1024;
+    const RelativeRadiance radiance = stage.scene.relative_radiance(piece.region);
+    const Frame frame(radiance.normal());
+    const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::shooting), piece.region.value));
+    double lost = 0, sent = 0;
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        const Vec3 w = cosine_direction(frame, points(i, 0), points(i, 1));
+        const Point y = piece.patch.at(uniform_in_shape(piece.patch.shape, points(i, 2), points(i, 3)));
+        RayHit hit;
+        stage.tracer.nearest(std::span(&y, 1), std::span(&w, 1), piece.region, std::span(&hit, 1));
+        const double p = radiance(w);
+        sent += p;
+        if (hit.surface.is_none() || !hit.front) lost += p;
+    }
+    return sent > 0 ? lost / sent : 0;
+}
+
 }  // namespace
 
-EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const LightRooms& rooms) {
+EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage) {
+    const LightRooms& rooms = stage.rooms;
     const Scene& scene = solution.scene;
     EnergyBalance out;
     for (const Region& region : scene.regions())
@@ -27,10 +50,14 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
     };
     for (ElementId e : direct.tree.leaves()) {
         const Spectrum& M = scene.material(direct.tree.region(e)).exitance;
-        if (max(M) <= 0) continue;
+        if (max(M) <= 0 || scene.material(direct.tree.region(e)).is_directed()) continue;
         const double lost = rooms.lost_share(direct.tree.region(e), direct.tree.patch(e).at(direct.tree.centre(e)));
         out.escaped += lost * direct.tree.area(e) * sum(M);
     }
+    for (const Piece& piece : stage.pieces)
+        if (scene.material(piece.region).is_directed())
+            out.escaped +=
+                directed_loss(stage, piece) * piece.patch.area() * sum(scene.material(piece.region).exitance);
     if (!solution.direct_in_elements)
         for (ElementId e : direct.tree.leaves())
             arrive(direct.tree, e, (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean);

@@ -6,8 +6,9 @@
 namespace exitance {
 
 /// Emitted flux against absorbed flux int (1 - rho) E dA: direct light by the projection's exact means, indirect light
-/// by the solution's elements. Nothing is forced to agree. O(elements).
-EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const LightRooms& rooms);
+/// by the solution's elements; and what escapes, by rays from surfaces: of emitters that are not diffuse by their
+/// profiles. Nothing is forced to agree. O(elements).
+EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage);
 
 /// Mean over all surfaces and bands of E_dir, W/m^2.
 double mean_direct_light(const Stage& stage, const DirectProjection& direct);

@@ -184,8 +184,9 @@ double exitance_of(const EmissionProfile& profile, const Normal& n) {
             for (const double at : axis.at) steps.push_back(n.z < 0 ? at - axis.offset : 180 - at + axis.offset);
     std::erase_if(steps, [](double a) { return a < 0 || a > 90; });
     std::sort(steps.begin(), steps.end());
-    const bool is_round = is_upright && profile.axes[0].angle == Angle::theta && profile.axes[1].at.size() == 1;
-    const int around = is_round ? 1 : 90;
+    const bool is_round = is_upright && profile.body != EmissionProfile::Body::box &&
+                          profile.axes[0].angle == Angle::theta && profile.axes[1].at.size() == 1;
+    const int around = is_round ? 1 : 96;
     const Frame frame(n);
     double sum = 0;
     for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
