@@ -24,7 +24,7 @@ camera="0.2,0.2,1.7 2.3,2.3,1.05 86"
 "$exitance" render "$out/solution.h5" -o "$out/false_colour.png" --camera "$camera" --false-colour irradiance
 echo "== Exporting"
 "$exitance" export "$out/solution.h5" -o "$out/lit.glb"
-"$exitance" export "$out/solution.h5" -o "$out/lit.vtkhdf"
+"$exitance" export "$out/solution.h5" -o "$out/lit.hdf"
 echo "== Reporting"
 "$exitance" report "$out/solution.h5" -o "$out/report.html" --camera "$camera"
 
@@ -35,7 +35,7 @@ Done in $SECONDS s. In $out/:
   false_colour.png  the irradiance of its surfaces, with a legend
   report.html       pictures, tables and figures on one page (its numbers: report.json)
   lit.glb           the room with its light, for any glTF viewer
-  lit.vtkhdf        the elements, for ParaView
-  solution.h5       the light, with what it took (exitance stats $out/solution.h5); ParaView opens it as it is
+  lit.hdf        the elements, for ParaView
+  solution.h5       the light, with what it took (exitance stats $out/solution.h5)
   room.obj          the scene
 EOT

@@ -30,6 +30,14 @@ TEST(ProgramUsage, HelpListsEveryVerb) {
     for (const std::string& verb : verbs) EXPECT_NE(help.out.find("\n  " + verb + " "), std::string::npos) << verb;
 }
 
+TEST(ProgramUsage, SolvingIntoAMeshOrAPictureNamesTheVerbThatMakesIt) {
+    for (const auto& [name, verb] : {std::pair{"s.vtu", "export"}, {"s.glb", "export"}, {"s.png", "render"}}) {
+        const Finished run = run_program({"solve", "room.obj", "-o", name});
+        EXPECT_EQ(run.status, 2) << name;
+        EXPECT_NE(run.err.find(std::string("`") + verb + "`"), std::string::npos) << run.err;
+    }
+}
+
 TEST(ProgramUsage, VersionNamesTheLibraries) {
     const Finished version = run_program({"--version"});
     EXPECT_EQ(version.status, 0);

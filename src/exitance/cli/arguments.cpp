@@ -150,6 +150,31 @@ PictureSize read_size(const std::string& words) {
     return {static_cast<int>(n[0]), static_cast<int>(n[1])};
 }
 
+/// "0,500", "log", "1,1000,log"
+void read_scale(std::string words, ScaleChoice& scale) {
+    if (words == "log" || words.ends_with(",log")) {
+        scale.by_ratio = true;
+        words.erase(words.size() > 3 ? words.size() - 4 : 0);
+        if (words.empty()) return;
+    }
+    const std::vector<double> n = read_numbers("--scale", words);
+    if (n.size() != 2 || !(n[0] < n[1]))
+        throw CLI::ValidationError("--scale", fmt::format("'{}' is not 'LO,HI' with LO below HI", words));
+    if (scale.by_ratio && !(n[0] > 0)) throw CLI::ValidationError("--scale", "by ratios begins above 0");
+    scale.range = std::pair(n[0], n[1]);
+}
+
+/// "10" or "smooth"
+void read_bands(const std::string& word, ScaleChoice& scale) {
+    scale.smooth = word == "smooth";
+    if (scale.smooth) return;
+    const double value = read_number("--bands", word);
+    if (value != std::floor(value) || value < 1 || value > 100)
+        throw CLI::ValidationError("--bands",
+                                   fmt::format("must be 'smooth' or a whole number from 1 to 100, not {}", word));
+    scale.bands = static_cast<std::size_t>(value);
+}
+
 // -------------------------------------------------------------------------------------------------- verbs
 
 constexpr std::array<std::pair<Quantity, std::string_view>, 4> quantity_names{{
@@ -157,6 +182,13 @@ constexpr std::array<std::pair<Quantity, std::string_view>, 4> quantity_names{{
     {Quantity::irradiance, "irradiance"},
     {Quantity::luminance, "luminance"},
     {Quantity::illuminance, "illuminance"},
+}};
+
+constexpr std::array<std::pair<Palette, std::string_view>, 4> palette_names{{
+    {Palette::viridis, "viridis"},
+    {Palette::inferno, "inferno"},
+    {Palette::turbo, "turbo"},
+    {Palette::grey, "grey"},
 }};
 
 constexpr std::array<std::pair<Projection, std::string_view>, 4> projection_names{{
@@ -224,6 +256,9 @@ CLI::Option* add_switch(CLI::App& app, const std::string& name, Switch& value, c
             name, [name, &value](const std::string& w) { value = read_switch(name.c_str(), w); }, help)
         ->type_name("on|off");
 }
+
+constexpr std::array<std::pair<bool, std::string_view>, 2> quantity_kinds{
+    {{false, "radiometric"}, {true, "photometric"}}};
 
 void declare_accuracy(CLI::App& app, SolveOptions& o) {
     add_positive(app, "--error", o.error, "R", "Relative RMS error asked for; default 0.02")->group("Accuracy");
@@ -310,6 +345,8 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     declare_limits(app, arguments);
     declare_json(app, arguments);
     declare_work(app, arguments, o.threads);
+    add_choice(app, "--quantity", quantity_kinds, arguments.photometric,
+               "Is light given in watts or in lumens? Default by the file: photometric where glTF has lights");
     add_choice(app, "--schedule", schedule_names, o.schedule,
                "How work comes to threads; default stealing. The result does not depend on it");
     app.add_option("--trace", arguments.trace, "Write every task's time, thread and data (Chrome trace format, .json)")
@@ -345,7 +382,7 @@ void declare(CLI::App& app, StatsArguments& arguments) {
 
 void declare(CLI::App& app, ExportArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output, "By ending: .glb, .vtkhdf, .vtu, .obj, .csv")
+    app.add_option("-o,--output", arguments.output, "By ending: .glb, .hdf or .vtkhdf, .vtu, .obj, .csv")
         ->type_name("FILE")
         ->required();
     app.add_option(
@@ -393,8 +430,21 @@ void declare(CLI::App& app, RenderArguments& arguments) {
         ->group("PNG");
     add_choice(app, "--tone-map", tone_names, arguments.tone_map, "Default filmic")->group("PNG");
     add_choice(app, "--false-colour", quantity_names, arguments.false_colour,
-               "Values as colours, with a legend; the last two where emitters are given in cd/m^2")
+               "Values as colours, with a legend; the last two as the eye weighs the bands")
         ->group("PNG");
+    const auto of_scale = [&app, &arguments](const char* name, const char* help, const char* type, auto read) {
+        app.add_option_function<std::string>(
+               name, [&arguments, read](const std::string& w) { read(w, arguments.scale), arguments.has_scale = true; },
+               help)
+            ->type_name(type)
+            ->group("PNG");
+    };
+    of_scale("--scale", "Range of the colours and lines: 0,500, or 1,1000,log for equal ratios; log: those alone",
+             "LO,HI[,log]|log", read_scale);
+    of_scale("--bands", "So many colours of equal width, or smooth; default round steps", "N|smooth", read_bands);
+    add_choice(app, "--palette", palette_names, arguments.scale.palette, "Default viridis")
+        ->group("PNG")
+        ->each([&arguments](const std::string&) { arguments.has_scale = true; });
     app.add_flag("--isolux", arguments.isolux, "Draw lines of equal illuminance, with their values")->group("PNG");
     app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges")->group("PNG");
     declare_work(app, arguments, arguments.threads);

@@ -44,6 +44,7 @@ struct SolveArguments : CommonArguments {
     std::optional<double> checkpoint_every;  ///< Seconds.
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
+    std::optional<bool> photometric;  ///< None: as the file has it.
 };
 
 struct ProbeArguments : CommonArguments {
@@ -81,6 +82,8 @@ struct RenderArguments : CommonArguments {
     std::optional<double> exposure_scale;  ///< Or what radiosity is multiplied by.
     ToneCurve tone_map = ToneCurve::filmic;
     std::optional<Quantity> false_colour;
+    ScaleChoice scale;       ///< Of false colours and of isolux lines.
+    bool has_scale = false;  ///< Was any of it asked for?
     bool isolux = false;
     std::size_t samples = 16;  ///< Rays a pixel.
     std::size_t gather = 0;    ///< Rays of a final gather at each of them.

@@ -67,7 +67,8 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     Result<ProbeReader> reader = ProbeReader::open(arguments.points);
     if (!reader) return terminal.fail(reader.error());
     const bool by_paths = arguments.reference_paths > 0;
-    Result<ProbeWriter> writer = ProbeWriter::create(arguments.output, {.standard_errors = by_paths});
+    Result<ProbeWriter> writer =
+        ProbeWriter::create(arguments.output, {.standard_errors = by_paths, .lux = solution->scene.is_photometric()});
     if (!writer) return terminal.fail(writer.error());
 
     const Result<void> written = by_paths

@@ -26,6 +26,8 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
     if (end != ".png" && end != ".exr" && end != ".hdr")
         return usage(fmt::format("pictures are written as .png, .exr or .hdr, not '{}'", end), a.output,
                      "name the output something.png");
+    if (a.has_scale && !a.false_colour && !a.isolux)
+        return usage("has nothing to colour", "--scale, --bands, --palette", "they go with --false-colour or --isolux");
     if (end != ".png" && (a.false_colour || a.isolux || a.mesh))
         return usage(fmt::format("{} holds radiance, and nothing is drawn into it", end), a.output,
                      "--false-colour, --isolux and --mesh go with .png");
@@ -42,7 +44,7 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
 /// The picture for people, and the words that go with it.
 Image develop(const RenderArguments& arguments, const Picture& picture, ImageTexts& texts, Terminal& terminal) {
     if (arguments.false_colour) {
-        const ColourScale scale = make_colour_scale(picture, *arguments.false_colour);
+        const ColourScale scale = make_colour_scale(picture, *arguments.false_colour, arguments.scale);
         return false_colour_image(picture, *arguments.false_colour, scale);
     }
     ToneMap tones;
@@ -62,9 +64,13 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     Image image = develop(arguments, picture, texts, terminal);
     if (arguments.mesh)
         draw_edges(image, element_edges(light.solution(), light.stage().tracer, camera, arguments.size));
-    if (arguments.isolux) draw_isolux(image, picture, make_colour_scale(picture, Quantity::illuminance));
+    const bool photometric = light.solution().scene.is_photometric();
+    if (arguments.isolux)
+        draw_isolux(image, picture, make_colour_scale(picture, Quantity::illuminance, arguments.scale),
+                    title(Quantity::illuminance, photometric));
     if (arguments.false_colour)
-        draw_legend(image, *arguments.false_colour, make_colour_scale(picture, *arguments.false_colour));
+        draw_legend(image, title(*arguments.false_colour, photometric),
+                    make_colour_scale(picture, *arguments.false_colour, arguments.scale));
     return write_png(arguments.output, image, texts);
 }
 

@@ -42,8 +42,8 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     const Quantity quantity = lux ? Quantity::illuminance : Quantity::irradiance;
     const ColourScale scale = make_colour_scale(picture, quantity);
     Image image = false_colour_image(picture, quantity, scale);
-    if (lux) draw_isolux(image, picture, scale);
-    draw_legend(image, quantity, scale);
+    if (lux) draw_isolux(image, picture, scale, title(quantity, light.solution().scene.is_photometric()));
+    draw_legend(image, title(quantity, light.solution().scene.is_photometric()), scale);
     content.pictures.push_back(
         {lux ? "Illuminance in lx" : "Irradiance in W/m^2, mean of the bands", describe(camera), std::move(image)});
 }

@@ -31,6 +31,22 @@ Result<void> check_output(const std::string& path) {
     return file ? Result<void>() : Result<void>(file.error());
 }
 
+/// A solution is no mesh and no picture.
+Result<void> check_ending(const std::string& path) {
+    for (const char* end : {".vtu", ".vtkhdf", ".hdf", ".glb", ".gltf", ".obj", ".csv", ".png", ".exr", ".hdr"})
+        if (path.ends_with(end)) {
+            const bool picture =
+                std::string_view(end) == ".png" || std::string_view(end) == ".exr" || std::string_view(end) == ".hdr";
+            return Error{ErrorCode::usage,
+                         fmt::format("solve writes a solution (.h5), from which `{}` makes a {}",
+                                     picture ? "render" : "export", end),
+                         "-o",
+                         fmt::format("exitance solve SCENE -o S.h5, then exitance {} S.h5 -o {}",
+                                     picture ? "render" : "export", path)};
+        }
+    return {};
+}
+
 StopRequest::Clock::time_point after(double seconds) {
     using Seconds = std::chrono::duration<double>;
     const Seconds limit(std::min(seconds, 1e9));  // what a clock can hold
@@ -145,6 +161,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
+    if (const Result<void> ending = check_ending(arguments.output); !ending) return terminal.fail(ending.error());
     if (const Result<void> output = check_output(arguments.output); !arguments.dry_run && !output)
         return terminal.fail(output.error());
     if (!arguments.trace.empty())
@@ -155,7 +172,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     StopRequest reading_stop;  // of programs that make parts of the scene
     if (arguments.time_limit) reading_stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
     arguments.scene.load.stop = &reading_stop;
-    const CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
+    CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     const double read_seconds = reading.seconds();
@@ -164,6 +181,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
         return terminal.fail({ErrorCode::failure,
                               "makes a scene that its solution could not be read with: " + *nonsense,
                               arguments.scene.files[0], "please report this file"});
+    if (arguments.photometric) checked.scene->declare_photometric(*arguments.photometric);
     // From here on there is something to save.
     StopRequest stop;
     const SignalGuard signals(stop);

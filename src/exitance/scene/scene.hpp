@@ -108,6 +108,7 @@ struct SceneDescription {
     std::vector<Face> faces;
     std::vector<PunctualLight> lights;
     std::vector<SceneCamera> cameras;
+    bool photometric = false;  ///< Its light is given in lumens rather than watts.
 };
 
 /// Polygons with materials, checked and joined to regions. Immutable once made.
@@ -147,6 +148,11 @@ class Scene {
     const std::vector<PunctualLight>& lights() const { return lights_; }
     bool has_light() const { return !emitters_.empty() || !lights_.empty(); }
 
+    /// Is light measured in lumens rather than watts? Nothing is converted: E is in lx, then, and M in lm/m^2.
+    bool is_photometric() const { return photometric_; }
+    /// As users say who know better than the file.
+    void declare_photometric(bool photometric) { photometric_ = photometric; }
+
     /// Views that came with the scene; nothing but pictures takes note of them.
     const std::vector<SceneCamera>& cameras() const { return cameras_; }
 
@@ -163,6 +169,7 @@ class Scene {
     std::vector<SurfaceId> emitters_;
     std::vector<PunctualLight> lights_;
     std::vector<SceneCamera> cameras_;
+    bool photometric_ = false;
     Box box_;
 };
 

@@ -76,6 +76,7 @@ Scene SceneBuilder::make() {
     for (PunctualLight& light : in_.lights)
         if (max(light.intensity) > 0) scene.lights_.push_back(std::move(light));
     scene.cameras_ = std::move(in_.cameras);
+    scene.photometric_ = in_.photometric;
     return scene;
 }
 

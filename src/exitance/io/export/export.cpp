@@ -16,6 +16,7 @@ Result<void> export_solution(const Solution& solution, const std::string& path) 
         const char* ending;
         Result<void> (*write)(const Solution&, const std::string&);
     } formats[] = {{".vtkhdf", write_vtkhdf_file},
+                   {".hdf", write_vtkhdf_file},
                    {".vtu", write_vtu},
                    {".glb", write_glb},
                    {".obj", write_obj},

@@ -27,7 +27,11 @@ Result<void> write_surface_table(const Solution& solution, const std::string& pa
     if (!file) return file.error();
     std::string row = "surface,line,group,material,area [m^2]";
     for (const char* prefix : {",E_", ",B_"})
-        for (std::size_t b = 0; b < bands; ++b) row += prefix + band_name(b) + " [W/m^2]";
+        for (std::size_t b = 0; b < bands; ++b)
+            row += prefix + band_name(b) +
+                   (!scene.is_photometric() ? " [W/m^2]"
+                    : prefix[1] == 'E'      ? " [lx]"
+                                            : " [lm/m^2]");
     file->write(row + "\n");
     for (SurfaceId s : scene.surfaces().ids()) {
         const Surface& face = scene.surfaces()[s];

@@ -59,6 +59,7 @@ class ProbeWriter {
     struct Columns {
         bool radiosity = true;
         bool standard_errors = false;
+        bool lux = false;  ///< Illuminance, the weighted mean of the bands, in a last column.
     };
     static Result<ProbeWriter> create(const std::string& path, Columns columns);
 

@@ -5,24 +5,68 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/io/pictures/bitmap_font.hpp"
-
 namespace exitance {
 namespace {
 
 constexpr Rgb white{255, 255, 255}, night{20, 20, 24}, back_of_surface{58, 58, 62};
 
-/// Nine of the colours of viridis (Smith and van der Walt, 2015), between which sRGB values are interpolated.
-Rgb viridis(double t) {
-    constexpr std::array<Rgb, 9> anchors{{{68, 1, 84},
-                                          {71, 44, 122},
-                                          {59, 81, 139},
-                                          {44, 113, 142},
-                                          {33, 144, 141},
-                                          {39, 173, 129},
-                                          {92, 200, 99},
-                                          {170, 220, 50},
-                                          {253, 231, 37}}};
+using Anchors = std::array<Rgb, 9>;
+
+/// Nine colours of each, between which sRGB values are interpolated: viridis and inferno (Smith and van der Walt,
+/// 2015), turbo (Mikhailov, 2019).
+const Anchors& anchors_of(Palette palette) {
+    static constexpr Anchors viridis{{{68, 1, 84},
+                                      {71, 44, 122},
+                                      {59, 81, 139},
+                                      {44, 113, 142},
+                                      {33, 144, 141},
+                                      {39, 173, 129},
+                                      {92, 200, 99},
+                                      {170, 220, 50},
+                                      {253, 231, 37}}};
+    static constexpr Anchors inferno{{{0, 0, 4},
+                                      {31, 12, 72},
+                                      {85, 15, 109},
+                                      {136, 34, 106},
+                                      {186, 54, 85},
+                                      {227, 89, 51},
+                                      {249, 140, 10},
+                                      {249, 201, 50},
+                                      {252, 255, 164}}};
+    static constexpr Anchors turbo{{{48, 18, 59},
+                                    {70, 107, 227},
+                                    {40, 187, 236},
+                                    {49, 242, 153},
+                                    {162, 252, 60},
+                                    {237, 208, 58},
+                                    {251, 128, 34},
+                                    {210, 49, 5},
+                                    {122, 4, 3}}};
+    static constexpr Anchors grey{{{16, 16, 16},
+                                   {46, 46, 46},
+                                   {76, 76, 76},
+                                   {106, 106, 106},
+                                   {136, 136, 136},
+                                   {166, 166, 166},
+                                   {196, 196, 196},
+                                   {226, 226, 226},
+                                   {255, 255, 255}}};
+    switch (palette) {
+        case Palette::inferno:
+            return inferno;
+        case Palette::turbo:
+            return turbo;
+        case Palette::grey:
+            return grey;
+        case Palette::viridis:
+            break;
+    }
+    return viridis;
+}
+
+/// The colour at t in [0, 1].
+Rgb colour_at(Palette palette, double t) {
+    const Anchors& anchors = anchors_of(palette);
     const double at = std::clamp(t, 0.0, 1.0) * (anchors.size() - 1);
     const std::size_t i = std::min(static_cast<std::size_t>(at), anchors.size() - 2);
     const double between = at - static_cast<double>(i);
@@ -32,8 +76,19 @@ Rgb viridis(double t) {
     return colour;
 }
 
-Rgb band_colour(std::size_t band, std::size_t count) {
-    return viridis(count > 1 ? static_cast<double>(band) / static_cast<double>(count - 1) : 0.5);
+Rgb band_colour(const ColourScale& scale, std::size_t band) {
+    const std::size_t count = scale.band_count();
+    return colour_at(scale.palette, count > 1 ? static_cast<double>(band) / static_cast<double>(count - 1) : 0.5);
+}
+
+/// So many bands of equal width, or of equal ratio.
+std::vector<double> even_steps(double lo, double hi, bool by_ratio, std::size_t count) {
+    std::vector<double> steps;
+    for (std::size_t k = 0; k <= count; ++k) {
+        const double t = static_cast<double>(k) / static_cast<double>(count);
+        steps.push_back(by_ratio ? lo * std::pow(hi / lo, t) : std::lerp(lo, hi, t));
+    }
+    return steps;
 }
 
 std::vector<double> linear_steps(double lo, double hi) {
@@ -57,25 +112,34 @@ std::vector<double> steps_by_ratio(double lo, double hi) {
     return steps;
 }
 
-std::string title(Quantity quantity) {
-    switch (quantity) {
-        case Quantity::radiosity:
-            return "radiosity W/m^2";
-        case Quantity::irradiance:
-            return "irradiance W/m^2";
-        case Quantity::luminance:
-            return "luminance cd/m^2";
-        case Quantity::illuminance:
-            return "illuminance lx";
-    }
-    return "";
+/// Round steps, those at the ends in place of the range's own.
+std::vector<double> round_steps(double lo, double hi, bool by_ratio) {
+    return by_ratio ? steps_by_ratio(lo, hi) : linear_steps(lo, hi);
+}
+
+/// Round steps within a range, and its ends.
+std::vector<double> steps_within(double lo, double hi, bool by_ratio) {
+    std::vector<double> steps = round_steps(lo, hi, by_ratio);
+    const double near = 1e-6 * (hi - lo);
+    std::erase_if(steps, [&](double step) { return step <= lo + near || step >= hi - near; });
+    steps.insert(steps.begin(), lo), steps.push_back(hi);
+    return steps;
 }
 
 }  // namespace
 
-double luminous_mean(const Spectrum& s) {
-    if constexpr (bands == 3) return 0.2126 * s[0] + 0.7152 * s[1] + 0.0722 * s[2];
-    return mean(s);
+std::string title(Quantity quantity, bool photometric) {
+    switch (quantity) {
+        case Quantity::radiosity:
+            return photometric ? "exitance lm/m^2" : "radiosity W/m^2";
+        case Quantity::irradiance:
+            return photometric ? "illuminance lx" : "irradiance W/m^2";
+        case Quantity::luminance:
+            return photometric ? "luminance cd/m^2" : "luminance W/m^2/sr";
+        case Quantity::illuminance:
+            return photometric ? "illuminance lx" : "illuminance W/m^2";
+    }
+    return "";
 }
 
 double value_of(const Pixel& pixel, Quantity quantity) {
@@ -103,27 +167,56 @@ std::size_t ColourScale::band(double value) const {
     return static_cast<std::size_t>(above - steps.begin()) - 1;
 }
 
-ColourScale make_colour_scale(const Picture& picture, Quantity quantity) {
+double ColourScale::place(double value) const {
+    const std::size_t i = band(value);
+    const double within = std::clamp((value - steps[i]) / (steps[i + 1] - steps[i]), 0.0, 1.0);
+    return (static_cast<double>(i) + within) / static_cast<double>(band_count());
+}
+
+Rgb ColourScale::colour(double value) const {
+    return smooth ? colour_at(palette, place(value)) : band_colour(*this, band(value));
+}
+
+namespace {
+
+/// What the scale of a picture has to show, and whether by ratios; nothing where all is dark.
+std::optional<std::pair<double, double>> range_of(const Picture& picture, Quantity quantity) {
     std::vector<double> values;
     for (const Pixel& pixel : picture.pixels)
         if (pixel.front > 0 && !pixel.emits()) values.push_back(value_of(pixel, quantity));
     if (values.empty())
         for (const Pixel& pixel : picture.pixels)
             if (pixel.front > 0) values.push_back(value_of(pixel, quantity));
-    if (values.empty()) return {{0, 1}};
+    if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     const double lo = values[values.size() / 100], hi = values[values.size() - 1 - values.size() / 100];
-    if (!(hi > 0)) return {{0, 1}};
-    constexpr double least_ratio = 1e-4;  // below this share of the brightest all is dark
-    if (hi > 30 * lo) return {steps_by_ratio(std::max(lo, least_ratio * hi), hi)};
-    return {linear_steps(std::min(lo, 0.98 * hi), hi)};
+    if (!(hi > 0)) return {};
+    return std::pair(lo, hi);
+}
+
+}  // namespace
+
+ColourScale make_colour_scale(const Picture& picture, Quantity quantity, const ScaleChoice& choice) {
+    ColourScale scale{{0, 1}, choice.palette, choice.smooth};
+    const auto range = choice.range ? choice.range : range_of(picture, quantity);
+    if (!range) return scale;
+    auto [lo, hi] = *range;
+    constexpr double wide = 30, least_ratio = 1e-4;  // below this share of the brightest all is dark
+    const bool by_ratio = choice.by_ratio || (!choice.range && hi > wide * lo);
+    if (by_ratio) lo = std::max(lo, least_ratio * hi);
+    if (!choice.range && !by_ratio) lo = std::min(lo, 0.98 * hi);
+    scale.steps = choice.range ? steps_within(lo, hi, by_ratio) : round_steps(lo, hi, by_ratio);
+    if (choice.bands)
+        scale.steps =
+            even_steps(scale.steps.front(), scale.steps.back(), by_ratio && scale.steps.front() > 0, *choice.bands);
+    return scale;
 }
 
 Image false_colour_image(const Picture& picture, Quantity quantity, const ColourScale& scale) {
     Image image(picture.size.width, picture.size.height);
     std::uint8_t* out = image.rgb.data();
     for (const Pixel& pixel : picture.pixels) {
-        const Rgb front = band_colour(scale.band(value_of(pixel, quantity)), scale.band_count());
+        const Rgb front = scale.colour(value_of(pixel, quantity));
         const double rest = 1 - pixel.front - pixel.back;
         for (std::size_t c = 0; c < 3; ++c)
             *out++ = static_cast<std::uint8_t>(
@@ -133,9 +226,8 @@ Image false_colour_image(const Picture& picture, Quantity quantity, const Colour
 }
 
 /// A column of colours, darkest at the bottom, each border with its value; the title in two lines above.
-void draw_legend(Image& image, Quantity quantity, const ColourScale& scale) {
+void draw_legend(Image& image, const std::string& text, const ColourScale& scale) {
     const int s = std::max(1, std::min(image.width / 600, image.height / 375));
-    const std::string text = title(quantity);
     const std::size_t gap = text.find(' ');
     const std::vector<std::string> names = scale.names();
     int widest = std::max(text_width(text.substr(0, gap), s), text_width(text.substr(gap + 1), s));
@@ -148,9 +240,12 @@ void draw_legend(Image& image, Quantity quantity, const ColourScale& scale) {
     draw_text(image, left + margin, top + 5 * s, text.substr(0, gap), s, white);
     draw_text(image, left + margin, top + 15 * s, text.substr(gap + 1), s, white);
     const int bottom = top + 30 * s + band * count;
-    for (int i = 0; i < count; ++i)
-        fill_rectangle(image, left + margin, bottom - band * (i + 1), 11 * s, band,
-                       band_colour(static_cast<std::size_t>(i), scale.band_count()));
+    for (int y = 0; y < band * count; ++y) {
+        const double place = (y + 0.5) / (band * count);
+        const Rgb colour =
+            scale.smooth ? colour_at(scale.palette, place) : band_colour(scale, static_cast<std::size_t>(y / band));
+        fill_rectangle(image, left + margin, bottom - y - 1, 11 * s, 1, colour);
+    }
     const int every = band < 9 * s ? (9 * s + band - 1) / band : 1;  // names must not touch
     for (int i = 0; i <= count; i += every)
         draw_text(image, left + margin + 16 * s, bottom - band * i - 3 * s, names[static_cast<std::size_t>(i)], s,

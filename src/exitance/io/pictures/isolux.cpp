@@ -1,6 +1,7 @@
 #include "exitance/io/pictures/isolux.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "exitance/io/pictures/bitmap_font.hpp"
 
@@ -9,24 +10,57 @@ namespace {
 
 constexpr int no_line = -1;
 
-/// The step that light passes between a pixel and its right or lower neighbour, for every pixel.
-std::vector<int> find_lines(const Picture& picture, const ColourScale& scale) {
-    const auto below = [&](const Pixel& pixel) {  // how many steps lie below its light
-        const double value = value_of(pixel, Quantity::illuminance);
-        return static_cast<int>(std::upper_bound(scale.steps.begin(), scale.steps.end(), value) - scale.steps.begin());
+/// A piece of a line within a square of four pixels' middles, in pixels; and which step of the scale it is at.
+struct Segment {
+    Vec2 a, b;
+    int step;
+};
+
+/// Marching squares [Lorensen87] over the squares whose corners show one surface.
+std::vector<Segment> find_segments(const Picture& picture, const ColourScale& scale) {
+    std::vector<Segment> out;
+    const auto pixel = [&](int x, int y) -> const Pixel& {
+        return picture.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.size.width) +
+                              static_cast<std::size_t>(x)];
     };
-    std::vector<int> steps_below(picture.pixels.size());
-    std::transform(picture.pixels.begin(), picture.pixels.end(), steps_below.begin(), below);
-    const auto width = static_cast<std::size_t>(picture.size.width);
-    std::vector<int> lines(picture.pixels.size(), no_line);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const auto compare = [&](std::size_t other) {
-            const Pixel &a = picture.pixels[i], &b = picture.pixels[other];
-            if (a.region.is_none() || a.region != b.region || a.emits() || steps_below[i] == steps_below[other]) return;
-            lines[i] = std::max(steps_below[i], steps_below[other]) - 1;
-        };
-        if ((i + 1) % width != 0) compare(i + 1);
-        if (i + width < lines.size()) compare(i + width);
+    for (int y = 0; y + 1 < picture.size.height; ++y)
+        for (int x = 0; x + 1 < picture.size.width; ++x) {
+            constexpr int dx[4] = {0, 1, 1, 0}, dy[4] = {0, 0, 1, 1};
+            const RegionId region = pixel(x, y).region;
+            double value[4];
+            bool whole = !region.is_none();
+            for (int k = 0; k < 4 && whole; ++k) {
+                const Pixel& corner = pixel(x + dx[k], y + dy[k]);
+                whole = corner.region == region && !corner.emits();
+                value[k] = value_of(corner, Quantity::illuminance);
+            }
+            if (!whole) continue;
+            const auto [lo, hi] = std::minmax({value[0], value[1], value[2], value[3]});
+            const auto first = std::upper_bound(scale.steps.begin(), scale.steps.end(), lo);
+            for (auto level = first; level != scale.steps.end() && *level <= hi; ++level) {
+                Vec2 crossing[4];
+                std::size_t count = 0;
+                for (int k = 0; k < 4; ++k) {
+                    const int n = (k + 1) % 4;
+                    if ((value[k] >= *level) == (value[n] >= *level)) continue;
+                    const double t = (*level - value[k]) / (value[n] - value[k]);
+                    crossing[count++] = {x + 0.5 + std::lerp(dx[k], dx[n], t), y + 0.5 + std::lerp(dy[k], dy[n], t)};
+                }
+                for (std::size_t k = 0; k + 1 < count; k += 2)
+                    out.push_back({crossing[k], crossing[k + 1], static_cast<int>(level - scale.steps.begin())});
+            }
+        }
+    return out;
+}
+
+/// The step of a line through each pixel.
+std::vector<int> lines_of(const std::vector<Segment>& segments, PictureSize size) {
+    std::vector<int> lines(size.pixels(), no_line);
+    for (const Segment& s : segments) {
+        const int x = std::clamp(static_cast<int>(0.5 * (s.a.x + s.b.x)), 0, size.width - 1);
+        const int y = std::clamp(static_cast<int>(0.5 * (s.a.y + s.b.y)), 0, size.height - 1);
+        lines[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)] =
+            s.step;
     }
     return lines;
 }
@@ -56,33 +90,52 @@ struct Label {
     }
 };
 
-/// Lines `wide` pixels wide: white on what is dark, dark on what is bright.
-void draw_lines(Image& image, const std::vector<int>& lines, int wide) {
-    std::vector<bool> marked(lines.size());
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const int x = static_cast<int>(i) % image.width, y = static_cast<int>(i) / image.width;
-        for (int v = y; lines[i] != no_line && v < std::min(y + wide, image.height); ++v)
-            for (int u = x; u < std::min(x + wide, image.width); ++u)
-                marked[static_cast<std::size_t>(v * image.width + u)] = true;
+double distance(Vec2 p, const Segment& s) {
+    const Vec2 edge = s.b - s.a;
+    const double length = dot(edge, edge);
+    const double t = length > 0 ? std::clamp(dot(p - s.a, edge) / length, 0.0, 1.0) : 0;
+    const Vec2 off = p - (s.a + t * edge);
+    return std::hypot(off.x, off.y);
+}
+
+/// Lines `wide` pixels wide with soft borders: white on what is dark, dark on what is bright.
+void draw_segments(Image& image, const std::vector<Segment>& segments, double wide) {
+    std::vector<float> share(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    for (const Segment& s : segments) {
+        const double reach = 0.5 * wide + 0.5;
+        const int left = std::max(0, static_cast<int>(std::min(s.a.x, s.b.x) - reach));
+        const int right = std::min(image.width - 1, static_cast<int>(std::max(s.a.x, s.b.x) + reach));
+        const int top = std::max(0, static_cast<int>(std::min(s.a.y, s.b.y) - reach));
+        const int bottom = std::min(image.height - 1, static_cast<int>(std::max(s.a.y, s.b.y) + reach));
+        for (int y = top; y <= bottom; ++y)
+            for (int x = left; x <= right; ++x) {
+                float& covered = share[static_cast<std::size_t>(y * image.width + x)];
+                const double here = std::clamp(reach - distance({x + 0.5, y + 0.5}, s), 0.0, 1.0);
+                covered = std::max(covered, static_cast<float>(here));
+            }
     }
-    for (std::size_t i = 0; i < marked.size(); ++i) {
-        if (!marked[i]) continue;
+    for (std::size_t i = 0; i < share.size(); ++i) {
+        if (share[i] <= 0) continue;
         std::uint8_t* rgb = image.rgb.data() + 3 * i;
         const bool bright = 2 * rgb[0] + 5 * rgb[1] + rgb[2] > 8 * 120;
-        for (int c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(bright ? rgb[c] / 4 : 255 - (255 - rgb[c]) / 4);
+        for (int c = 0; c < 3; ++c) {
+            const double ink = bright ? 0.25 * rgb[c] : 255 - 0.25 * (255 - rgb[c]);
+            rgb[c] = static_cast<std::uint8_t>(std::lround(std::lerp(rgb[c], ink, static_cast<double>(share[i]))));
+        }
     }
 }
 
 }  // namespace
 
-void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale) {
+void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale, const std::string& title) {
     constexpr Rgb paper{20, 20, 24}, ink{255, 255, 255};
     const int s = std::max(1, std::min(image.width / 600, image.height / 375));
-    std::vector<int> lines = find_lines(picture, scale);
-    draw_lines(image, lines, s);
+    const std::vector<Segment> segments = find_segments(picture, scale);
+    draw_segments(image, segments, 1.2 * s);
+    std::vector<int> lines = lines_of(segments, picture.size);
 
     const std::vector<std::string> names = scale.names();
-    const std::string caption = "lines illuminance lx";
+    const std::string caption = "lines " + title;
     std::vector<Label> labels{{0, image.height - 14 * s, text_width(caption, s) + 8 * s, 14 * s}};
     const auto write = [&](const Label& label, const std::string& text) {
         fill_rectangle(image, label.left, label.top, label.width, label.height, paper);

@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-/// Draws lines of equal illuminance where it passes the steps of `scale`, each surface by itself, with their values on
-/// the longer ones, and in the lower left corner what they show. lx; in scenes given in W/(m^2 sr) weighted W/m^2.
-void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale);
+/// Draws lines of equal illuminance at the steps of `scale`, through the light between pixels' middles, each surface by
+/// itself, with their values on the longer ones, and in the lower left corner `title`, which says what they show.
+void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale, const std::string& title);
 
 }  // namespace exitance

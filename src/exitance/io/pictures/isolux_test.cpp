@@ -21,7 +21,7 @@ Picture ramp(int width, int height) {
 TEST(Isolux, LinesStandWhereLightPassesTheStepsAndNotBetweenSurfaces) {
     const Picture picture = ramp(200, 40);
     Image image(200, 40);
-    draw_isolux(image, picture, {{0, 25, 50, 75, 100}});
+    draw_isolux(image, picture, {{0, 25, 50, 75, 100}}, "illuminance lx");
     const auto is_drawn = [&](int x, int y) { return image.at(x, y)[0] > 0; };
     for (const int y : {1, 3, 5}) {
         EXPECT_TRUE(is_drawn(49, y) && is_drawn(99, y) && is_drawn(149, y));  // 25, 50 and 75 lx begin at the next
@@ -36,7 +36,7 @@ TEST(Isolux, LinesStandWhereLightPassesTheStepsAndNotBetweenSurfaces) {
 TEST(Isolux, LongLinesCarryTheirValues) {
     const Picture picture = ramp(200, 160);
     Image image(200, 160);
-    draw_isolux(image, picture, {{0, 50, 100}});
+    draw_isolux(image, picture, {{0, 50, 100}}, "illuminance lx");
     int paper = 0;  // the colour behind the figures, on the line of 50 lx
     for (int y = 0; y < 80; ++y) paper += image.at(94, y)[2] == 24;
     EXPECT_GT(paper, 5);

@@ -55,6 +55,25 @@ TEST(FalseColour, StepsAreRoundAndHoldWhatIsShown) {
     }
 }
 
+TEST(FalseColour, ScalesHaveTheRangeTheBandsAndTheCourseThatAreAskedFor) {
+    const Picture picture = ramp(5.3, 39);
+    const auto scale = [&](const ScaleChoice& choice) {
+        return make_colour_scale(picture, Quantity::irradiance, choice);
+    };
+    const ColourScale range = scale({.range = std::pair(0.0, 500.0)});
+    EXPECT_EQ(range.steps.front(), 0);
+    EXPECT_EQ(range.steps.back(), 500);
+    EXPECT_EQ(scale({.range = std::pair(0.0, 500.0), .bands = 5}).steps,
+              (std::vector<double>{0, 100, 200, 300, 400, 500}));
+    const ColourScale ratio = scale({.range = std::pair(1.0, 1000.0), .by_ratio = true, .bands = 3});
+    EXPECT_NEAR(ratio.steps[1], 10, 1e-9);
+    EXPECT_NEAR(ratio.steps[2], 100, 1e-9);
+    const ColourScale smooth = scale({.range = std::pair(0.0, 100.0), .smooth = true, .palette = Palette::grey});
+    EXPECT_LT(smooth.colour(20)[0], smooth.colour(21.5)[0]);
+    EXPECT_EQ(range.colour(20), range.colour(21.5));
+    EXPECT_NEAR(smooth.place(50), 0.5, 1e-12);
+}
+
 TEST(FalseColour, ScaleStandsInTheDarkAndInUniformLight) {
     EXPECT_GE(make_colour_scale(ramp(0, 0), Quantity::irradiance).band_count(), 1u);
     EXPECT_GE(make_colour_scale(ramp(3, 3), Quantity::radiosity).band_count(), 1u);
@@ -64,7 +83,7 @@ TEST(FalseColour, ScaleStandsInTheDarkAndInUniformLight) {
 
 TEST(FalseColour, LegendStaysWithinASmallPicture) {
     Image image(20, 10);
-    draw_legend(image, Quantity::luminance, {{0, 1, 2, 5, 10}});  // sanitizers would tell
+    draw_legend(image, "luminance cd/m^2", {{0, 1, 2, 5, 10}});  // sanitizers would tell
     EXPECT_EQ(image.rgb.size(), 600u);
 }
 

@@ -179,6 +179,7 @@ void SceneMaker::add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world) {
     if (lamp.has_range)
         warn(fmt::format("light '{}' has a range: light does not end there, so it is passed over", lamp.name));
     out_.lights.push_back(std::move(light));
+    out_.photometric = true;  // candela and lux
 }
 
 void SceneMaker::add_view(const GltfModel::View& view, const Affine& to_world) {

@@ -11,6 +11,8 @@
 namespace exitance {
 namespace {
 
+constexpr std::uint64_t most_held = std::uint64_t(512) << 20;  ///< Bytes.
+
 struct Failure {
     jpeg_error_mgr manager;
     jpeg_progress_mgr progress;
@@ -22,9 +24,9 @@ struct Failure {
 }
 void ignore(j_common_ptr) {}
 
-/// Ends pictures that come in more passes than any program writes: each goes over all of the picture again.
+/// Ends pictures that come in more passes than any program writes (ten): each goes over all of the picture again.
 void count_passes(j_common_ptr info) {
-    constexpr int most = 64;
+    constexpr int most = 24;
     if (info->is_decompressor && reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > most) fail(info);
 }
 
@@ -40,9 +42,10 @@ bool decode_rows(jpeg_decompress_struct& info, Failure& failure, std::span<const
     jpeg_read_header(&info, TRUE);
     const std::uint64_t pixels = std::uint64_t(info.image_width) * info.image_height;
     if (pixels > most_texture_pixels) return false;
-    // Pictures in several passes are held whole, as two bytes a coefficient; and each pass goes over all of it.
-    if (jpeg_has_multiple_scans(&info) &&
-        pixels * 2 * static_cast<unsigned>(info.num_components) > 10 * file.size() + (std::uint64_t(48) << 20))
+    // Pictures in several passes are held whole, as two bytes a coefficient; and each pass goes over all of it. Few
+    // bytes cannot say much of many pixels: a thousandth of a bit each is less than any program writes.
+    const std::uint64_t held = pixels * 2 * static_cast<unsigned>(info.num_components);
+    if (jpeg_has_multiple_scans(&info) && (held > most_held || pixels > 8000 * std::uint64_t(file.size())))
         return false;
     info.out_color_space = JCS_RGB;
     jpeg_start_decompress(&info);

@@ -11,8 +11,8 @@ namespace exitance {
 
 /// Mean red, green and blue of a picture in a file's bytes (PNG or JPEG; grey counts as three equal channels, opacity
 /// does not count), each in [0, 1] after `decode` has been applied to its 256 values. Row by row, so that a picture of
-/// any size needs little memory; pictures of more than 2^26 pixels (8192 x 8192) are refused, as are JPEGs in several
-/// passes of more than ten times the file's size and 64 MiB.
+/// any size needs little memory, but for JPEGs in several passes, which are held whole, up to 512 MiB; pictures of more
+/// than 2^26 pixels (8192 x 8192) are refused.
 struct ByteCurve {
     std::array<double, 256> value;
 };

@@ -91,6 +91,7 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     const auto in = [&](const char* name) { return group + "/" + name; };
     file.make_group(group);
     file.set_attribute(group, "file", std::string_view(scene.file_));
+    file.set_attribute(group, "photometric", static_cast<std::int64_t>(scene.photometric_));
     file.write(in("corner"), flat(scene.corners_), 3, {"m", "corners of the faces, one face after the other"});
 
     const auto& faces = scene.surfaces_;
@@ -162,6 +163,7 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     Columns in(file, group);
     Scene scene;
     scene.file_ = file.text_attribute(group, "file").value_or("");
+    scene.photometric_ = file.integer_attribute(group, "photometric").value_or(0) != 0;
     scene.corners_ = in.points("corner");
 
     const std::vector<std::string> material_names = file.read_texts(group + "/material_name");

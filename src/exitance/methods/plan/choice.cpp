@@ -14,6 +14,7 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     };
     // Reflections are counted by `matrix` alone, whose iterations are reflections.
     if (options.bounces > 0) return choose(Method::matrix, "counts reflections");
+    if (options.method == Method::wavelet && !options.basis) out.options.basis = BasisKind::multiwavelet2;
     if (options.method != Method::automatic) return out;
     if (!options.importance.empty()) return choose(Method::hierarchical, "refines for the points that are looked at");
     // Rays need R^(-4/3), links of order 3 about R^(-1/3): in a tube of reflectance 0.7, 20 against 6 s at 0.1%. Above
