@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "cli/small_scene.hpp"
@@ -44,6 +46,89 @@ TEST(ProgramViewFactors, ToleranceOutOfRangeIsAUsageErrorAndAnUnwritableFolderLe
     EXPECT_EQ(run_program({"viewfactors", scene, "-o", folder / "f.csv", "--tolerance", "2"}).status, 2);
     EXPECT_EQ(run_program({"viewfactors", scene, "-o", folder / "absent/f.csv"}).status, 5);
     EXPECT_EQ(run_program({"viewfactors", write_broken_scene(folder), "-o", folder / "f.csv"}).status, 3);
+}
+
+TEST(ProgramViewFactors, RaysSpeakInTheSummaryAndInJson) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder);
+    const Finished words = run_program({"viewfactors", scene, "-o", folder / "a.mtx", "--check", "20"});
+    ASSERT_EQ(words.status, 0) << words.err;
+    EXPECT_NE(words.out.find("20 entries drawn by lot are within"), std::string::npos) << words.out;
+    const Finished json = run_program({"viewfactors", scene, "-o", folder / "b.mtx", "--check", "20", "--json"});
+    ASSERT_EQ(json.status, 0) << json.err;
+    const nlohmann::json facts = nlohmann::json::parse(json.out);
+    EXPECT_EQ(facts["check"]["entries"], 20);
+    EXPECT_LT(facts["check"]["largest_deviation_in_standard_errors"], 5);  // of 20 drawn
+    EXPECT_LE(facts["entry_reciprocity_defect"], 1e-4);
+    EXPECT_EQ(facts["pairs_unsettled"], 0);
+    EXPECT_EQ(read_text(folder / "a.mtx"), read_text(folder / "b.mtx"));
+    const Finished none = run_program({"viewfactors", scene, "-o", folder / "c.h5", "--check", "0"});
+    EXPECT_EQ(none.status, 0) << none.err;
+    EXPECT_EQ(none.out.find("by lot"), std::string::npos);
+}
+
+/// Blocks on a floor: work for some seconds at a small tolerance.
+std::string write_long_work(const TemporaryFolder& folder) {
+    std::string text = "v 0 0 0\nv 40 0 0\nv 40 40 0\nv 0 40 0\nf 1 2 3 4\n";
+    for (int k = 0, v = 5; k < 100; ++k, v += 8) {
+        const double x = 4 * (k % 10) + 0.1 * (k % 3), y = 4 * (k / 10) + 0.1 * (k % 7), h = 1 + 0.37 * (k % 11);
+        for (double z : {0.0, h})
+            for (auto [u, w] : {std::pair{0, 0}, {2, 0}, {2, 2}, {0, 2}})
+                text += "v " + std::to_string(x + u) + " " + std::to_string(y + w) + " " + std::to_string(z) + "\n";
+        const auto face = [&](int a, int b, int c, int d) {
+            for (int corner : {a, b, c, d}) text += (corner == a ? "f " : " ") + std::to_string(v + corner);
+            text += "\n";
+        };
+        face(4, 5, 6, 7), face(0, 1, 5, 4), face(1, 2, 6, 5), face(2, 3, 7, 6), face(3, 0, 4, 7);
+    }
+    write_text(folder / "blocks.obj", text);
+    return folder / "blocks.obj";
+}
+
+std::size_t files_in(const TemporaryFolder& folder) {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder / "")) ++count;
+    return count;
+}
+
+TEST(ProgramViewFactors, ATimeLimitEndsTheWorkWithNothingWritten) {
+    const TemporaryFolder folder;
+    const std::string scene = write_long_work(folder);
+    const Finished run = run_program(
+        {"viewfactors", scene, "-o", folder / "f.csv", "--tolerance", "1e-9", "--time-limit", "0.2", "--check", "0"});
+    EXPECT_EQ(run.status, 5) << run.out;
+    EXPECT_NE(run.err.find("stopped"), std::string::npos) << run.err;
+    EXPECT_EQ(files_in(folder), 1u);
+}
+
+TEST(ProgramViewFactors, ASignalEndsTheWorkWithNothingWritten) {
+    const TemporaryFolder folder;
+    const std::string scene = write_long_work(folder);
+    RunningProgram program({"viewfactors", scene, "-o", folder / "f.csv", "--tolerance", "1e-9"});
+    ASSERT_TRUE(program.wait_for("default"));  // the scene is read: faces without a material are told
+    program.send(SIGTERM);
+    EXPECT_EQ(program.finish().status, 143);
+    EXPECT_EQ(files_in(folder), 1u);
+}
+
+TEST(ProgramViewFactors, ReadsView3dAndStl) {
+    const TemporaryFolder folder;
+    write_text(
+        folder / "two.vs3",
+        "T two squares\nF 3\nV 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\nV 5 0 0 1\nV 6 1 0 1\nV 7 1 1 1\nV 8 0 1 1\n"
+        "S 1 1 2 3 4 0 0 0.9 low\nS 2 8 7 6 0 0 0 0.8 high\nS 3 8 6 5 0 0 2 0.8 high2\nE\n");
+    const Finished run = run_program({"viewfactors", folder / "two.vs3", "-o", folder / "f.csv", "--check", "0"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    std::istringstream table(read_text(folder / "f.csv"));
+    std::string line;
+    std::getline(table, line), std::getline(table, line);
+    const std::vector<std::string> fields = fields_of(line);
+    ASSERT_EQ(fields.size(), 5u);                                // two rows: the triangles are one surface
+    EXPECT_NEAR(std::stod(fields[4]), 0.199824895698387, 1e-4);  // unit squares, one apart
+    write_text(folder / "one.stl",
+               "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+               "endloop\nendfacet\nendsolid s\n");
+    EXPECT_EQ(run_program({"viewfactors", folder / "one.stl", "-o", folder / "g.csv"}).status, 0);
 }
 
 }  // namespace exitance::test

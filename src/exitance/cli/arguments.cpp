@@ -523,7 +523,8 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
 
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_scene(app, arguments.scene);
-    app.add_option("-o,--output", arguments.output, "Matrix to write: .csv, or .vf as View3D does")
+    app.add_option("-o,--output", arguments.output,
+                   "Matrix to write: .csv, .vf as View3D does, or sparse: .mtx (Matrix Market), .h5")
         ->type_name("FILE")
         ->required();
     const auto read_tolerance = [&arguments](const std::string& word) {
@@ -534,6 +535,10 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     app.add_option_function<std::string>("--tolerance", read_tolerance,
                                          "Relative error of entries above 1e-6; default 1e-4")
         ->type_name("R");
+    add_count(app, "--check", arguments.check, 0, "Entries drawn by lot that rays check; default 100");
+    add_count(app, "--check-rays", arguments.check_rays, 64, "Rays an entry so checked; default 16384");
+    add_count(app, "--seed", arguments.seed, 0, "Of the lot and of the rays; default 1");
+    add_positive(app, "--time-limit", arguments.time_limit, "SECONDS", "End then, with nothing written");
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }

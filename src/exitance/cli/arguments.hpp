@@ -122,6 +122,10 @@ struct ViewFactorArguments : CommonArguments {
     SceneArguments scene;
     std::string output;
     double tolerance = 1e-4;  ///< Relative error of every entry above 1e-6.
+    std::size_t check = 100;  ///< Entries that rays check.
+    std::size_t check_rays = 1u << 14;
+    std::uint64_t seed = 1;
+    std::optional<double> time_limit;  ///< Of the whole run, seconds.
     int threads = 0;
 };
 

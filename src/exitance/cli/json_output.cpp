@@ -178,9 +178,21 @@ std::string error_json(const ErrorMeasure& error) {
 }
 
 std::string view_factors_json(const ViewFactorFacts& facts) {
+    const RayCheck& check = facts.check;
     const Json json{
         {"surfaces", facts.surfaces},
+        {"tolerance", facts.tolerance},
         {"reciprocity_defect", facts.reciprocity_defect},
+        {"entry_reciprocity_defect", facts.entry_defect},
+        {"pairs_computed_again", facts.mended},
+        {"pairs_unsettled", facts.unsettled},
+        {"check",
+         {{"entries", check.entries},
+          {"rays", check.rays},
+          {"largest_deviation_in_standard_errors", check.largest_deviation},
+          {"largest_relative_deviation", check.largest_relative},
+          {"relative_standard_error_there", check.relative_error_there},
+          {"median_relative_standard_error", check.usual_relative_error}}},
         {"row_sum", {{"least", facts.least_row_sum}, {"most", facts.most_row_sum}}},
         {"seconds", facts.seconds},
     };

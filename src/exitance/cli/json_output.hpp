@@ -9,6 +9,7 @@
 #include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/solve/solve_options.hpp"
+#include "exitance/view_factors/ray_check.hpp"
 
 namespace exitance {
 
@@ -39,6 +40,9 @@ struct ViewFactorFacts {
     double seconds = 0;
     double reciprocity_defect = 0;
     double least_row_sum = 0, most_row_sum = 0;
+    double tolerance = 0, entry_defect = 0;
+    std::size_t mended = 0, unsettled = 0;
+    RayCheck check;
 };
 
 /// `viewfactors --json`.

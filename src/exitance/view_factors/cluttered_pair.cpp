@@ -8,14 +8,14 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t least_cells = 32;           ///< Of the receiver before differences are believed.
-constexpr std::size_t most_parts = 48;            ///< Cut under edges.
-constexpr double near_edge = 0.1;                 ///< Of the receiver's size: the height of edges that it is cut under.
-constexpr std::size_t most_evaluations = 30'000;  ///< Of a pair: a bound on the worst.
+constexpr std::size_t least_cells = 32;  ///< Of the receiver before differences are believed.
+constexpr std::size_t most_parts = 48;   ///< Cut under edges.
+constexpr double near_edge = 0.1;        ///< Of the receiver's size: the height of edges that it is cut under.
 /// Of what a dark cell would hold at the slope at which light fades over the whole receiver: a corner that its points
 /// missed.
 constexpr double dark_corner = 0.1;
-constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may have been missed where nothing was seen.
+constexpr std::size_t halvings_a_look = 64;  ///< At the clock.
+constexpr double unseen_brightness = 0.05;   ///< Of the whole source: what may have been missed where nothing was seen.
 
 double squared_distance(const Point& x, const Point& a, const Point& b) {
     const Vec3 e = b - a, d = x - a;
@@ -257,14 +257,17 @@ double ClutteredExchange::operator()(const OccludedPair& pair, const Allowance& 
     }
     // Halved evenly at first: a sum of all that is seen must not rest on where the first few points happened to lie.
     std::make_heap(heap_.begin(), heap_.end());
-    const std::size_t enough = evaluations + most_evaluations;
+    const std::size_t enough = evaluations + allowance.most_evaluations;
     while (heap_.size() < least_cells && total_ + std::sqrt(squared_error_) > 0) halve_worst();
     const auto good = [&] {
         const double error = std::sqrt(std::max(0.0, squared_error_));
         return error <= std::max(allowance.absolute, allowance.relative * total_) ||
                total_ + 2 * error < allowance.ignored;
     };
-    while (!good() && evaluations < enough) halve_worst();
+    for (std::size_t k = 1; !good() && evaluations < enough; ++k) {
+        halve_worst();
+        if (k % halvings_a_look == 0 && stop_.requested()) break;
+    }
     if (all_lit_) return unoccluded = true, 0;
     double sum = 0;  // anew: the running one has rounded
     for (const Cell& cell : heap_) sum += cell.integral;

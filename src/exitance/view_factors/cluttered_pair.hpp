@@ -15,11 +15,15 @@ namespace exitance {
 /// darkens a strip that no point of a large cell may meet. One object serves one thread and many pairs.
 class ClutteredExchange {
   public:
+    /// What is computed when a stop is requested is of no use.
+    explicit ClutteredExchange(const StopRequest& stop) : stop_(stop) {}
+
     /// The error that may be left, as it is estimated: the larger of the first two.
     struct Allowance {
-        double relative = 1e-4;  ///< Of the value.
-        double absolute = 0;     ///< m^2
-        double ignored = 0;      ///< m^2: smaller values need no digits.
+        double relative = 1e-4;                 ///< Of the value.
+        double absolute = 0;                    ///< m^2
+        double ignored = 0;                     ///< m^2: smaller values need no digits.
+        std::size_t most_evaluations = 20'000;  ///< A bound on the worst pairs.
     };
 
     /// A_i F_ij, m^2, of a pair as for OccludedExchange. `unoccluded` tells that nothing was seen to stand between; the
@@ -52,6 +56,7 @@ class ClutteredExchange {
     double dark(const Cell& cell);
     double visible_at(Vec2 p, double weight);
 
+    const StopRequest& stop_;
     OccludedPair pair_;
     PlaneFrame frame_{{}, {0, 0, 1}};
     VisibleSource visible_;

@@ -243,7 +243,7 @@ void OccludedExchange::apply(int points) {
 double OccludedExchange::integrate_tasks() {
     const bool fine = relative_ < 1e-5 || dominates_;
     double total = 0;
-    while (!tasks_.empty()) {
+    while (!tasks_.empty() && !stop_.requested()) {
         if (fine) {
             apply(3);
         } else {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/core/progress.hpp"
 #include "exitance/visibility/critical_lines.hpp"
 #include "exitance/visibility/visible_from_many.hpp"
 
@@ -29,6 +30,9 @@ struct Demand {
 /// embedded rules disagree are halved. One object serves one thread and many pairs.
 class OccludedExchange {
   public:
+    /// What is computed when a stop is requested is of no use.
+    explicit OccludedExchange(const StopRequest& stop) : stop_(stop) {}
+
     /// A_i F_ij, m^2. `unoccluded` tells that nothing stands between after all; the value is then left to others.
     double operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded);
 
@@ -101,6 +105,7 @@ class OccludedExchange {
     double integrate_tasks();
 
     static constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
+    const StopRequest& stop_;
     OccludedPair pair_;
     PlaneFrame frame_{{}, {0, 0, 1}};
     VisibleFromMany visible_;

@@ -14,8 +14,9 @@ constexpr double smallest_entry = 1e-6;   ///< Entries below it need no digits o
 constexpr double large_entry = 3e-4;      ///< Entries above it may be among the largest of their rows.
 constexpr std::size_t few_blockers = 12;  ///< With more, their critical lines would cut faces into thousands of cells.
 constexpr double alike_areas = 4;         ///< Areas of one order: either face may receive.
-constexpr double much_less = 8;           ///< Crowded than the other face.
-constexpr double much_larger = 16;        ///< Than another face.
+constexpr std::size_t patient_evaluations = 500'000;
+constexpr double much_less = 8;     ///< Crowded than the other face.
+constexpr double much_larger = 16;  ///< Than another face.
 /// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance one was wrong by 0.6%.
 constexpr double contour_share = 1e-4;
 
@@ -101,7 +102,8 @@ double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& sour
                   crowding(receiver.plane, receiver.diameter, standing_between_)
             : source.area < receiver.area && (is_cluttered_ || much_larger * source.area < receiver.area);
     const double smallest = smallest_entry * std::min(source.area, receiver.area);
-    const ClutteredExchange::Allowance allowance{0.5 * tolerance_, tolerance_ * smallest, is_alone_ ? 0 : smallest};
+    const ClutteredExchange::Allowance allowance{0.5 * tolerance_, tolerance_ * smallest, is_alone_ ? 0 : smallest,
+                                                 most_evaluations_};
     if (turned)
         return cluttered_exchange_({s, r, source.plane, receiver.plane, standing_between_}, allowance, 0.45,
                                    unoccluded);
@@ -178,14 +180,15 @@ double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means me
     if (i == j || !pairs_.face_each_other(i, j, cut)) return 0;
     const double usual = std::exchange(tolerance_, tolerance);
     is_alone_ = true;
+    most_evaluations_ = means == Means::patient ? patient_evaluations : usual_evaluations;
     pairs_.find_blockers(i, of_row_);
     pairs_.find_blockers(i, j, of_row_, of_pair_);
-    is_cluttered_ = of_pair_.size() > few_blockers || means == Means::without_lines;
+    is_cluttered_ = of_pair_.size() > few_blockers || means != Means::usual;
     bool unoccluded = of_pair_.empty();
     double F = unoccluded ? 0 : occluded(i, j, of_pair_, unoccluded);
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
     if (unoccluded) F = exchange_area(receiver.outline, source.outline, contour_share * tolerance_) / receiver.area;
-    tolerance_ = usual, is_alone_ = false;
+    tolerance_ = usual, is_alone_ = false, most_evaluations_ = usual_evaluations;
     return std::clamp(F, 0.0, 1.0);
 }
 
@@ -193,7 +196,7 @@ void RowWorker::compute(std::size_t i, std::span<double> row) {
     pairs_.find_blockers(i, of_row_);
     for (std::size_t j = 0; j < pairs_.faces().size(); ++j) {
         bool cut = false;
-        if (j % 16 == 0 && stop_.requested()) return;
+        if (stop_.requested()) return;
         if (j == i || !pairs_.face_each_other(i, j, cut)) continue;
         pairs_.find_blockers(i, j, of_row_, of_pair_);
         is_cluttered_ = of_pair_.size() > few_blockers;

@@ -18,7 +18,7 @@ namespace exitance {
 class RowWorker {
   public:
     RowWorker(const ViewPairs& pairs, double tolerance, const StopRequest& stop)
-        : pairs_(pairs), tolerance_(tolerance), stop_(stop) {}
+        : pairs_(pairs), tolerance_(tolerance), stop_(stop), exchange_(stop), cluttered_exchange_(stop) {}
 
     /// All of a row, from points of its own face (of a much smaller one, where that sees more evenly). What it holds
     /// when a stop is requested is of no use.
@@ -27,6 +27,7 @@ class RowWorker {
     enum class Means : std::uint8_t {
         usual,
         without_lines,  ///< Cells are halved where that changes something, and no critical lines are sought.
+        patient,        ///< The same, up to 25 times as long.
     };
     /// F_ij by itself, to another tolerance.
     double entry(std::size_t i, std::size_t j, double tolerance, Means means);
@@ -65,6 +66,8 @@ class RowWorker {
     std::vector<Point> front_r_, front_s_;
     OccludedExchange exchange_;
     ClutteredExchange cluttered_exchange_;
+    static constexpr std::size_t usual_evaluations = 20'000;  ///< Of a pair among much clutter.
+    std::size_t most_evaluations_ = usual_evaluations;
     bool is_alone_ = false;      ///< Is an entry at hand that is known to matter?
     bool is_cluttered_ = false;  ///< May many things hide some of the pair at hand?
 };

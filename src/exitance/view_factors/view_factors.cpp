@@ -43,6 +43,14 @@ std::vector<Pair> disagreeing(const ViewFactors& table, double most) {
     return found;
 }
 
+void add_row_sums(ViewFactors& table) {
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        double sum = 0;
+        for (double F : table.row(i)) sum += F;
+        table.row_sums.push_back(sum);
+    }
+}
+
 /// Sets both defects of a table.
 void find_defects(ViewFactors& table) {
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -91,7 +99,7 @@ class TableMaker {
         constexpr Round rounds[] = {{0.2, RowWorker::Means::usual},
                                     {0.04, RowWorker::Means::usual},
                                     {0.2, RowWorker::Means::without_lines},
-                                    {0.04, RowWorker::Means::without_lines}};
+                                    {0.04, RowWorker::Means::patient}};
         progress_.phase("look again");
         for (const Round& round : rounds) {
             const std::vector<Pair> pairs = disagreeing(table_, agreeing * tolerance_);
@@ -101,9 +109,7 @@ class TableMaker {
                 parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
                     RowWorker worker(pairs_, tolerance_, stop_);
                     for (std::size_t k = first + from; k < first + to && !stop_.requested(); ++k) {
-                        const auto [i, j] = pairs[k];
-                        set(i, j) = worker.entry(i, j, round.share * tolerance_, round.means);
-                        set(j, i) = worker.entry(j, i, round.share * tolerance_, round.means);
+                        look_again(worker, pairs[k], round.share * tolerance_, round.means);
                     }
                 });
                 if (stop_.requested())
@@ -116,7 +122,16 @@ class TableMaker {
     }
 
   private:
-    double& set(std::size_t i, std::size_t j) { return table_.factors[i * table_.size() + j]; }
+    double& at(std::size_t i, std::size_t j) { return table_.factors[i * table_.size() + j]; }
+
+    /// Keeps what agrees better.
+    void look_again(RowWorker& worker, Pair pair, double tolerance, RowWorker::Means means) {
+        const auto [i, j] = pair;
+        const double before = disagreement(table_, i, j), there = at(i, j), back = at(j, i);
+        at(i, j) = worker.entry(i, j, tolerance, means);
+        at(j, i) = worker.entry(j, i, tolerance, means);
+        if (disagreement(table_, i, j) > before) at(i, j) = there, at(j, i) = back;
+    }
 
     const ViewPairs& pairs_;
     ViewFactors& table_;
@@ -142,13 +157,27 @@ Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, P
     TableMaker maker(pairs, table, tolerance, progress, stop);
     if (const Result<void> done = maker.compute_rows(); !done) return done.error();
     if (const Result<void> done = maker.mend(); !done) return done.error();
-    for (std::size_t i = 0; i < n; ++i) {
-        double sum = 0;
-        for (double F : table.row(i)) sum += F;
-        table.row_sums.push_back(sum);
-    }
+    add_row_sums(table);
     find_defects(table);
     return table;
+}
+
+ViewFactors merge_rows(const ViewFactors& table, std::span<const std::uint32_t> rows, std::size_t count) {
+    ViewFactors out = table;
+    out.areas.assign(count, 0), out.emittances.assign(count, 1), out.factors.assign(count * count, 0);
+    out.row_sums.clear();
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        if (rows[i] == no_row) continue;
+        const std::size_t to = rows[i];
+        out.areas[to] += table.areas[i], out.emittances[to] = table.emittances[i];
+        for (std::size_t j = 0; j < table.size(); ++j)
+            if (rows[j] != no_row) out.factors[to * count + rows[j]] += table.areas[i] * table.row(i)[j];
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = 0; j < count; ++j)
+            if (out.areas[i] > 0) out.factors[i * count + j] /= out.areas[i];
+    add_row_sums(out);
+    return out;
 }
 
 }  // namespace exitance

@@ -91,7 +91,7 @@ TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
         add_box(faces, lo, lo + Vec3{0.2, 0.24, 0.1}, false, 1);
     }
     add_box(faces, {0.5, 0.5, 0}, {0.6, 0.62, 0.5}, false, 1);
-    const double tolerance = 1e-3;
+    const double tolerance = 4e-3;
     const ViewFactors table = factors_of(scene_of(faces), tolerance);
     for (std::size_t i = 0; i < table.size(); ++i) {
         const bool covered = std::abs(table.row_sums[i]) < 1e-12;  // the foot of the block on the floor
@@ -159,7 +159,7 @@ TEST(ViewFactors, OfAWallBehindBoardsAFingersBreadthAwayAreReciprocal) {
             const Point lo = {0.01 + 0.004 * k, 0.13 + 0.95 * i + 0.05 * k, 0.21 + 0.55 * k};
             add_box(faces, lo, lo + Vec3{0.02, 0.31, 0.17}, false, 1);
         }
-    const double tolerance = 1e-3;
+    const double tolerance = 2e-3;
     const ViewFactors table = factors_of(scene_of(faces), tolerance);
     for (double sum : table.row_sums) EXPECT_NEAR(sum, 1, tolerance);
     EXPECT_LT(table.reciprocity_defect, tolerance);

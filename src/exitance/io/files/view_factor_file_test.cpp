@@ -6,6 +6,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "exitance/io/solution/hdf5_file.hpp"
+#include "support/temporary_folder.hpp"
+
 namespace exitance {
 namespace {
 
@@ -41,16 +44,55 @@ TEST(ViewFactorFile, VfHoldsHeaderAreasRowsAndEmittances) {
     EXPECT_EQ(emittance[1], 0.25);
 }
 
+TEST(ViewFactorFile, MatrixMarketHoldsWhatIsNotZero) {
+    std::istringstream in(view_factors_mtx(two_faces()));
+    std::string line, last;
+    std::getline(in, line);
+    EXPECT_EQ(line, "%%MatrixMarket matrix coordinate real general");
+    while (std::getline(in, line) && line[0] == '%') last = line;
+    EXPECT_EQ(last, "% 2 2");
+    EXPECT_EQ(line, "2 2 2");
+    std::getline(in, line);
+    EXPECT_EQ(line, "1 2 0.33333333333333331");
+    std::getline(in, line);
+    EXPECT_EQ(line, "2 1 0.16666666666666666");
+    EXPECT_FALSE(std::getline(in, line));
+}
+
+TEST(ViewFactorFile, Hdf5HoldsCompressedRows) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_view_factors(folder / "F.h5", two_faces(), StopRequest()));
+    Result<Hdf5Reader> file = Hdf5Reader::open(folder / "F.h5");
+    ASSERT_TRUE(file);
+    EXPECT_EQ(file->read<std::int64_t>("view_factors/indptr"), (std::vector<std::int64_t>{0, 1, 2}));
+    EXPECT_EQ(file->read<std::int32_t>("view_factors/indices"), (std::vector<std::int32_t>{1, 0}));
+    EXPECT_EQ(file->read<double>("view_factors/data"), (std::vector<double>{1.0 / 3, 1.0 / 6}));
+    EXPECT_EQ(file->read<double>("view_factors/areas"), (std::vector<double>{1, 2}));
+    EXPECT_FALSE(file->failed());
+}
+
+TEST(ViewFactorFile, AStopLeavesNothingInAnyFormat) {
+    const TemporaryFolder folder;
+    StopRequest stop;
+    stop.interrupt();
+    for (const char* name : {"F.csv", "F.vf", "F.mtx", "F.h5"}) {
+        const Result<void> written = write_view_factors(folder / name, two_faces(), stop);
+        ASSERT_FALSE(written) << name;
+        EXPECT_EQ(written.error().code, ErrorCode::limit);
+        EXPECT_FALSE(std::filesystem::exists(folder / name));
+    }
+}
+
 TEST(ViewFactorFile, IsWrittenWholeOrNotAtAll) {
     const auto folder = std::filesystem::temp_directory_path() / "exitance_view_factor_file";
     std::filesystem::create_directories(folder);
     const std::string path = (folder / "F.csv").string();
-    ASSERT_TRUE(write_view_factors(path, two_faces()));
+    ASSERT_TRUE(write_view_factors(path, two_faces(), StopRequest()));
     std::ifstream file(path);
     std::stringstream content;
     content << file.rdbuf();
     EXPECT_EQ(content.str(), view_factors_csv(two_faces()));
-    const Result<void> failed = write_view_factors((folder / "none" / "F.csv").string(), two_faces());
+    const Result<void> failed = write_view_factors((folder / "none" / "F.csv").string(), two_faces(), StopRequest());
     ASSERT_FALSE(failed);
     EXPECT_EQ(failed.error().code, ErrorCode::cannot_write);
     std::size_t files = 0;

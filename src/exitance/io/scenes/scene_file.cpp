@@ -9,6 +9,8 @@
 #include "exitance/io/scenes/gltf.hpp"
 #include "exitance/io/scenes/obj.hpp"
 #include "exitance/io/scenes/radiance.hpp"
+#include "exitance/io/scenes/stl.hpp"
+#include "exitance/io/scenes/view3d.hpp"
 #include "exitance/scene/findings.hpp"
 
 namespace exitance {
@@ -58,6 +60,8 @@ Reader reader_of(const std::string& path) {
     const std::string end = ending(path);
     if (end == ".obj") return read_obj;
     if (end == ".rad") return read_radiance;
+    if (end == ".vs3") return read_view3d;
+    if (end == ".stl") return read_stl;
     if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf;
     return nullptr;
 }
@@ -125,7 +129,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             return refused(ErrorCode::cannot_read, path, "there is no such file", "");
         if (!reader_of(path))
             return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
-                           "known endings: .obj, .gltf, .glb, .rad");
+                           "known endings: .obj, .gltf, .glb, .rad, .stl, .vs3");
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), path) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");

@@ -31,8 +31,9 @@ struct LoadedScene : CheckedScene {
 /// where the first of them does; of faces in one plane the later one is on top. As below otherwise.
 LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options);
 
-/// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb, .rad). Every error of the file is
-/// among the findings. An unreadable file has the code cannot_read, everything else that is wrong bad_input.
+/// Reads and checks a scene file; its ending says what it is (.obj, .gltf, .glb, .rad, .stl, .vs3). Every error of
+/// the file is among the findings. An unreadable file has the code cannot_read, everything else that is wrong
+/// bad_input.
 CheckedScene load_scene(const std::string& path, Faults faults = Faults::repair);
 
 /// What a scene file says, not yet checked; nothing, where it is of no known kind or cannot be read.
