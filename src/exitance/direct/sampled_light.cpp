@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exitance/core/random.hpp"
+#include "exitance/direct/source_point.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/geometry/polygon.hpp"
 
@@ -13,20 +14,6 @@ namespace exitance {
 namespace {
 
 constexpr unsigned rays_for_sight = 16;  // an element
-
-/// A place of a convex polygon of that area (m^2) with uniform density, from two numbers in [0, 1).
-Point uniform_on(std::span<const Point> corners, double area_of_all, double s, double t) {
-    double rest = s * 2 * area_of_all;
-    for (std::size_t i = 2;; ++i) {
-        const Vec3 a = corners[i - 1] - corners[0], b = corners[i] - corners[0];
-        const double area = norm(cross(a, b));
-        if (rest < area || i + 1 == corners.size()) {
-            const Vec2 uv = uniform_in_shape(Patch::Shape::triangle, std::min(rest / area, 1.0), t);
-            return corners[0] + uv.x * a + uv.y * b;
-        }
-        rest -= area;
-    }
-}
 
 /// Deals a whole number of rays out to one source after the other, to each within one of what it should have, and as
 /// many in all as chance leaves open: where rays of like worth are counted, hardly any chance is left.

@@ -92,7 +92,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     direct.assign(n, {});
     parallel_ranges(n, 8, [&](std::size_t begin, std::size_t end) {
         PatchTransfer::Workspace workspace;
-        DirectLight::Workspace exact;
+        ClusteredLight::Workspace exact;
         for (std::size_t i = begin; i < end; ++i) {
             const ElementId e = numbering.leaves[i];
             if (e.value < old_size) {
@@ -117,12 +117,14 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     kept_bytes_ = 0;
 }
 
-Spectrum ShootingSetup::mean_direct_light(ElementId e, DirectLight::Workspace& workspace) const {
+Spectrum ShootingSetup::mean_direct_light(ElementId e, ClusteredLight::Workspace& workspace) const {
+    const LightAccuracy accuracy{.relative = 0.5 * input_.options.error_target()};
     const RegionId region = tree.region(e);
     const Normal& n = input_.stage.scene.regions()[region].plane.n;
     Spectrum mean;
     for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::nodes))
-        mean += place.weight * input_.stage.direct.irradiance(tree.patch(e).at(place.uv), n, region, workspace);
+        mean += place.weight *
+                input_.stage.clustered.at(tree.patch(e).at(place.uv), n, region, accuracy, workspace).irradiance;
     return mean;
 }
 

@@ -42,7 +42,7 @@ class ShootingSetup {
     void update_patches();
 
   private:
-    Spectrum mean_direct_light(ElementId e, DirectLight::Workspace& workspace) const;
+    Spectrum mean_direct_light(ElementId e, ClusteredLight::Workspace& workspace) const;
     std::span<const float> column(std::size_t patch);
 
     const MethodInput& input_;

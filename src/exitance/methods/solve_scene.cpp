@@ -18,6 +18,7 @@
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/error/certificate.hpp"
+#include "exitance/reconstruct/error/clustering_error.hpp"
 #include "exitance/reconstruct/interpolant.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/quick_function.hpp"
@@ -92,6 +93,7 @@ class Solver {
             statistics().elements = direct_.tree.size();
             statistics().leaf_elements = direct_.tree.leaves().size();
             tell_exact();
+            tell_clustering_error();
         }
         if (light_ && !light_->kept_links.empty())
             solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
@@ -394,10 +396,30 @@ class Solver {
             if (estimate <= limit || estimate - 2 * certificate_.uncertainty > limit) break;
             certificate_ = certifier.look();
         }
+        add_clustering_error();
         record_certificate(certificate_, *light_, solution_.indirect, statistics());
         statistics().rooms = certifier.rooms();
         if (certificate_.points == 0 && !stop_.requested()) tell_exact();
         progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
+    }
+
+    /// Direct light at points is exact, or within this where emitters are many.
+    void add_clustering_error() {
+        if (certificate_.points == 0 || light_->holds_direct) return;
+        const double more =
+            clustering_error(stage_, direct_, point_accuracy(certificate_.estimate)) / certificate_.mean_reflected;
+        if (!(more > 0)) return;
+        certificate_.estimate = std::hypot(certificate_.estimate, more);
+        certificate_.bound = std::hypot(certificate_.bound, more);
+        certificate_.worst_room = std::hypot(certificate_.worst_room, more);
+    }
+
+    /// Where direct light is all there is.
+    void tell_clustering_error() {
+        const double error = clustering_error(stage_, direct_, point_accuracy(1));
+        if (error > 0)
+            statistics().relative_error_estimate = statistics().relative_error_bound =
+                error / mean_direct_light(stage_, direct_);
     }
 
     /// What the estimate is made of, relative to the mean reflected light.

@@ -28,13 +28,12 @@ class Interpolation {
             fitted_.resize(out_.tree.size());
             parallel_ranges(active.size(), 8,
                             [&](std::size_t begin, std::size_t end) {
-                                DirectLight::Workspace workspace;
-                                ReceiverLight light;
+                                DirectFitRoom room;
                                 for (std::size_t i = begin; i < end; ++i) {
                                     const ElementId e = active[i];
                                     fitted_[e] = round > 0 && stop.requested()
                                                      ? inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)])
-                                                     : fit(e, light, workspace);
+                                                     : fit(e, room);
                                 }
                             },
                             {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
@@ -55,12 +54,13 @@ class Interpolation {
     }
 
   private:
-    /// Direct light as projected, or exactly anew on a leaf that is new; indirect light on top.
-    DirectFit fit(ElementId e, ReceiverLight& light, DirectLight::Workspace& workspace) const {
+    /// Direct light as projected, or anew on a leaf that is new; indirect light on top.
+    DirectFit fit(ElementId e, DirectFitRoom& room) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
-        DirectFit out =
-            e.value < direct_.tree.size() ? direct_.fit[e] : fit_direct_light(stage_, out_.tree, e, light, workspace);
+        DirectFit out = e.value < direct_.tree.size()
+                            ? direct_.fit[e]
+                            : fit_direct_light(stage_, out_.tree, e, options_.tolerance * options_.tolerance, room);
         for (Spectrum& corner : out.corners) corner *= direct_weight_;
         out.mean *= direct_weight_;
         out.misfit_squared *= max(direct_weight_ * direct_weight_);

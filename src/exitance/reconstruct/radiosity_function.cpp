@@ -19,7 +19,8 @@ RadiosityFunction::RadiosityFunction(const Solution& solution)
       locator_(solution.scene),
       indirect_locator_(solution.indirect.tree, solution.scene.regions().size()),
       interpolant_locator_(solution.interpolant.tree, solution.scene.regions().size()),
-      stage_(std::make_unique<Stage>(solution.scene)) {}
+      stage_(std::make_unique<Stage>(solution.scene)),
+      accuracy_(point_accuracy(solution.statistics.relative_error_estimate.value_or(1))) {}
 
 RadiosityFunction::~RadiosityFunction() = default;
 
@@ -34,7 +35,7 @@ Spectrum RadiosityFunction::gathered(const ProbePoint& point, RegionId own, unsi
 }
 
 Spectrum RadiosityFunction::irradiance_on(RegionId region, const Point& x, Component component,
-                                          DirectLight::Workspace& workspace) const {
+                                          ClusteredLight::Workspace& workspace) const {
     // The elements hold E_ind + c E_dir: the exact part weighs 1 - c in all, 1 or -c by itself.
     Spectrum weight = exact_share();
     if (!solution_.direct_in_elements && component == Component::direct) weight = Spectrum(1);
@@ -42,7 +43,8 @@ Spectrum RadiosityFunction::irradiance_on(RegionId region, const Point& x, Compo
     Spectrum irradiance;
     if (squared(weight) > 0)
         irradiance +=
-            weight * stage_->direct.irradiance(x, solution_.scene.regions()[region].plane.n, region, workspace);
+            weight *
+            stage_->clustered.at(x, solution_.scene.regions()[region].plane.n, region, accuracy_, workspace).irradiance;
     if (component != Component::direct) irradiance += elements(region, x);
     return irradiance;
 }
@@ -50,7 +52,7 @@ Spectrum RadiosityFunction::irradiance_on(RegionId region, const Point& x, Compo
 std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Component component) const {
     std::vector<Light> out(points.size());
     parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
-        DirectLight::Workspace workspace;
+        ClusteredLight::Workspace workspace;
         GatherWorkspace gathering;
         for (std::size_t i = begin; i < end; ++i) {
             const auto& [x, n] = points[i];
@@ -67,7 +69,7 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
                 continue;
             }
             if (component != Component::indirect)
-                out[i].irradiance += stage_->direct.irradiance(x, n, region, workspace);
+                out[i].irradiance += stage_->clustered.at(x, n, region, accuracy_, workspace).irradiance;
             const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), i);
             if (component != Component::direct)
                 out[i].irradiance += gathered(points[i], RegionId(), free_space_rays, key, gathering);

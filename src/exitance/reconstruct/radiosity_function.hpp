@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "exitance/direct/direct_light.hpp"
+#include "exitance/direct/clustered_light.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/scene/locator.hpp"
@@ -29,8 +29,9 @@ struct ProbePoint {
     Normal n;
 };
 
-/// A solution as a function of place: B(x) = M + rho (E_dir(x) + E_ind(x)), direct light evaluated exactly from the
-/// polygons, indirect light read from the solution's elements (less the share of direct light that they hold).
+/// A solution as a function of place: B(x) = M + rho (E_dir(x) + E_ind(x)), direct light evaluated from the
+/// polygons (exactly, or where many small emitters shine to `point_accuracy()`), indirect light read from the
+/// solution's elements (less the share of direct light that they hold).
 class RadiosityFunction {
   public:
     /// Keeps a reference: the solution must outlive it.
@@ -63,12 +64,13 @@ class RadiosityFunction {
 
   private:
     Spectrum irradiance_on(RegionId region, const Point& x, Component component,
-                           DirectLight::Workspace& workspace) const;
+                           ClusteredLight::Workspace& workspace) const;
 
     const Solution& solution_;
     Locator locator_;
     ElementLocator indirect_locator_, interpolant_locator_;
     std::unique_ptr<Stage> stage_;
+    LightAccuracy accuracy_;  ///< Of direct light where emitters are many and small.
 };
 
 }  // namespace exitance

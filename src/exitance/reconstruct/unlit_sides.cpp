@@ -42,11 +42,12 @@ std::vector<Side> sides_of_sheets(const Stage& stage) {
 bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsigned paths, std::uint64_t seed) {
     const Normal& n = stage.scene.regions()[side.region].plane.n;
     const ScrambledSobol where(hash(seed, static_cast<std::uint64_t>(Stream::reference), side.region.value));
-    DirectLight::Workspace workspace;
+    ClusteredLight::Workspace workspace;
+    constexpr LightAccuracy any_light{.relative = 0.1};
     for (unsigned i = 0; i < places; ++i) {
         const Point x = side.at(where(i, 0), where(i, 1), where(i, 2));
         if (stage.occluders.is_covered(x, n, side.region)) continue;
-        if (max(stage.direct.irradiance(x, n, side.region, workspace)) > 0) return true;
+        if (max(stage.clustered.at(x, n, side.region, any_light, workspace).irradiance) > 0) return true;
         RandomStream random(seed, Stream::reference, side.region.value, i);
         const ScrambledSobol directions(hash(random.key(), 1u));
         for (unsigned p = 0; p < paths; ++p)

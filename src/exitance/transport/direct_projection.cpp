@@ -8,16 +8,16 @@
 namespace exitance {
 namespace {
 
-DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, const ReceiverLight& light,
-                     DirectLight::Workspace& workspace) {
+/// The polynomial nearest to value(x, parallel) at the places of the fine rule.
+template <class Value>
+DirectFit fit_at_places(const Stage& stage, const ElementTree& tree, ElementId e, const Value& value_at) {
     DirectFit out;
-    if (light.is_dark()) return out;
     const Patch& patch = tree.patch(e);
     const std::vector<WeightedPlace> rule = element_rule(tree, e, RuleOrder::fine);
     std::vector<Spectrum> value(rule.size());
     for (std::size_t i = 0; i < rule.size(); ++i) {
         Spectrum parallel;
-        value[i] = stage.direct.irradiance(light, patch.at(rule[i].uv), workspace, &parallel);
+        value[i] = value_at(patch.at(rule[i].uv), parallel);
         out.mean += rule[i].weight * value[i];
         out.parallel += rule[i].weight * parallel;
     }
@@ -30,7 +30,61 @@ DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, c
     return out;
 }
 
+DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, const ReceiverLight& light,
+                     DirectLight::Workspace& workspace) {
+    if (light.is_dark()) return {};
+    return fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
+        return stage.direct.irradiance(light, x, workspace, &parallel);
+    });
+}
+
+/// What clusters of emitters may miss at one place of an element that an error of `allowed` is left to.
+LightAccuracy accuracy_on(const Stage& stage, RegionId region, double allowed) {
+    constexpr double of_error = 0.5;   // an RMS error; a fit leaves a part of that
+    constexpr double at_least = 0.05;  // no place needs more than this part of its own light
+    return {at_least, of_error * std::sqrt(allowed) / mean(light_weight(stage.scene.material(region)))};
+}
+
+/// The nearest polynomial has as many freedoms as the element has corners: as much of the noise stays in it, and the
+/// rest looks like misfit.
+DirectFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
+                       ClusteredLight::Workspace& workspace) {
+    const RegionId region = tree.region(e);
+    const Normal& n = stage.scene.regions()[region].plane.n;
+    const LightAccuracy accuracy = accuracy_on(stage, region, allowed);
+    double noise = 0, places = 0;
+    const bool parallel_light = !stage.direct.beams().empty();
+    DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
+        const ClusteredLight::Estimate at = stage.clustered.by_clusters(x, n, region, accuracy, workspace);
+        noise += at.variance, ++places;
+        if (parallel_light) stage.direct.beams().irradiance({x, n, region}, &parallel);
+        return at.irradiance;
+    });
+    const double w = mean(light_weight(stage.scene.material(region)));
+    noise *= w * w / places;
+    const double kept = std::min(1.0, tree.patch(e).corner_count() / places);
+    constexpr double seldom = 2;  // of noise alone, the squares of a few freedoms are seldom more than this
+    out.misfit_squared = std::max(0.0, out.misfit_squared - seldom * (1 - kept) * noise) + kept * noise;
+    return out;
+}
+
+/// Would clusters do at the middle of an element?
+bool suits_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
+                    ClusteredLight::Workspace& workspace) {
+    if (!stage.clustered.is_possible()) return false;
+    const RegionId region = tree.region(e);
+    return stage.clustered.pays(tree.patch(e).at(tree.centre(e)), stage.scene.regions()[region].plane.n, region,
+                                accuracy_on(stage, region, allowed), workspace);
+}
+
 }  // namespace
+
+DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
+                           DirectFitRoom& room) {
+    return suits_clusters(stage, tree, e, allowed, room.clustered)
+               ? fit_clusters(stage, tree, e, allowed, room.clustered)
+               : fit_direct_light(stage, tree, e, room.light, room.clustered.exact);
+}
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace) {
@@ -75,14 +129,23 @@ namespace {
 
 constexpr unsigned rays_an_element = 16;  ///< For weak sources; more on elements larger than the first ones on average.
 
+constexpr std::size_t few_strong = 24;  ///< Sources of which exact visible parts cost no more than clusters do.
+
 /// The same where there are many elements: sources that do not count on this one are left to rays.
-DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double share, unsigned rays,
-                           SampledLight& sampled, ReceiverLight& light, DirectLight::Workspace& workspace) {
+DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, unsigned rays,
+                           SampledLight& sampled, DirectFitRoom& room) {
     const RegionId region = tree.region(e);
-    const double allowed = share / tree.area(e);
+    // Each source is looked at, if only roughly: where they are too many even for that, clusters are first.
+    constexpr std::size_t too_many = 10000;
+    const bool clusters_first = stage.clustered.tree().sources().size() > too_many;
+    if (clusters_first && suits_clusters(stage, tree, e, allowed, room.clustered))
+        return fit_clusters(stage, tree, e, allowed, room.clustered);
     const SampledLight::Estimate& of = sampled(tree, e, light_weight(stage.scene.material(region)), allowed, rays);
-    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, of.strong, light, workspace);
-    DirectFit out = fit_values(stage, tree, e, light, workspace);
+    if (of.strong.size() > few_strong && suits_clusters(stage, tree, e, allowed, room.clustered))
+        return fit_clusters(stage, tree, e, allowed, room.clustered);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, of.strong, room.light,
+                         room.clustered.exact);
+    DirectFit out = fit_values(stage, tree, e, room.light, room.clustered.exact);
     for (Spectrum& corner : out.corners) corner += of.weak;
     out.mean += of.weak;
     // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
@@ -111,13 +174,14 @@ double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<cons
 
 /// Of all surfaces, from leaves at even steps of their running sum of areas.
 double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
-                      std::uint64_t seed) {
+                      std::uint64_t seed, const StopRequest& stop) {
     constexpr double samples = 2000;
     SampledLight sampled(stage.direct, stage.tracer, seed);
     double flux = 0, area = 0, next = 0.5 * stage.area / samples;
     for (ElementId e : leaves) {
         area += tree.area(e);
         if (area <= next) continue;
+        if (stop.requested()) return 0;
         const double steps = std::ceil((area - next) * samples / stage.area);
         next += steps * stage.area / samples;
         const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
@@ -173,23 +237,27 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
     for (const DirectLight::Emitter& emitter : stage.direct.emitters())
         emitting += stage.scene.regions()[emitter.region].area;
     const bool many = active.size() > few && stage.direct.emitters().size() > few_emitters &&
-                      emitting < small * stage.area && stage.direct.beams().empty();
+                      (emitting < small * stage.area || stage.clustered.is_possible()) && stage.direct.beams().empty();
     // The flux of weak sources is known best where rays lie evenly over the surfaces.
     const auto rays_of = [&](ElementId e) {
         const double rays = rays_an_element * out.tree.area(e) / mean_area;
         return static_cast<unsigned>(
             std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
     };
-    double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed)) : 0;
-    std::vector<double> share_in;  // of the rooms, where there are several
+    double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed, stop)) : 0;
+    std::vector<double> share_in;               // of the rooms, where there are several
+    const auto allowed_on = [&](ElementId e) {  // (W/m^2)^2 m^2
+        if (share_in.empty()) return share;
+        const double relative = stage.rooms.importance(out.tree, e) / stage.rooms.weight(out.tree, e);
+        return share_in[stage.rooms.of(out.tree, e)] / relative;
+    };
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
         parallel_ranges(
             active.size(), 8,
             [&](std::size_t begin, std::size_t end) {
                 if (options.may_give_up && stop.requested()) return;
-                DirectLight::Workspace workspace;
-                ReceiverLight light;
+                DirectFitRoom room;
                 SampledLight sampled(stage.direct, stage.tracer, options.seed);
                 for (std::size_t i = begin; i < end; ++i) {
                     const ElementId e = active[i];
@@ -200,9 +268,9 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
                         fit = stop.seconds_overdue() < time_for_rays ? fit_by_rays(stage, out.tree, e, sampled)
                                                                      : DirectFit();
                     else if (many)
-                        fit = fit_strong_light(stage, out.tree, e, share, rays_of(e), sampled, light, workspace);
+                        fit = fit_strong_light(stage, out.tree, e, share / out.tree.area(e), rays_of(e), sampled, room);
                     else
-                        fit = fit_direct_light(stage, out.tree, e, light, workspace);
+                        fit = fit_direct_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), room);
                 }
             },
             {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
@@ -212,13 +280,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         if (depth == options.max_depth || stop.requested()) break;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            if (share_in.empty()) {
-                if (out.tree.area(e) * out.fit[e].misfit_squared <= share) continue;
-            } else {
-                const double relative = stage.rooms.importance(out.tree, e) / stage.rooms.weight(out.tree, e);
-                const double allowed = share_in[stage.rooms.of(out.tree, e)] / relative;
-                if (out.tree.area(e) * out.fit[e].misfit_squared <= allowed) continue;
-            }
+            if (out.tree.area(e) * out.fit[e].misfit_squared <= allowed_on(e)) continue;
             if (options.least_area && out.tree.area(e) < 2 * *options.least_area) continue;
             for (ElementId child : refine_element(out.tree, e)) fresh.push_back(child);
         }

@@ -44,7 +44,19 @@ struct DirectProjection {
 /// looked at.
 Spectrum light_weight(const Material& material);
 
-/// Of one element, by exact values at the places of its fine rule. `light` and `workspace` are room to work in.
+/// Room to work in; one a thread.
+struct DirectFitRoom {
+    ReceiverLight light;
+    ClusteredLight::Workspace clustered;
+};
+
+/// Of one element, by values at the places of its fine rule: by clusters of emitters where that pays
+/// (`ClusteredLight`), else exact. `allowed`: mean square of w (E - polynomial) that noise may leave, (W/m^2)^2. Noise
+/// is no misfit, but what it leaves in the polynomial is.
+DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
+                           DirectFitRoom& room);
+
+/// The same by exact values alone. `light` and `workspace` are room to work in.
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace);
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/direct/direct_light.hpp"
+#include "exitance/direct/clustered_light.hpp"
 #include "exitance/mesh/contact_lines.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
 #include "exitance/transport/light_rooms.hpp"
@@ -24,7 +24,8 @@ struct Stage {
           contacts(s),
           tracer(s),
           occluders(s),
-          direct(s, occluders) {
+          direct(s, occluders),
+          clustered(direct, tracer) {
         leave_out({});
     }
     Stage(const Stage&) = delete;
@@ -37,6 +38,7 @@ struct Stage {
     RayTracer tracer;
     Occluders occluders;
     DirectLight direct;
+    ClusteredLight clustered;  ///< The same where emitters are many and small.
     /// Sides of sheets that no light reaches are no surfaces to anybody: they do not count in `area` and are not cut
     /// into elements in advance. Light that comes there after all is treated as everywhere.
     void leave_out(Field<RegionId, std::uint8_t> sides) {

@@ -59,9 +59,10 @@ Forecast forecast_solve(const Scene& scene, const SolveOptions& options) {
                 [](RegionId, const Point&) { return Spectrum(1); }, workspace);
     });
     const double light = seconds_each(samples, [&](std::size_t first, std::size_t last) {
-        DirectLight::Workspace workspace;
+        ClusteredLight::Workspace workspace;
         for (std::size_t i = first; i < last; ++i)
-            stage.direct.irradiance(points[i].x, points[i].n, region_of(points[i]), workspace);
+            stage.clustered.at(points[i].x, points[i].n, region_of(points[i]), {.relative = options.error_target()},
+                               workspace);
     });
 
     const bool indirect = options.bounces != 0 && stage.has_indirect_light();

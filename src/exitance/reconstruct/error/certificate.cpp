@@ -173,7 +173,7 @@ void Certifier::Content::measure_residuals() {
     parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         GatherWorkspace workspace;
         ElementGather::Workspace sums;
-        DirectLight::Workspace exact;
+        ClusteredLight::Workspace clustered;
         for (std::size_t k = begin; k < end; ++k) {
             const auto& [place, weight] = places[k];
             const RegionId region = indirect.tree.region(place.element);
@@ -181,7 +181,8 @@ void Certifier::Content::measure_residuals() {
             const Normal& n = stage.scene.regions()[region].plane.n;
             const Spectrum& reflectance = stage.scene.material(region).reflectance;
             Spectrum delivered = indirect.at(place);
-            if (options.direct_in_elements) delivered -= stage.direct.irradiance(x, n, region, exact);
+            if (options.direct_in_elements)
+                delivered -= stage.clustered.at(x, n, region, point_accuracy(options.error), clustered).irradiance;
             Sample& sample = samples[before + k];
             sample.region = region, sample.weight = weight;
             if (stage.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage.rooms.at(region, x));

@@ -51,6 +51,13 @@ class TileLight {
     bool first_guess(const Spot& spot, const ReceiverLight* known, Spectrum& light);
     Spectrum elements(const Spot& spot);
     bool looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const;
+    bool suits_clusters(std::span<const Spot> spots);
+    bool has_many_shadows(const ReceiverLight* whole) const;
+    void evaluate_by_clusters(std::span<Spot> spots);
+    const Spot* spot_at(std::span<const Spot> spots, int x, int y) const;
+    Spectrum light_by_clusters(const Spot& spot);
+    void fill(std::span<Spot> spots, int x0, int y0, int x1, int y1);
+    bool interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y1);
     bool differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const;
     bool bends_between_neighbours(std::span<const Spot> spots, std::size_t i) const;
     Spectrum mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known);
@@ -68,8 +75,12 @@ class TileLight {
     std::array<const ReceiverLight*, blocks> known_;            ///< Null where nothing could be prepared.
     std::array<std::uint32_t, tile_side * tile_side> spot_at_;  ///< Of the region at hand: one past the spot's number.
     std::vector<std::uint8_t> settled_;
-    std::vector<Spectrum> rest_;  ///< Of every spot: all but exact direct light.
+    std::vector<Spectrum> rest_;                                ///< Of every spot: all but exact direct light.
+    std::array<Spectrum, tile_side * tile_side> found_;         ///< By clusters: direct light of a pixel
+    std::array<double, tile_side * tile_side> noise_;           ///< (standard deviation, W/m^2)
+    std::array<std::uint8_t, tile_side * tile_side> is_found_;  ///< that is known.
     DirectLight::Workspace visibility_;
+    ClusteredLight::Workspace clustered_;
     GatherWorkspace gathering_;
 };
 

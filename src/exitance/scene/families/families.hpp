@@ -19,6 +19,7 @@ PolygonKit make_cornell(const FamilyValues& values);
 PolygonKit make_gcr1(const FamilyValues& values);
 PolygonKit make_gcr2(const FamilyValues& values);
 PolygonKit make_office(const FamilyValues& values);
+PolygonKit make_carpet(const FamilyValues& values);
 
 // Open scenes under one to four lights of the same power.
 PolygonKit make_flat(const FamilyValues& values);

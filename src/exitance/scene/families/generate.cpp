@@ -61,6 +61,15 @@ const std::vector<Recipe>& recipes() {
            {"books", 6, 0, 1000, true, "books a board"},
            {"seed", 7, 0, 9e15, true, "of what differs from place to place"}}},
          make_office},
+        {{"carpet",
+          "two furnished rooms under a wavy sheet of triangles that emit: u v + cuts^2 (822 + 160 books) triangles",
+          {{"u", 76, 2, 4000, true, "triangles in a strip of the sheet"},
+           {"v", 77, 1, 4000, true, "strips of the sheet"},
+           {"h", 2.2, 2, 2.6, false, "height of the sheet, metres"},
+           {"wave", 0.05, 0, 0.1, false, "how high its waves are, metres"},
+           {"cuts", 4, 1, 40, true, "parts that a side of the rooms' triangles is cut into"},
+           {"books", 9, 0, 1000, true, "books a board"}}},
+         make_carpet},
     };
     return all;
 }

@@ -54,7 +54,8 @@ TEST(SceneFamilies, HaveThePolygonCountsTheyState) {
         {"gcr2", {}, 5},
         {"cornell", {}, 17},
         {"office", {{"nx", "2"}, {"ny", "1"}, {"nfurn", "2"}, {"books", "3"}}, 647},
-        {"office", {{"nx", "1"}, {"ny", "1"}, {"nfurn", "0"}}, 42}};
+        {"office", {{"nx", "1"}, {"ny", "1"}, {"nfurn", "0"}}, 42},
+        {"carpet", {{"u", "7"}, {"v", "4"}, {"cuts", "2"}, {"books", "1"}}, 7 * 4 + 4 * (822 + 160)}};
     for (const auto& [family, parameters, count] : expected) {
         const SceneDescription description = make(family, parameters);
         EXPECT_EQ(description.faces.size(), count) << family;
