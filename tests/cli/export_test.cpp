@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/small_scene.hpp"
 
 namespace exitance::test {
@@ -18,6 +20,38 @@ TEST(ProgramExport, EveryEndingMakesAFileAndOthersAreUsageErrors) {
     EXPECT_EQ(run.status, 2);
     EXPECT_NE(run.err.find("docx"), std::string::npos) << run.err;
     EXPECT_EQ(run_program({"export", solution, "-o", folder / "absent/lit.glb"}).status, 5);
+}
+
+TEST(ProgramExport, WritesDiscontinuityCurvesAndQuadraticTriangles) {
+    const TemporaryFolder folder;
+    const std::string scene = folder / "table.obj", solution = folder / "table.h5";
+    ASSERT_EQ(run_program({"generate", "table", "-o", scene, "-q"}).status, 0);
+    const Finished run = run_program({"solve", scene, "-o", solution, "--method", "discontinuity", "--bounces", "0",
+                                      "--error-interpolant", "0.01", "--json", "-q"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_GT(json["curves"]["d0"], 0);
+    EXPECT_GT(json["curves"]["d2"], 0);
+    EXPECT_GT(json["faces"]["lit"], 0);
+    EXPECT_GT(json["faces"]["penumbra"], 0);
+    EXPECT_GT(json["faces"]["umbra"], 0);
+    EXPECT_EQ(json["leaf_elements"], json["triangles"]);
+    EXPECT_LE(json["relative_error_estimate_interpolant"], 0.01);
+    const std::string curves = folder / "table.curves.csv", cells = folder / "table.vtu";
+    ASSERT_EQ(run_program({"export", solution, "-o", curves}).status, 0);
+    const std::string table = read_text(curves);
+    EXPECT_EQ(table.substr(0, table.find('\n')), "surface,x0,y0,z0,x1,y1,z1,order,cause,source");
+    for (const char* word : {",D0,contact,", ",D2,VE,", ",D2,EV,"}) EXPECT_NE(table.find(word), std::string::npos);
+    ASSERT_EQ(run_program({"export", solution, "-o", cells}).status, 0);
+    const std::string count = "NumberOfCells=\"" + std::to_string(json["triangles"].get<int>()) + "\"";
+    EXPECT_NE(read_text(cells).find(count), std::string::npos);
+}
+
+TEST(ProgramExport, OfASolutionWithoutCurvesIsAUsageError) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    EXPECT_EQ(run_program({"export", solution, "-o", folder / "lit.curves.csv"}).status, 2);
 }
 
 }  // namespace exitance::test

@@ -262,6 +262,8 @@ constexpr std::array<std::pair<bool, std::string_view>, 2> quantity_kinds{
 
 void declare_accuracy(CLI::App& app, SolveOptions& o) {
     add_positive(app, "--error", o.error, "R", "Relative RMS error asked for; default 0.02")->group("Accuracy");
+    add_positive(app, "--error-interpolant", o.error_interpolant, "R", "Relative RMS error asked of what export writes")
+        ->group("Accuracy");
     add_positive(app, "--mesh-size", o.mesh_size, "METRES", "Longest edge of an element")->group("Accuracy");
     add_positive(app, "--min-area", o.min_area, "M2", "No element is cut smaller, m^2")->group("Accuracy");
     add_positive(app, "--residual", o.residual, "R", "Of the system, relative to its right side")->group("Accuracy");

@@ -62,7 +62,7 @@ std::string statistics_json(const SolveStatistics& s) {
     const auto share = [](std::size_t whole, std::size_t parts) {
         return parts > 0 ? static_cast<double>(whole) / static_cast<double>(parts) : 0.0;
     };
-    const Json json{
+    Json json{
         {"method", s.method},
         {"basis", s.basis},
         {"threads", s.threads},
@@ -96,6 +96,13 @@ std::string statistics_json(const SolveStatistics& s) {
         {"elements_by_level", s.elements_by_level},
         {"warnings", s.warnings},
     };
+    if (const auto& d = s.discontinuity) {
+        json["seconds"]["direct"] = s.seconds.contains("direct") ? s.seconds.at("direct") : 0.0;
+        json["curves"] = {{"d0", d->d0}, {"d1", d->d1}, {"d2", d->d2}, {"eee", d->eee}, {"left_out", d->left_out}};
+        json["wedges"] = d->wedges;
+        json["faces"] = {{"lit", d->lit}, {"penumbra", d->penumbra}, {"umbra", d->umbra}};
+        json["triangles"] = d->triangles, json["mean_radius_ratio"] = d->mean_radius_ratio;
+    }
     return dump(json, 2);
 }
 
@@ -121,6 +128,7 @@ std::string options_json(const SolveOptions& o) {
         {"triage", o.triage},
         {"bounces", o.bounces == all_bounces ? Json("all") : Json(o.bounces)},
         {"error", value_or_null(o.error_demand())},
+        {"error_interpolant", value_or_null(o.error_interpolant)},
         {"mesh_size", value_or_null(o.mesh_size)},
         {"min_area", value_or_null(o.min_area)},
         {"residual", value_or_null(o.residual)},

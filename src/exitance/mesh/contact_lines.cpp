@@ -146,6 +146,28 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
     return out;
 }
 
+std::vector<std::pair<Point, Point>> ContactLines::of_region(RegionId region) const {
+    const Plane& plane = scene_->regions()[region].plane;
+    Box box;
+    for (const std::vector<Point>& loop : scene_->regions()[region].loops)
+        for (const Point& corner : loop) box.add(corner);
+    box.lo -= Vec3{tolerance_, tolerance_, tolerance_};
+    box.hi += Vec3{tolerance_, tolerance_, tolerance_};
+    std::vector<Segment> segments;
+    borders_.visit_box(box, [&](std::uint32_t i) {
+        if (edges_[i].region != region)
+            contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, tolerance_, segments);
+    });
+    faces_.visit_box(box, [&](std::uint32_t i) {
+        const SurfaceId s(i);
+        if (scene_->surfaces()[s].region != region)
+            crossing_of_face(scene_->outline(s), plane, tolerance_, tolerance_, segments);
+    });
+    std::vector<std::pair<Point, Point>> out;
+    for (const Segment& s : segments) out.emplace_back(s.a, s.b);
+    return out;
+}
+
 void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts) {
     // Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at.
     // But around a point where many meet there is no end to it: what has been halved some times in vain is left as it

@@ -19,6 +19,9 @@ class ContactLines {
     /// through the inside of the domain.
     std::vector<std::pair<Vec2, Vec2>> within(const ElementTree& tree, ElementId e) const;
 
+    /// All contacts of a whole region's plane within the region's box, along its border, too. Metres.
+    std::vector<std::pair<Point, Point>> of_region(RegionId region) const;
+
   private:
     struct Edge {
         Point a, b;

@@ -8,6 +8,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/importance.hpp"
+#include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/light/refined_light.hpp"
 #include "exitance/methods/light/smoothing.hpp"
@@ -89,7 +90,7 @@ class Solver {
             resume();
             solve_indirect_light();
         } else {
-            project_direct();
+            if (!makes_discontinuity_mesh() || has_parallel_light()) project_direct();
             statistics().elements = direct_.tree.size();
             statistics().leaf_elements = direct_.tree.leaves().size();
             tell_exact();
@@ -440,10 +441,29 @@ class Solver {
                 .interpolation = std::max(misfit, gathered_.interpolation / certificate_.mean_reflected)};
     }
 
+    bool makes_discontinuity_mesh() const {
+        return options_.method == Method::discontinuity && !solution_.direct_in_elements;
+    }
+    bool has_parallel_light() const {
+        return std::any_of(solution_.scene.lights().begin(), solution_.scene.lights().end(),
+                           [](const PunctualLight& light) { return light.is_directional(); });
+    }
+
+    /// Direct light on triangles that follow its shadows, with what is reflected on top of it.
+    void make_discontinuity() {
+        progress_.phase("discontinuities");
+        const DiscontinuityReport report = add_discontinuity_mesh(stage_, options_, solution_, stop_);
+        statistics().seconds["mesh"] += report.mesh_seconds, statistics().seconds["direct"] += report.direct_seconds;
+        mesh_seconds_ = report.mesh_seconds + report.direct_seconds;
+        if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+    }
+
     void make_output_mesh() {
         const Stopwatch watch;
         progress_.phase("reconstruct");
-        if (solution_.direct_in_elements) {
+        if (makes_discontinuity_mesh()) {
+            make_discontinuity();
+        } else if (solution_.direct_in_elements) {
             solution_.interpolant = solution_.indirect;
             statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
         } else {
@@ -453,7 +473,9 @@ class Solver {
             InterpolantReport report;
             solution_.interpolant = make_interpolant(
                 stage_, direct_, solution_.indirect, solution_.direct_share,
-                {.tolerance = 2.5 * options_.error_target() * scale, .light_in = light_in_}, report, stop_);
+                {.tolerance = options_.error_interpolant.value_or(2.5 * options_.error_target()) * scale,
+                 .light_in = light_in_},
+                report, stop_);
             const double own = scale > 0 ? report.error / scale : 0;
             if (statistics().relative_error_estimate && !report.interrupted)
                 statistics().relative_error_estimate_interpolant =
@@ -464,7 +486,7 @@ class Solver {
         const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_, stage_);
         if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
             warn("no light reaches the front of any face: they may be turned inside out");
-        statistics().seconds["reconstruct"] += watch.seconds();
+        statistics().seconds["reconstruct"] += watch.seconds() - mesh_seconds_;
     }
 
     SolveOptions options_;  ///< As asked for, with the method that was chosen.
@@ -488,6 +510,7 @@ class Solver {
     Spectrum share_;                ///< c of that light, see find_direct_share.
     std::vector<double> light_in_;  ///< Of every room by the mean light; empty where all is one room.
     std::string resumed_phase_;
+    double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.
 };
 
 }  // namespace

@@ -42,28 +42,42 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
     for (const PunctualLight& light : scene.lights()) out.emitted += sum(light.power());
     // Parallel light comes from outside: what meets a surface counts as emitted.
     for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * sum(direct.fit[e].parallel);
-    const auto arrive = [&](const ElementTree& tree, ElementId e, const Spectrum& E) {
-        const Spectrum& rho = scene.material(tree.region(e)).reflectance;
-        out.absorbed += tree.area(e) * sum((Spectrum(1.0) - rho) * E);
-        const double lost = rooms.lost_share(tree.region(e), tree.patch(e).at(tree.centre(e)));
-        if (lost > 0) out.escaped += lost * tree.area(e) * sum(rho * E);
+    const auto arrive = [&](RegionId region, const Point& centre, double area, const Spectrum& E) {
+        const Spectrum& rho = scene.material(region).reflectance;
+        out.absorbed += area * sum((Spectrum(1.0) - rho) * E);
+        const double lost = rooms.lost_share(region, centre);
+        if (lost > 0) out.escaped += lost * area * sum(rho * E);
     };
-    for (ElementId e : direct.tree.leaves()) {
-        const Spectrum& M = scene.material(direct.tree.region(e)).exitance;
-        if (max(M) <= 0 || scene.material(direct.tree.region(e)).is_directed()) continue;
-        const double lost = rooms.lost_share(direct.tree.region(e), direct.tree.patch(e).at(direct.tree.centre(e)));
-        out.escaped += lost * direct.tree.area(e) * sum(M);
-    }
+    const auto leave = [&](RegionId region, const Point& centre, double area) {
+        const Spectrum& M = scene.material(region).exitance;
+        if (max(M) > 0 && !scene.material(region).is_directed())
+            out.escaped += rooms.lost_share(region, centre) * area * sum(M);
+    };
     for (const Piece& piece : stage.pieces)
         if (scene.material(piece.region).is_directed())
             out.escaped +=
                 directed_loss(stage, piece) * piece.patch.area() * sum(scene.material(piece.region).exitance);
-    if (!solution.direct_in_elements)
-        for (ElementId e : direct.tree.leaves())
-            arrive(direct.tree, e, (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean);
-    // A linear or bilinear function has its mean at the centre of its element.
-    const ElementTree& tree = solution.indirect.tree;
-    for (ElementId e : tree.leaves()) arrive(tree, e, solution.indirect.at({e, tree.centre(e)}));
+    if (const SixNodeMesh& mesh = solution.discontinuity; !mesh.empty()) {
+        for (std::uint32_t t = 0; t < mesh.size(); ++t) {
+            // A quadratic polynomial has the mean of its values at the middles of a triangle's edges.
+            const auto& n = mesh.nodes[t];
+            const Spectrum E = (1.0 / 3) * (mesh.value(n[3]) + mesh.value(n[4]) + mesh.value(n[5]));
+            arrive(mesh.region[t], mesh.centre(t), mesh.area(t), E);
+            leave(mesh.region[t], mesh.centre(t), mesh.area(t));
+        }
+    } else {
+        const auto centre = [](const ElementTree& tree, ElementId e) { return tree.patch(e).at(tree.centre(e)); };
+        for (ElementId e : direct.tree.leaves()) {
+            leave(direct.tree.region(e), centre(direct.tree, e), direct.tree.area(e));
+            if (!solution.direct_in_elements)
+                arrive(direct.tree.region(e), centre(direct.tree, e), direct.tree.area(e),
+                       (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean);
+        }
+        // A linear or bilinear function has its mean at the centre of its element.
+        const ElementTree& tree = solution.indirect.tree;
+        for (ElementId e : tree.leaves())
+            arrive(tree.region(e), centre(tree, e), tree.area(e), solution.indirect.at({e, tree.centre(e)}));
+    }
     out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
     return out;
 }

@@ -6,8 +6,8 @@
 namespace exitance {
 
 /// Emitted flux against absorbed flux int (1 - rho) E dA: direct light by the projection's exact means, indirect light
-/// by the solution's elements; and what escapes, by rays from surfaces: of emitters that are not diffuse by their
-/// profiles. Nothing is forced to agree. O(elements).
+/// by the solution's elements, both by a discontinuity mesh where there is one; and what escapes, by rays from
+/// surfaces: of emitters that are not diffuse by their profiles. Nothing is forced to agree. O(elements).
 EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage);
 
 /// Mean over all surfaces and bands of E_dir, W/m^2.

@@ -19,6 +19,7 @@ RadiosityFunction::RadiosityFunction(const Solution& solution)
       locator_(solution.scene),
       indirect_locator_(solution.indirect.tree, solution.scene.regions().size()),
       interpolant_locator_(solution.interpolant.tree, solution.scene.regions().size()),
+      triangles_(solution.discontinuity, solution.scene),
       stage_(std::make_unique<Stage>(solution.scene)),
       accuracy_(point_accuracy(solution.statistics.relative_error_estimate.value_or(1))) {}
 
@@ -84,8 +85,10 @@ std::vector<Light> RadiosityFunction::interpolant_at(std::span<const ProbePoint>
         const SurfaceId surface = locator_.find(points[i].x, points[i].n);
         if (surface.is_none()) return;
         const RegionId region = solution_.scene.surfaces()[surface].region;
-        out[i] = light_on(solution_.scene.material(surface),
-                          solution_.interpolant.at(interpolant_locator_.find(region, points[i].x)));
+        const Spectrum irradiance = solution_.discontinuity.empty()
+                                        ? solution_.interpolant.at(interpolant_locator_.find(region, points[i].x))
+                                        : triangles_.at(region, points[i].x);
+        out[i] = light_on(solution_.scene.material(surface), irradiance);
     });
     return out;
 }

@@ -69,6 +69,7 @@ class RadiosityFunction {
     const Solution& solution_;
     Locator locator_;
     ElementLocator indirect_locator_, interpolant_locator_;
+    SixNodeLocator triangles_;  ///< Of the discontinuity mesh, where there is one.
     std::unique_ptr<Stage> stage_;
     LightAccuracy accuracy_;  ///< Of direct light where emitters are many and small.
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exitance/links/kept_link.hpp"
+#include "exitance/mesh/discontinuity/six_node_mesh.hpp"
 
 namespace exitance {
 
@@ -37,6 +38,15 @@ struct RoomError {
     double error = 0;  ///< and the RMS error of radiosity relative to it.
 };
 
+/// What discontinuity meshing made.
+struct DiscontinuityCounts {
+    std::size_t d0 = 0, d1 = 0, d2 = 0, eee = 0, left_out = 0;  ///< Curves; sources and curves that change too little.
+    std::size_t wedges = 0;
+    std::size_t lit = 0, penumbra = 0, umbra = 0;  ///< Faces between the curves, before they are bisected.
+    std::size_t triangles = 0;
+    double mean_radius_ratio = 0;
+};
+
 /// What a solve took and what it reached: the keys of `solve --json` and `stats --json`, in their order.
 struct SolveStatistics {
     std::string method, basis, schedule;
@@ -61,6 +71,7 @@ struct SolveStatistics {
     std::size_t element_memory_bytes = 0;
     std::vector<std::size_t> elements_by_level;
     std::vector<std::string> warnings;
+    std::optional<DiscontinuityCounts> discontinuity;
     std::string stopped_by;  ///< Empty, or "time limit", "memory limit", "iterations", "interrupt".
 };
 
@@ -87,6 +98,9 @@ struct Solution {
     /// All bounces (-1), or direct light alone (0): then `indirect` is zero and without elements below the roots.
     int bounces = -1;
     KeptLinks links = {};  ///< Where they were to be kept.
+    /// E_dir + E_ind once more, where the method made such a mesh: then it is what `export` writes, and `interpolant`
+    /// follows it by linear triangles, for what needs these.
+    SixNodeMesh discontinuity = {};
 };
 
 }  // namespace exitance

@@ -15,7 +15,7 @@
 
 namespace exitance {
 
-enum class Method { automatic, matrix, progressive, substructuring, hierarchical, wavelet, monte_carlo };
+enum class Method { automatic, matrix, progressive, substructuring, hierarchical, wavelet, monte_carlo, discontinuity };
 enum class BasisKind {
     constant,
     linear,
@@ -32,7 +32,7 @@ enum class VisibilityKind { automatic, fractional, quadrature, exact };
 enum class FormFactorKind { analytic, ray_cast, hemicube };
 
 /// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
-inline constexpr std::array<std::pair<Method, std::string_view>, 7> method_names{{
+inline constexpr std::array<std::pair<Method, std::string_view>, 8> method_names{{
     {Method::automatic, "auto"},
     {Method::matrix, "matrix"},
     {Method::progressive, "progressive"},
@@ -40,6 +40,7 @@ inline constexpr std::array<std::pair<Method, std::string_view>, 7> method_names
     {Method::hierarchical, "hierarchical"},
     {Method::wavelet, "wavelet"},
     {Method::monte_carlo, "monte-carlo"},
+    {Method::discontinuity, "discontinuity"},
 }};
 inline constexpr std::array<std::pair<BasisKind, std::string_view>, 10> basis_names{{
     {BasisKind::constant, "constant"},
@@ -116,6 +117,8 @@ struct SolveOptions {
     int bounces = all_bounces;  ///< 0: direct light alone; n: at most n reflections; all_bounces: until convergence.
 
     std::optional<double> error = {};  ///< Relative RMS error of what `probe` evaluates; empty: see error_demand().
+    /// Relative RMS error of what `export` writes; empty: as the method comes by.
+    std::optional<double> error_interpolant = {};
 
     std::optional<double> epsilon = {};              ///< Error of all links together, relative RMS.
     std::optional<double> mesh_size = {};            ///< Longest edge of an element, metres.

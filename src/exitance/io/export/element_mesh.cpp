@@ -1,5 +1,6 @@
 #include "exitance/io/export/element_mesh.hpp"
 
+#include <numeric>
 #include <optional>
 
 #include "exitance/scene/locator.hpp"
@@ -28,6 +29,49 @@ class FaceFinder {
 };
 
 }  // namespace
+
+std::vector<std::int64_t> ElementMesh::cell_points() const {
+    std::vector<std::int64_t> out(connectivity.begin(), connectivity.end());
+    if (out.empty()) {
+        out.resize(points.size());
+        std::iota(out.begin(), out.end(), 0);
+    }
+    return out;
+}
+
+std::vector<std::uint8_t> ElementMesh::cell_types() const {
+    constexpr std::uint8_t quadratic_triangle = 22;
+    std::vector<std::uint8_t> out(size(), quadratic_triangle);
+    for (std::size_t i = 0; i < size() && !is_quadratic; ++i) out[i] = vtk_cell_type(corner_count(i));
+    return out;
+}
+
+ElementMesh make_cells(const Solution& solution) {
+    const SixNodeMesh& from = solution.discontinuity;
+    if (from.empty()) return make_element_mesh(solution);
+    const Scene& scene = solution.scene;
+    ElementMesh mesh;
+    mesh.is_quadratic = true;
+    mesh.points = from.points, mesh.irradiance = from.values, mesh.radiosity = from.values;
+    FaceFinder finder(scene);
+    for (std::uint32_t t = 0; t < from.size(); ++t) {
+        const RegionId region = from.region[t];
+        const Material& material = scene.material(region);
+        for (const std::uint32_t n : from.nodes[t]) {
+            mesh.connectivity.push_back(n);
+            const Spectrum light = from.value(n);
+            for (std::size_t b = 0; b < bands; ++b)
+                mesh.radiosity[n][b] = static_cast<float>(material.exitance[b] + material.reflectance[b] * light[b]);
+        }
+        mesh.first_point.push_back(static_cast<std::uint32_t>(mesh.connectivity.size()));
+        const SurfaceId face = finder.find(region, from.centre(t));
+        mesh.surface.push_back(static_cast<std::int32_t>(face.value));
+        mesh.region.push_back(static_cast<std::int32_t>(region.value));
+        mesh.material.push_back(static_cast<std::int32_t>(scene.regions()[region].material.value));
+        mesh.group.push_back(static_cast<std::int32_t>(scene.surfaces()[face].group.value));
+    }
+    return mesh;
+}
 
 ElementMesh make_element_mesh(const Solution& solution) {
     const Scene& scene = solution.scene;

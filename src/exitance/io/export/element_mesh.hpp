@@ -14,6 +14,7 @@ namespace exitance {
 /// light may jump from one to the next; they go counter-clockwise seen from its front.
 struct ElementMesh {
     std::vector<std::uint32_t> first_point = {0};  ///< Per polygon, and one past the last.
+    std::vector<std::uint32_t> connectivity;       ///< Points of the polygons; empty: one after the other.
     std::vector<Point> points;
     std::vector<std::array<float, bands>> irradiance, radiosity;  ///< Per point, W/m^2.
     /// Per polygon. A region of many faces may have leaves that lie on several of them: the face at the leaf's centre.
@@ -24,9 +25,17 @@ struct ElementMesh {
     std::array<std::pair<const char*, const std::vector<std::int32_t>*>, 4> cell_ids() const {
         return {{{"surface", &surface}, {"region", &region}, {"material", &material}, {"group", &group}}};
     }
+    bool is_quadratic = false;  ///< Triangles of six nodes: corners, then the middles of the edges.
+
+    /// Points of all cells, and what VTK calls each cell.
+    std::vector<std::int64_t> cell_points() const;
+    std::vector<std::uint8_t> cell_types() const;
 };
 
 ElementMesh make_element_mesh(const Solution& solution);
+
+/// The same with the quadratic triangles of a discontinuity mesh, whose nodes are shared, where there is one.
+ElementMesh make_cells(const Solution& solution);
 
 /// VTK's type of a polygon of so many corners: triangle, quadrilateral or polygon.
 constexpr std::uint8_t vtk_cell_type(std::size_t corners) {

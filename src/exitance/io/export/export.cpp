@@ -21,8 +21,7 @@ Result<void> export_solution(const Solution& solution, const std::string& path) 
                    {".glb", write_glb},
                    {".obj", write_obj},
                    {".csv", write_surface_table}};
-    if (path.ends_with(".curves.csv"))
-        return Error{ErrorCode::usage, "the solution holds no discontinuity curves to write to " + path, path, ""};
+    if (path.ends_with(".curves.csv")) return write_curves(solution, path);
     std::string known;
     for (const auto& format : formats) {
         if (path.ends_with(format.ending)) return format.write(solution, path);

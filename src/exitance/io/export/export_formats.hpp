@@ -10,6 +10,9 @@ namespace exitance {
 Result<void> write_vtkhdf_file(const Solution& solution, const std::string& path);
 
 /// VTK's XML UnstructuredGrid, its arrays in base64.
+/// Discontinuity curves as a table, a stretch a line.
+Result<void> write_curves(const Solution& solution, const std::string& path);
+
 Result<void> write_vtu(const Solution& solution, const std::string& path);
 
 /// Wavefront OBJ: a polygon a leaf, in groups and materials as the scene has them; red, green and blue (sRGB, toned)

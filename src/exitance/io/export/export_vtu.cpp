@@ -67,12 +67,10 @@ void write_array(AtomicFile& file, const char* name, std::span<const T> values, 
 
 Result<void> write_vtu(const Solution& solution, const std::string& path) {
     static_assert(std::endian::native == std::endian::little);
-    const ElementMesh mesh = make_element_mesh(solution);
-    std::vector<std::int64_t> connectivity(mesh.points.size());
-    for (std::size_t i = 0; i < connectivity.size(); ++i) connectivity[i] = static_cast<std::int64_t>(i);
+    const ElementMesh mesh = make_cells(solution);
+    const std::vector<std::int64_t> connectivity = mesh.cell_points();
     const std::vector<std::int64_t> ends(mesh.first_point.begin() + 1, mesh.first_point.end());
-    std::vector<std::uint8_t> types(mesh.size());
-    for (std::size_t i = 0; i < types.size(); ++i) types[i] = vtk_cell_type(mesh.corner_count(i));
+    const std::vector<std::uint8_t> types = mesh.cell_types();
 
     Result<AtomicFile> file = AtomicFile::create(path);
     if (!file) return file.error();

@@ -26,6 +26,7 @@ Result<void> write_solution(const std::string& path, const Solution& solution) {
     file.write("exitance/direct_share", std::span<const double>(c.value), 1,
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
     write_function(file, "exitance/interpolant", solution.interpolant);
+    if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
     if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
     write_statistics(file, "exitance/statistics", solution.statistics);
     return file.write_file(path);
@@ -60,6 +61,8 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed) {
         if (!is_finite(solution.direct_share)) file.fail("exitance/direct_share", "holds a number that is not finite");
     }
     solution.interpolant = read_function(file, "exitance/interpolant", regions);
+    if (file.has("exitance/discontinuity"))
+        solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions);
     if (file.has("exitance/links")) solution.links = read_links(file, "exitance/links", regions);
     solution.statistics = read_statistics(file, "exitance/statistics");
     if (file.failed()) return file.error();

@@ -125,6 +125,35 @@ TEST_F(SolutionFiles, BringASolutionBackBitForBit) {
     EXPECT_EQ(s.statistics.energy.defect, t->statistics.energy.defect);
 }
 
+TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
+    Solution s = sample_solution();
+    SixNodeMesh& mesh = s.discontinuity;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}};
+    mesh.values.resize(6);
+    for (std::size_t i = 0; i < 6; ++i) mesh.values[i].fill(static_cast<float>(i) / 3);
+    mesh.nodes = {{0, 1, 2, 3, 4, 5}};
+    mesh.region = {RegionId(0)};
+    mesh.edge_order = {{CurveOrder::border, CurveOrder::d2, CurveOrder::none}};
+    mesh.shadow = {ShadowClass::umbra};
+    mesh.curves = {{RegionId(0), {0, 0, 0}, {1, 0.5, 0}, CurveOrder::d2, CurveCause::edge_vertex, RegionId(1)}};
+    s.statistics.discontinuity = DiscontinuityCounts{.d2 = 1, .wedges = 7, .triangles = 1, .mean_radius_ratio = 0.4};
+    ASSERT_TRUE(write_solution(path("s.h5"), s));
+    const Result<Solution> t = load_solution(path("s.h5"));
+    ASSERT_TRUE(t) << t.error().message;
+    const SixNodeMesh& held = t->discontinuity;
+    EXPECT_TRUE(held.points == mesh.points && held.values == mesh.values && held.nodes == mesh.nodes);
+    EXPECT_TRUE(held.region == mesh.region && held.edge_order == mesh.edge_order && held.shadow == mesh.shadow);
+    ASSERT_EQ(held.curves.size(), 1u);
+    EXPECT_EQ(held.curves[0].b, mesh.curves[0].b);
+    EXPECT_EQ(held.curves[0].cause, CurveCause::edge_vertex);
+    ASSERT_TRUE(t->statistics.discontinuity);
+    EXPECT_EQ(t->statistics.discontinuity->wedges, 7u);
+    EXPECT_EQ(t->statistics.discontinuity->mean_radius_ratio, 0.4);
+    mesh.values[3][0] = std::nanf("");
+    ASSERT_TRUE(write_solution(path("bad.h5"), s));
+    EXPECT_FALSE(load_solution(path("bad.h5")));
+}
+
 TEST_F(SolutionFiles, OfEqualSolutionsAreEqual) {
     ASSERT_TRUE(write_solution(path("a.h5"), sample_solution()));
     set_threads(1);

@@ -34,12 +34,16 @@ ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::s
 void write_links(Hdf5Writer& file, const std::string& group, const KeptLinks& links);
 KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
+/// A discontinuity mesh, with its curves.
+void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNodeMesh& mesh);
+SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+
 /// Everything that may differ from run to run.
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics);
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);
 
 /// The group /VTKHDF that ParaView opens: the leaves of the interpolant as polygons, each with points of its own,
-/// since light may jump from one to the next.
+/// since light may jump from one to the next; or the quadratic triangles of a discontinuity mesh.
 void write_vtkhdf(Hdf5Writer& file, const Solution& solution);
 
 }  // namespace exitance

@@ -34,6 +34,21 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("stopped_by", s.stopped_by);
 }
 
+/// The same of discontinuity meshing.
+template <class Counts, class Visit>
+void for_counts(Counts& c, const Visit& visit) {
+    visit("curves_d0", c.d0);
+    visit("curves_d1", c.d1);
+    visit("curves_d2", c.d2);
+    visit("curves_eee", c.eee);
+    visit("curves_left_out", c.left_out);
+    visit("wedges", c.wedges);
+    visit("faces_lit", c.lit);
+    visit("faces_penumbra", c.penumbra);
+    visit("faces_umbra", c.umbra);
+    visit("triangles", c.triangles);
+}
+
 }  // namespace
 
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics) {
@@ -48,6 +63,14 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
         else
             file.set_attribute(group, name, static_cast<std::int64_t>(value));
     });
+    if (const auto& counts = statistics.discontinuity) {
+        const std::string of_mesh = group + "/discontinuity";
+        file.make_group(of_mesh);
+        for_counts(*counts, [&](const char* name, std::size_t count) {
+            file.set_attribute(of_mesh, name, static_cast<std::int64_t>(count));
+        });
+        file.set_attribute(of_mesh, "mean_radius_ratio", counts->mean_radius_ratio);
+    }
     file.make_group(group + "/seconds");
     for (const auto& [phase, seconds] : statistics.seconds)
         file.set_attribute(group + "/seconds", phase.c_str(), seconds);
@@ -77,6 +100,14 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
         else if (const auto whole = file.integer_attribute(group, name))
             value = static_cast<T>(*whole);
     });
+    if (const std::string of_mesh = group + "/discontinuity"; file.has(of_mesh)) {
+        DiscontinuityCounts& counts = statistics.discontinuity.emplace();
+        for_counts(counts, [&](const char* name, std::size_t& count) {
+            count =
+                static_cast<std::size_t>(std::max<std::int64_t>(0, file.integer_attribute(of_mesh, name).value_or(0)));
+        });
+        counts.mean_radius_ratio = file.number_attribute(of_mesh, "mean_radius_ratio").value_or(0);
+    }
     for (const std::string& phase : file.attribute_names(group + "/seconds"))
         if (const auto seconds = file.number_attribute(group + "/seconds", phase.c_str()))
             statistics.seconds[phase] = *seconds;

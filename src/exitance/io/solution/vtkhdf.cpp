@@ -4,14 +4,13 @@
 namespace exitance {
 
 void write_vtkhdf(Hdf5Writer& file, const Solution& solution) {
-    const ElementMesh mesh = make_element_mesh(solution);
+    const ElementMesh mesh = make_cells(solution);
     const auto point_count = static_cast<std::int64_t>(mesh.points.size());
     const auto cell_count = static_cast<std::int64_t>(mesh.size());
-    std::vector<std::int64_t> connectivity(mesh.points.size()),
-        offsets(mesh.first_point.begin(), mesh.first_point.end());
-    for (std::size_t i = 0; i < connectivity.size(); ++i) connectivity[i] = static_cast<std::int64_t>(i);
-    std::vector<std::uint8_t> types(mesh.size());
-    for (std::size_t i = 0; i < types.size(); ++i) types[i] = vtk_cell_type(mesh.corner_count(i));
+    const std::vector<std::int64_t> connectivity = mesh.cell_points();
+    const std::vector<std::int64_t> offsets(mesh.first_point.begin(), mesh.first_point.end());
+    const auto corner_count = static_cast<std::int64_t>(connectivity.size());
+    const std::vector<std::uint8_t> types = mesh.cell_types();
 
     file.make_group("VTKHDF");
     const std::int64_t version[2] = {1, 0};
@@ -19,11 +18,13 @@ void write_vtkhdf(Hdf5Writer& file, const Solution& solution) {
     file.set_attribute("VTKHDF", "Type", std::string_view("UnstructuredGrid"));
     file.write("VTKHDF/NumberOfPoints", std::span(&point_count, 1), 1, {"1", "points"});
     file.write("VTKHDF/NumberOfCells", std::span(&cell_count, 1), 1, {"1", "cells: leaf elements"});
-    file.write("VTKHDF/NumberOfConnectivityIds", std::span(&point_count, 1), 1, {"1", "corners of all cells"});
-    file.write("VTKHDF/Points", flat(mesh.points), 3, {"m", "corners of the elements, each element with its own"});
+    file.write("VTKHDF/NumberOfConnectivityIds", std::span(&corner_count, 1), 1, {"1", "corners of all cells"});
+    file.write("VTKHDF/Points", flat(mesh.points), 3,
+               {"m", "corners of the elements, each element with its own, or nodes of quadratic triangles"});
     file.write("VTKHDF/Connectivity", connectivity, 1, {"1", "points of the cells"});
     file.write("VTKHDF/Offsets", offsets, 1, {"1", "where the points of a cell begin in Connectivity"});
-    file.write("VTKHDF/Types", types, 1, {"1", "VTK's cell types: 5 triangle, 7 polygon, 9 quadrilateral"});
+    file.write("VTKHDF/Types", types, 1,
+               {"1", "VTK's cell types: 5 triangle, 7 polygon, 9 quadrilateral, 22 quadratic triangle"});
     file.make_group("VTKHDF/PointData");
     file.write("VTKHDF/PointData/radiosity", flat(mesh.radiosity), bands, {"W/m^2", "flux leaving the front per area"});
     file.write("VTKHDF/PointData/irradiance", flat(mesh.irradiance), bands,

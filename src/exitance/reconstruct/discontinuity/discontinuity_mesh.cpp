@@ -1,0 +1,389 @@
+#include "exitance/reconstruct/discontinuity/discontinuity_mesh.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
+#include "exitance/mesh/discontinuity/bisection_mesh.hpp"
+#include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
+#include "exitance/transport/direct_projection.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t first_places = 1'000;  // at which the mesh is tried
+
+/// A place on a surface with its exact light.
+struct Place {
+    RegionId region;
+    Point at;
+    Spectrum light, parallel;
+};
+
+class Builder {
+  public:
+    Builder(const Stage& stage, const DiscontinuityOptions& options, DiscontinuityReport& report,
+            const StopRequest& stop)
+        : stage_(stage),
+          options_(options),
+          report_(report),
+          stop_(stop),
+          mesh_(1e-6 * stage.scene.size()),
+          touched_(stage.scene.regions().size(), 0) {}
+
+    SixNodeMesh run() {
+        Stopwatch watch;
+        look_ahead();
+        report_.direct_seconds += watch.restart();
+        find_curves();
+        report_.mesh_seconds += watch.restart();
+        constexpr int most_attempts = 5;
+        double tolerance = 0.8 * options_.error * report_.scale;
+        SixNodeMesh out;
+        for (int attempt = 1;; ++attempt) {
+            refine(tolerance);
+            report_.direct_seconds += watch.restart();
+            out = finish();
+            report_.error = report_.scale > 0 ? error_at_places(out) / report_.scale : 0;
+            report_.mesh_seconds += watch.restart();
+            report_.interrupted = stop_.requested();
+            if (report_.error <= options_.error || attempt == most_attempts || report_.interrupted || is_full()) break;
+            constexpr double aim = 0.7;
+            tolerance *= aim * options_.error / report_.error;
+        }
+        return out;
+    }
+
+  private:
+    /// Where nothing reflects, E itself is looked at.
+    Spectrum weight(RegionId r) const { return reflects_ ? light_weight(stage_.scene.material(r)) : Spectrum(1.0); }
+
+    /// Exact light at places that are uniform over all surfaces: how bright it is, and a measure for the end.
+    void look_ahead() {
+        const ScrambledSobol sobol(hash(options_.seed, static_cast<std::uint64_t>(Stream::certificate)));
+        double total = 0;
+        for (const Piece& piece : stage_.pieces) total += piece.patch.area();
+        places_.resize(first_places);
+        std::size_t p = 0;
+        double passed = stage_.pieces.empty() ? 0 : stage_.pieces[0].patch.area();
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            const auto n = static_cast<std::uint32_t>(i);
+            const double at = total * (static_cast<double>(i) + sobol(n, 2)) / static_cast<double>(places_.size());
+            while (passed < at && p + 1 < stage_.pieces.size()) passed += stage_.pieces[++p].patch.area();
+            const Patch& patch = stage_.pieces[p].patch;
+            places_[i].region = stage_.pieces[p].region;
+            places_[i].at = patch.at(uniform_in_shape(patch.shape, sobol(n, 0), sobol(n, 1)));
+        }
+        parallel_ranges(places_.size(), 16, [&](std::size_t first, std::size_t last) {
+            DirectLight::Workspace workspace;
+            for (std::size_t i = first; i < last; ++i) {
+                Place& place = places_[i];
+                const Normal& n = stage_.scene.regions()[place.region].plane.n;
+                if (!stage_.occluders.is_covered(place.at, n, place.region)) {
+                    place.light =
+                        options_.direct_weight * stage_.direct.irradiance(place.at, n, place.region, workspace);
+                }
+                if (options_.indirect) place.light += options_.indirect(place.region, place.at);
+            }
+        });
+        reflects_ = std::any_of(stage_.scene.materials().begin(), stage_.scene.materials().end(),
+                                [](const Material& m) { return max(m.reflectance) > 0; });
+        double weighted = 0, plain = 0;
+        for (const Place& place : places_) {
+            weighted += mean(stage_.scene.material(place.region).reflectance * place.light);
+            plain += mean(place.light);
+            largest_ = std::max(largest_, mean(weight(place.region) * place.light));
+        }
+        report_.scale = (weighted > 0 ? weighted : plain) / static_cast<double>(places_.size());
+        area_ = total;
+    }
+
+    void find_curves() {
+        const BlockerEdges edges(stage_.occluders);
+        constexpr double unseen = 0.1, tiny = 1e-5;
+        const CurveFinder finder(
+            stage_, edges, {.least_effect = unseen * options_.largest_error * largest_, .least_area = tiny * area_});
+        const std::size_t regions = stage_.scene.regions().size();
+        std::vector<std::optional<ReceiverCurves>> receivers(regions);
+        std::vector<LabelledTriangles> triangles(regions);
+        parallel_for(regions, 1, [&](std::size_t i) {
+            receivers[i].emplace(finder.find(RegionId(static_cast<std::uint32_t>(i))));
+            triangles[i] = triangulated(*receivers[i]);
+        });
+        std::vector<std::uint32_t> whole;
+        for (const RegionId r : stage_.scene.regions().ids()) {
+            ReceiverCurves& receiver = *receivers[r.value];
+            mesh_.add(triangles[r.value], receiver.frame);
+            region_.resize(mesh_.triangles().size(), r), whole.resize(mesh_.triangles().size(), r.value);
+            record(r, receiver);
+        }
+        lights_.resize(region_.size());
+        parallel_ranges(region_.size(), 16, [&](std::size_t first, std::size_t last) {
+            DirectLight::Workspace workspace;
+            for (std::size_t f = first; f < last; ++f) {
+                const ReceiverLight& light = receivers[whole[f]]->light;
+                if (light.is_dark())
+                    lights_[f].n = light.n, lights_[f].own = light.own;
+                else
+                    stage_.direct.prepare(outline(static_cast<std::uint32_t>(f)), light, lights_[f], workspace);
+            }
+        });
+        for (std::uint32_t f = 0; f < lights_.size(); ++f) {
+            const ShadowClass c = class_of(f);
+            ++(c == ShadowClass::lit        ? report_.counts.lit
+               : c == ShadowClass::penumbra ? report_.counts.penumbra
+                                            : report_.counts.umbra);
+        }
+    }
+
+    static LabelledTriangles triangulated(const ReceiverCurves& receiver) {
+        std::vector<LabelledSegment> segments;
+        for (const FlatCurve& c : receiver.curves) segments.push_back({c.a, c.b, static_cast<std::uint8_t>(c.order)});
+        LabelledTriangles out = labelled_triangles(receiver.loops, segments);
+        if (out.corners.empty() && !segments.empty()) out = labelled_triangles(receiver.loops, {});
+        return out;
+    }
+
+    void record(RegionId r, const ReceiverCurves& receiver) {
+        DiscontinuityCounts& counts = report_.counts;
+        counts.wedges += receiver.wedges, counts.left_out += receiver.left_out;
+        for (const FlatCurve& c : receiver.curves) {
+            ++(c.order == CurveOrder::d0 ? counts.d0 : c.order == CurveOrder::d1 ? counts.d1 : counts.d2);
+            curves_.push_back({r, receiver.frame.at(c.a), receiver.frame.at(c.b), c.order, c.cause, c.source});
+            touched_[r.value] |= c.order == CurveOrder::d0 && c.cause == CurveCause::contact;
+        }
+        if (receiver.light.is_dark() || region_.empty() || region_.back() != r) return;
+        const Point inside = mesh_.centre(static_cast<std::uint32_t>(region_.size() - 1));
+        touched_[r.value] |= stage_.occluders.is_covered(inside, receiver.frame.n, r);
+    }
+
+    std::vector<Point> outline(std::uint32_t t) const {
+        std::vector<Point> out;
+        for (const std::uint32_t c : mesh_.triangles()[t].corner) out.push_back(mesh_.nodes()[c].at);
+        return out;
+    }
+
+    ShadowClass class_of(std::uint32_t face) const {
+        const ReceiverLight& light = lights_[face];
+        if (light.is_dark()) return ShadowClass::umbra;
+        if (!light.is_unshadowed()) return ShadowClass::penumbra;
+        const Point centre = mesh_.centre(face);
+        std::size_t facing = 0;
+        for (const DirectLight::Emitter& e : stage_.direct.emitters()) {
+            if (e.region == light.own || e.plane.signed_distance(centre) <= 0) continue;
+            for (const PieceId p : e.pieces) {
+                const auto corners = stage_.occluders.corners(p);
+                facing += std::any_of(corners.begin(), corners.end(), [&](const Point& c) {
+                    return dot(light.n, c - centre) > stage_.occluders.rounding();
+                });
+            }
+        }
+        for (const PunctualLight& l : stage_.scene.lights())
+            facing += dot(light.n, l.is_directional() ? -l.direction : l.position - centre) > 0;
+        return light.sources.size() + light.beams.size() >= facing ? ShadowClass::lit : ShadowClass::penumbra;
+    }
+
+    /// Exact light at the nodes that have none yet.
+    void light_nodes() {
+        const std::size_t first_node = values_.size();
+        values_.resize(mesh_.nodes().size());
+        parallel_ranges(values_.size() - first_node, 32, [&](std::size_t first, std::size_t last) {
+            DirectLight::Workspace workspace;
+            for (std::size_t i = first_node + first; i < first_node + last; ++i)
+                values_[i] = light(mesh_.nodes()[i], workspace);
+        });
+    }
+
+    Spectrum light(const BisectionMesh::Node& node, DirectLight::Workspace& workspace) const {
+        const ReceiverLight& light = lights_[node.face];
+        const RegionId r = region_[node.face];
+        Spectrum out;
+        if (!light.is_dark() && !(touched_[r.value] && stage_.occluders.is_covered(node.seen_from, light.n, r)))
+            out = options_.direct_weight * stage_.direct.irradiance(light, node.seen_from, workspace);
+        if (options_.indirect) out += options_.indirect(r, node.seen_from);
+        return out;
+    }
+
+    struct Misfit {
+        double squared = 0;  ///< Area times the mean square, W^2/m^2.
+        double largest = 0;  ///< W/m^2
+    };
+
+    /// The polynomial's misfit by its values at quarters of edges and within. A cubic error vanishes at the nodes: its
+    /// mean square is that of its parts x (1 - x) (x - 1/2) along the edges and of the bubble within.
+    Misfit misfit(std::uint32_t number) const {
+        const BisectionMesh::Triangle& t = mesh_.triangles()[number];
+        const Spectrum w = weight(region_[t.face]);
+        Misfit out;
+        double square = 0;
+        const auto look = [&](const Spectrum& error, double part) {
+            square += part * squared(w * error) / static_cast<double>(bands);
+            out.largest = std::max(out.largest, std::abs(mean(w * error)));
+        };
+        constexpr double of_edge = 0.1354 / 2, of_bubble = 0.2893 * (32.0 / 27) * (32.0 / 27);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Spectrum &a = values_[t.corner[i]], &b = values_[t.corner[(i + 1) % 3]], &m = values_[t.middle[i]];
+            look(values_[t.quarter[i][0]] - (0.375 * a + 0.75 * m - 0.125 * b), of_edge);
+            look(values_[t.quarter[i][1]] - (0.375 * b + 0.75 * m - 0.125 * a), of_edge);
+        }
+        const std::size_t i = t.longest, j = (i + 1) % 3, k = (i + 2) % 3;
+        // Weights of six nodes at the coordinates 1/4, 1/4 of the longest edge's ends and 1/2 of the corner across.
+        const Spectrum inner = -0.125 * (values_[t.corner[i]] + values_[t.corner[j]]) + 0.25 * values_[t.middle[i]] +
+                               0.5 * (values_[t.middle[j]] + values_[t.middle[k]]);
+        look(values_[t.inner] - inner, of_bubble);
+        out.squared = mesh_.area(number) * square;
+        return out;
+    }
+
+    bool is_full() const { return mesh_.triangles().size() >= options_.max_triangles; }
+
+    void refine(double tolerance) {
+        const double allowed = tolerance * tolerance * area_;
+        const double largest = options_.largest_error * largest_;
+        constexpr double unfindable = 1e-6, shortest = 1e-6;
+        constexpr int most_rounds = 60;
+        for (int round = 0; round < most_rounds; ++round) {
+            light_nodes();
+            misfits_.resize(mesh_.triangles().size());
+            const std::vector<std::uint32_t> fresh = mesh_.take_changed();
+            parallel_for(fresh.size(), 256, [&](std::size_t i) { misfits_[fresh[i]] = misfit(fresh[i]); });
+            double sum = 0;
+            for (const Misfit& m : misfits_) sum += m.squared;
+            const auto count = static_cast<double>(misfits_.size());
+            const double share =
+                sum <= allowed ? HUGE_VAL : allowed / count * std::min(1.0, 2 * std::sqrt(allowed / sum));
+            std::vector<std::uint32_t> coarse;
+            for (std::uint32_t t = 0; t < misfits_.size(); ++t) {
+                const bool misses = misfits_[t].largest > largest && mesh_.area(t) > unfindable * area_;
+                if ((misfits_[t].squared > share || misses) && mesh_.longest_edge(t) > shortest * stage_.scene.size())
+                    coarse.push_back(t);
+            }
+            if (coarse.empty() || is_full() || stop_.requested()) return;
+            // Some were bisected for a neighbour's sake: then their misfit is out of date.
+            const std::size_t before = mesh_.triangles().size();
+            std::vector<std::uint8_t> depth(before);
+            for (std::size_t t = 0; t < before; ++t) depth[t] = mesh_.triangles()[t].depth;
+            for (const std::uint32_t t : coarse)
+                if (mesh_.triangles()[t].depth == depth[t]) mesh_.bisect(t);
+            renew_faces();
+        }
+    }
+
+    /// Triangles far smaller than their faces look for themselves what can stand before the sources.
+    void renew_faces() {
+        constexpr std::uint8_t deep = 5;
+        constexpr std::size_t many = 12;
+        std::vector<std::uint32_t> renewed, before;
+        for (std::uint32_t t = 0; t < mesh_.triangles().size(); ++t) {
+            const BisectionMesh::Triangle& now = mesh_.triangles()[t];
+            if (now.depth < deep || lights_[now.face].candidates.size() < many) continue;
+            renewed.push_back(t), before.push_back(now.face);
+        }
+        const std::size_t base = lights_.size();
+        lights_.resize(base + renewed.size());
+        parallel_ranges(renewed.size(), 16, [&](std::size_t first, std::size_t last) {
+            DirectLight::Workspace workspace;
+            for (std::size_t i = first; i < last; ++i)
+                stage_.direct.prepare(outline(renewed[i]), lights_[before[i]], lights_[base + i], workspace);
+        });
+        for (std::size_t i = 0; i < renewed.size(); ++i) {
+            region_.push_back(region_[before[i]]);
+            mesh_.set_face(renewed[i], static_cast<std::uint32_t>(base + i));
+        }
+    }
+
+    SixNodeMesh finish() {
+        SixNodeMesh out;
+        std::vector<std::uint32_t> number(mesh_.nodes().size(), BisectionMesh::none);
+        const auto add = [&](std::uint32_t node) {
+            if (number[node] == BisectionMesh::none) {
+                number[node] = static_cast<std::uint32_t>(out.points.size());
+                out.points.push_back(mesh_.nodes()[node].at);
+                out.values.emplace_back();
+                for (std::size_t b = 0; b < bands; ++b) out.values.back()[b] = static_cast<float>(values_[node][b]);
+            }
+            return number[node];
+        };
+        for (const BisectionMesh::Triangle& t : mesh_.triangles()) {
+            std::array<std::uint32_t, 6> nodes;
+            for (std::size_t k = 0; k < 3; ++k) nodes[k] = add(t.corner[k]), nodes[3 + k] = add(t.middle[k]);
+            out.nodes.push_back(nodes);
+            out.region.push_back(region_[t.face]);
+            out.edge_order.push_back(t.order);
+            out.shadow.push_back(class_of_light(t.face));
+        }
+        out.curves = curves_;
+        report_.counts.triangles = out.size();
+        report_.counts.mean_radius_ratio = out.mean_radius_ratio();
+        return out;
+    }
+
+    /// Faces that were renewed lie within others.
+    ShadowClass class_of_light(std::uint32_t face) const {
+        if (lights_[face].is_dark()) return ShadowClass::umbra;
+        return lights_[face].is_unshadowed() ? ShadowClass::lit : ShadowClass::penumbra;
+    }
+
+    /// RMS over all surfaces of w (E - mesh), W/m^2.
+    double error_at_places(const SixNodeMesh& mesh) const {
+        const SixNodeLocator locator(mesh, stage_.scene);
+        const double sum = parallel_sum<double>(places_.size(), [&](std::size_t i) {
+            const Place& p = places_[i];
+            return squared(weight(p.region) * (p.light - locator.at(p.region, p.at))) / static_cast<double>(bands);
+        });
+        return std::sqrt(sum / static_cast<double>(places_.size()));
+    }
+
+    const Stage& stage_;
+    const DiscontinuityOptions& options_;
+    DiscontinuityReport& report_;
+    const StopRequest& stop_;
+    BisectionMesh mesh_;
+    std::vector<std::uint8_t> touched_;  ///< By region: does anything cover parts of it?
+    std::vector<RegionId> region_;       ///< Of faces.
+    std::vector<ReceiverLight> lights_;  ///< Of faces.
+    std::vector<Spectrum> values_;       ///< Of nodes.
+    std::vector<Misfit> misfits_;        ///< Of triangles.
+    std::vector<Place> places_;
+    std::vector<DiscontinuityCurve> curves_;
+    double largest_ = 0, area_ = 0;
+    bool reflects_ = true;
+};
+
+}  // namespace
+
+SixNodeMesh make_discontinuity_mesh(const Stage& stage, const DiscontinuityOptions& options,
+                                    DiscontinuityReport& report, const StopRequest& stop) {
+    return Builder(stage, options, report, stop).run();
+}
+
+ElementFunction linear_elements(const SixNodeMesh& mesh, const Scene& scene) {
+    ElementFunction out;
+    std::vector<std::uint32_t> triangle_of;
+    for (std::uint32_t t = 0; t < mesh.size(); ++t) {
+        const auto& n = mesh.nodes[t];
+        const Point& o = mesh.points[n[0]];
+        const Patch patch{o, mesh.points[n[1]] - o, mesh.points[n[2]] - o, Patch::Shape::triangle};
+        const double square = squared_norm(cross(patch.a, patch.b));
+        constexpr double flat = 1e-24;  // (area / size^2)^2: no places can be told from one another within it
+        if (!(square > flat * std::pow(scene.size(), 4))) continue;
+        const ElementId root = out.tree.add_root(mesh.region[t], patch);
+        out.tree.split(root, Cut::both);
+        triangle_of.push_back(t);
+    }
+    out.first_value.resize(out.tree.size());
+    for (std::size_t i = 0; i < out.tree.roots().size(); ++i) {
+        const ElementId root = out.tree.roots()[i];
+        for (const ElementId child : out.tree.children(root)) {
+            out.first_value[child] = static_cast<std::uint32_t>(out.values.size());
+            for (int k = 0; k < 3; ++k)
+                out.add_value(
+                    mesh.at(triangle_of[i], out.tree.patch(root).coordinates(out.tree.patch(child).corner(k))));
+        }
+    }
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,121 @@
+#include "exitance/reconstruct/discontinuity/discontinuity_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/reconstruct/error/area_samples.hpp"
+#include "support/built_scene.hpp"
+#include "support/solved.hpp"
+#include "support/test_scenes.hpp"
+
+namespace exitance {
+namespace {
+
+/// A source of 1.5 m at 2 m, a blocker of 1 m at 0.7 m, a floor of 4 m; `turn`: of the blocker, radians.
+Scene blocker(double turn) {
+    const auto at = [&](double x, double y) {
+        return Point{x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn), 0.7};
+    };
+    return test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                       {{at(-0.5, -0.5), at(0.5, -0.5), at(0.5, 0.5), at(-0.5, 0.5)}, 0},
+                       {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100}});
+}
+
+Solution meshed(const Scene& scene, double error) {
+    return solved(scene, {.method = Method::discontinuity, .bounces = 0, .error_interpolant = error});
+}
+
+TEST(DiscontinuityMesh, TheBlockersCurvesStandWhereTheClosedFormSays) {
+    // Seen over an edge at +-0.5 m from a source's edge at +-0.75 m: x = 2 (+-0.5) - 0.7 (+-0.75) over 1.3.
+    const Solution s = meshed(blocker(0), 0.01);
+    std::set<long> found;  // micrometres
+    for (const DiscontinuityCurve& c : s.discontinuity.curves) {
+        if (std::abs(c.a.z) > 1e-9 || std::abs(c.a.x - c.b.x) > 1e-9) continue;
+        if ((c.a.y - 0.1) * (c.b.y - 0.1) > 0) continue;
+        EXPECT_EQ(c.order, CurveOrder::d1);
+        found.insert(std::lround(1e6 * c.a.x));
+    }
+    EXPECT_EQ(found, (std::set<long>{-1173077, -365385, 365385, 1173077}));
+}
+
+TEST(DiscontinuityMesh, ATurnedBlockersCurvesAreThoseOfAllPairsOfCornersAndEdges) {
+    const double turn = pi / 6;
+    const Solution s = meshed(blocker(turn), 0.01);
+    const double k = 2 / 1.3;
+    std::size_t on_floor = 0;
+    for (const DiscontinuityCurve& c : s.discontinuity.curves) {
+        if (std::abs(c.a.z) > 1e-9) continue;
+        ++on_floor;
+        EXPECT_EQ(c.order, CurveOrder::d2);
+        // The shadow of a point p from a point q of the source is q + k (p - q): both ends lie on the shadow, from one
+        // corner, of a line through an edge, or from a line through an edge of the source, of one corner.
+        double least = 1;
+        const auto shadow = [&](double x, double y, double sx, double sy) {
+            const Vec2 p = {x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn)};
+            return Vec2{sx + k * (p.x - sx), sy + k * (p.y - sy)};
+        };
+        const auto look = [&](Vec2 a, Vec2 b) {
+            const Vec2 d = b - a, p = {c.a.x, c.a.y}, q = {c.b.x, c.b.y};
+            const double l = std::sqrt(dot(d, d));
+            least = std::min(least, std::max(std::abs(cross(d, p - a)), std::abs(cross(d, q - a))) / l);
+        };
+        const double corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                const auto &e = corner[i], &f = corner[(i + 1) % 4], &q = corner[j], &r = corner[(j + 1) % 4];
+                look(shadow(0.5 * e[0], 0.5 * e[1], 0.75 * q[0], 0.75 * q[1]),
+                     shadow(0.5 * f[0], 0.5 * f[1], 0.75 * q[0], 0.75 * q[1]));
+                look(shadow(0.5 * e[0], 0.5 * e[1], 0.75 * q[0], 0.75 * q[1]),
+                     shadow(0.5 * e[0], 0.5 * e[1], 0.75 * r[0], 0.75 * r[1]));
+            }
+        EXPECT_LT(least, 1e-6);
+    }
+    EXPECT_GE(on_floor, 32u);
+    EXPECT_EQ(s.statistics.discontinuity->d1, 0u);
+}
+
+TEST(DiscontinuityMesh, HoldsTheErrorAskedForAndLosesNoArea) {
+    const Scene scene = built_scene("table");
+    const Solution s = meshed(scene, 0.003);
+    double area = 0, all = 0;
+    for (const Region& region : scene.regions()) all += region.area;
+    for (std::uint32_t t = 0; t < s.discontinuity.size(); ++t) area += s.discontinuity.area(t);
+    EXPECT_NEAR(area, all, 1e-9 * all);
+    EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.003);
+    const RadiosityFunction light(s);
+    const std::vector<ProbePoint> points = points_uniform_in_area(scene, 2000, 7);
+    const std::vector<Light> exact = light.at(points), held = light.interpolant_at(points);
+    double sum = 0, square = 0, largest = 0, brightest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double e = exact[i].irradiance[0], d = held[i].irradiance[0] - e;
+        sum += e, square += d * d;
+        largest = std::max(largest, std::abs(d)), brightest = std::max(brightest, e);
+    }
+    const auto n = static_cast<double>(points.size());
+    EXPECT_LE(std::sqrt(square / n) / (sum / n), 0.003);
+    EXPECT_LE(largest / brightest, 0.005);
+}
+
+TEST(DiscontinuityMesh, ItsBitsDoNotDependOnThreads) {
+    const Scene scene = built_scene("chair");
+    set_threads(1);
+    const Solution one = meshed(scene, 0.02);
+    set_threads(3);
+    const Solution three = meshed(scene, 0.02);
+    set_threads(0);
+    EXPECT_EQ(one.discontinuity.values, three.discontinuity.values);
+    EXPECT_EQ(one.discontinuity.nodes, three.discontinuity.nodes);
+    EXPECT_EQ(one.interpolant.values, three.interpolant.values);
+}
+
+TEST(DiscontinuityMesh, HoldsReflectedLightToo) {
+    const Scene scene = box_scene(1, 1, 1, 0.5, 1, 1);  // a furnace: E = 2 everywhere
+    const Solution s = solved(scene, {.method = Method::discontinuity, .error = 0.02});
+    ASSERT_FALSE(s.discontinuity.empty());
+    for (const auto& value : s.discontinuity.values) EXPECT_NEAR(value[0], 2, 0.1);
+}
+
+}  // namespace
+}  // namespace exitance

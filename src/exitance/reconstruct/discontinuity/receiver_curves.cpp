@@ -1,0 +1,160 @@
+#include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "exitance/transport/direct_projection.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double nearness = 2e-8;  // of the scene's size: lines nearer than this are one
+
+PlaneFrame frame_of(const Region& region) {
+    PlaneFrame frame(region.loops.front().front(), region.plane.n);
+    Vec3 longest;
+    for (const auto& loop : region.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const Vec3 d = loop[(i + 1) % loop.size()] - loop[i];
+            if (squared_norm(d) > squared_norm(longest)) longest = d;
+        }
+    const Vec3 in_plane = longest - dot(longest, region.plane.n) * region.plane.n;
+    if (squared_norm(in_plane) > 0) frame.u = normalized(in_plane), frame.v = cross(region.plane.n, frame.u);
+    return frame;
+}
+
+/// A box around a region in its own coordinates.
+struct FlatBox {
+    Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
+
+    explicit FlatBox(const std::vector<std::vector<Vec2>>& loops) {
+        for (const auto& loop : loops)
+            for (const Vec2 p : loop) {
+                lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
+                hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+            }
+    }
+};
+
+/// The region, or a rectangle around it: a convex polygon to look at lights from.
+std::vector<Point> convex_around(const Region& region, const ReceiverCurves& receiver) {
+    if (region.loops.size() == 1 && is_convex(region.loops.front(), region.plane.n)) return region.loops.front();
+    const FlatBox box(receiver.loops);
+    return {receiver.frame.at(box.lo), receiver.frame.at({box.hi.x, box.lo.y}), receiver.frame.at(box.hi),
+            receiver.frame.at({box.lo.x, box.hi.y})};
+}
+
+}  // namespace
+
+ReceiverCurves::ReceiverCurves(const Region& region) : frame(frame_of(region)) {
+    for (const auto& loop : region.loops) {
+        loops.emplace_back();
+        for (const Point& p : loop) loops.back().push_back(frame.flat(p));
+    }
+}
+
+ReceiverCurves CurveFinder::find(RegionId number) const {
+    const Region& region = stage_->scene.regions()[number];
+    ReceiverCurves out(region);
+    DirectLight::Workspace workspace;
+    stage_->direct.prepare(convex_around(region, out), region.plane.n, number, out.light, workspace);
+    if (out.light.is_dark()) return out;
+    add_contacts(number, out);
+    if (region.area >= options_.least_area)
+        add_events(number, out);
+    else if (!out.light.is_unshadowed())
+        out.left_out += out.light.sources.size();
+    ArrangedCurves arranged = arranged_curves(std::move(out.curves), out.loops, nearness * stage_->scene.size());
+    out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
+    if (out.curves.size() > options_.most_curves) {
+        const auto effect = [](const FlatCurve& c) {
+            return c.order == CurveOrder::d0 ? HUGE_VAL : c.gain * std::hypot(c.b.x - c.a.x, c.b.y - c.a.y);
+        };
+        std::stable_sort(out.curves.begin(), out.curves.end(),
+                         [&](const FlatCurve& a, const FlatCurve& b) { return effect(a) > effect(b); });
+        out.left_out += out.curves.size() - options_.most_curves;
+        out.curves.resize(options_.most_curves);
+    }
+    return out;
+}
+
+void CurveFinder::add_contacts(RegionId region, ReceiverCurves& out) const {
+    for (const auto& [a, b] : stage_->contacts.of_region(region))
+        out.curves.push_back(
+            {out.frame.flat(a), out.frame.flat(b), CurveOrder::d0, CurveCause::contact, RegionId(), HUGE_VAL});
+}
+
+/// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
+double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter& emitter) const {
+    Box box;
+    for (const auto& loop : stage_->scene.regions()[region].loops)
+        for (const Point& p : loop) box.add(p);
+    double squared_gap = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double gap = std::max({0.0, box.lo[k] - emitter.centre[k], emitter.centre[k] - box.hi[k]});
+        squared_gap += gap * gap;
+    }
+    const double distance = std::max(0.0, std::sqrt(squared_gap) - emitter.radius);
+    const double area = stage_->scene.regions()[emitter.region].area;
+    const double factor = area < pi * distance * distance ? area / (pi * distance * distance) : 1;
+    return factor * mean(light_weight(stage_->scene.material(region)) * emitter.exitance);
+}
+
+void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
+    std::map<std::uint32_t, std::vector<PieceId>> blockers;  // by emitter
+    const auto candidates = [&](const auto& from) {
+        return std::span(out.light.candidates).subspan(from.first, from.count);
+    };
+    for (const ReceiverLight::Source& s : out.light.sources)
+        for (const PieceId p : candidates(s)) blockers[s.emitter].push_back(p);
+    for (const auto& [number, pieces] : blockers) {
+        const DirectLight::Emitter& emitter = stage_->direct.emitters()[number];
+        const double gain = greatest_effect(region, emitter);
+        if (gain < options_.least_effect) {
+            ++out.left_out;
+            continue;
+        }
+        const EventSource source{stage_->scene.regions()[emitter.region].loops, emitter.plane, emitter.region, false,
+                                 2 * emitter.radius};
+        add_events(region, source, gain, pieces, out);
+    }
+    for (const Beam& beam : out.light.beams) {
+        if (beam.count == 0) continue;
+        const PunctualLight& light = stage_->scene.lights()[beam.light];
+        // Parallel light comes from a point so far away that its shadows lie right to 1e-8 of the scene.
+        constexpr double far = 1e8;
+        const Point place = light.is_directional()
+                                ? stage_->scene.box().centre() - (far * stage_->scene.size()) * light.direction
+                                : light.position;
+        const EventSource source{{{place}}, Plane{}, RegionId(), true, 0};
+        add_events(region, source, HUGE_VAL, candidates(beam), out);
+    }
+}
+
+void CurveFinder::add_events(RegionId region, const EventSource& source, double gain, std::span<const PieceId> blockers,
+                             ReceiverCurves& out) const {
+    std::vector<std::uint32_t> regions, edges;
+    for (const PieceId p : blockers) regions.push_back(stage_->occluders.pieces()[p].region.value);
+    std::sort(regions.begin(), regions.end());
+    regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+    for (const std::uint32_t r : regions) {
+        const auto own = edges_->of_region(RegionId(r));
+        edges.insert(edges.end(), own.begin(), own.end());
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    const FlatBox box(out.loops);
+    ShadowEventFinder finder(stage_->occluders, *edges_);
+    std::vector<ShadowEvent> events;
+    finder.find(out.frame, region, box.lo, box.hi, source, edges, events);
+    out.wedges += finder.wedges;
+    for (const ShadowEvent& e : events)
+        out.curves.push_back({e.a, e.b,
+                              source.is_point ? CurveOrder::d0
+                              : e.is_kink     ? CurveOrder::d1
+                                              : CurveOrder::d2,
+                              e.by_edge_of_source ? CurveCause::edge_vertex : CurveCause::vertex_edge, source.region,
+                              gain});
+}
+
+}  // namespace exitance

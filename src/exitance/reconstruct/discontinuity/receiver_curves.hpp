@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/mesh/discontinuity/curve_arrangement.hpp"
+#include "exitance/transport/stage.hpp"
+#include "exitance/visibility/blocker_edges.hpp"
+#include "exitance/visibility/shadow_events.hpp"
+
+namespace exitance {
+
+/// A receiving region in coordinates of its own, with the curves on it across which direct light changes its form.
+struct ReceiverCurves {
+    explicit ReceiverCurves(const Region& region);
+
+    PlaneFrame frame;
+    std::vector<std::vector<Vec2>> loops;  ///< Metres; as the region's.
+    ReceiverLight light;                   ///< What shines on any of it.
+    std::vector<FlatCurve> curves;         ///< Ready to be cut along.
+    std::size_t wedges = 0, left_out = 0;  ///< Looked at; sources or curves that change too little.
+};
+
+struct CurveOptions {
+    double least_effect = 0;          ///< W/m^2 of rho E: sources that bring less than this have no curves.
+    double least_area = 0;            ///< m^2: smaller regions have contacts alone.
+    std::size_t most_curves = 1'000;  ///< On a region.
+};
+
+/// Finds D0, D1 and D2 curves of primary sources: where other polygons touch a region, and its VE and EV events.
+class CurveFinder {
+  public:
+    /// Both must outlive it.
+    CurveFinder(const Stage& stage, const BlockerEdges& edges, const CurveOptions& options)
+        : stage_(&stage), edges_(&edges), options_(options) {}
+
+    ReceiverCurves find(RegionId region) const;
+
+  private:
+    void add_contacts(RegionId region, ReceiverCurves& out) const;
+    void add_events(RegionId region, ReceiverCurves& out) const;
+    void add_events(RegionId region, const EventSource& source, double gain, std::span<const PieceId> blockers,
+                    ReceiverCurves& out) const;
+    double greatest_effect(RegionId region, const DirectLight::Emitter& emitter) const;
+
+    const Stage* stage_;
+    const BlockerEdges* edges_;
+    CurveOptions options_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "exitance/visibility/blocker_edges.hpp"
+#include "exitance/visibility/critical_lines.hpp"
+#include "exitance/visibility/occluders.hpp"
+
+namespace exitance {
+
+/// Where on a receiver the visible part of one source changes its corners: a stretch of a straight line in the
+/// receiver's own coordinates, metres.
+struct ShadowEvent {
+    Vec2 a, b;
+    bool is_kink = false;            ///< The light's slope breaks (D1), not only its curvature (D2).
+    bool by_edge_of_source = false;  ///< An edge of the source over a blocker's corner (EV), not a corner over an edge.
+    double width = 0;                ///< Of the half-shadow that begins here, metres.
+};
+
+/// The corners and edges of a source, the front of whose plane it shines into. A point alone is a source, too: then
+/// its events are where light jumps.
+struct EventSource {
+    std::vector<std::vector<Point>> loops;
+    Plane plane;
+    RegionId region;
+    bool is_point = false;
+    double size = 0;  ///< Metres across.
+};
+
+/// Vertex-edge and edge-vertex events of discontinuity meshing [Heckbert92], without those of three edges.
+///
+/// A corner of the source and an edge of a blocker span a wedge; an edge of the source and a corner of a blocker span
+/// two, on either side of the corner. Each meets the receiver's plane in a line. What lies within the wedge hides
+/// stretches of it: it is found in a tree of boxes, and what remains of the line is an event. O(corners (log n + hits))
+/// a blocker's edge.
+class ShadowEventFinder {
+  public:
+    ShadowEventFinder(const Occluders& occluders, const BlockerEdges& edges) : occluders_(&occluders), edges_(&edges) {}
+
+    /// Appends the events of the blockers' edges numbered `among`, as far as they reach into the box lo..hi of the
+    /// receiver. `own` is the receiver's region.
+    void find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
+              std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events);
+
+    std::size_t wedges = 0;  ///< Looked at so far.
+
+  private:
+    /// A fan of sight lines: from `apex` through base + t along, t in [first, last]; `beyond`: lines end behind the
+    /// apex (EV), else behind the base (VE).
+    struct Wedge {
+        Point apex, base;
+        Vec3 along;
+        double first = 0, last = 1;
+        bool beyond = false;
+    };
+    void add_corner_over_edge(const Point& s, const Vec3& before, const Vec3& after, const BlockerEdges::Edge& edge,
+                              std::vector<ShadowEvent>& events);
+    void add_edge_over_corner(const Point& q0, const Point& q1, std::uint32_t corner, const Point& w,
+                              std::vector<ShadowEvent>& events);
+    bool clip_to_box(Wedge& wedge, double height) const;
+    void keep_visible(const Wedge& wedge, ShadowEvent event, std::vector<ShadowEvent>& events);
+    void blank(const Wedge& wedge, const Vec3& normal, PieceId piece);
+    Vec2 shadow(const Wedge& wedge, double t) const;
+    bool limit(double at_zero, double rate, double& first, double& last) const;
+
+    const Occluders* occluders_;
+    const BlockerEdges* edges_;
+    const PlaneFrame* frame_ = nullptr;
+    const EventSource* source_ = nullptr;
+    std::span<const std::uint32_t> among_;
+    RegionId own_;
+    Vec2 lo_, hi_;
+    double least_ = 0;  ///< Metres: what is lower over a plane lies in it.
+    std::vector<std::pair<double, double>> hidden_;
+    std::vector<std::pair<std::uint32_t, Point>> corners_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_at_;  ///< Corner, edge; sorted.
+};
+
+}  // namespace exitance
