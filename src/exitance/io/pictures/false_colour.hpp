@@ -24,10 +24,10 @@ double value_of(const Pixel& pixel, Quantity quantity);
 
 /// What of a scale users choose.
 struct ScaleChoice {
-    std::optional<std::pair<double, double>> range;  ///< None: as the picture has it.
-    bool by_ratio = false;                           ///< Steps of equal ratios; else where the light asks for it.
-    std::optional<std::size_t> bands;                ///< So many colours; none: round steps.
-    bool smooth = false;                             ///< Colours run into one another.
+    std::optional<std::pair<double, double>> range = {};  ///< None: as the picture has it.
+    bool by_ratio = false;                                ///< Steps of equal ratios; else where the light asks for it.
+    std::optional<std::size_t> bands = {};                ///< So many colours; none: round steps.
+    bool smooth = false;                                  ///< Colours run into one another.
     Palette palette = Palette::viridis;
 };
 
