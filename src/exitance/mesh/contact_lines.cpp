@@ -148,20 +148,21 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
 
 std::vector<std::pair<Point, Point>> ContactLines::of_region(RegionId region) const {
     const Plane& plane = scene_->regions()[region].plane;
+    // What covers a place may hover over it by as much (Occluders::is_covered).
+    constexpr double coplanar = 1e-6;  // of the scene's size
+    const double near = coplanar * scene_->size();
     Box box;
     for (const std::vector<Point>& loop : scene_->regions()[region].loops)
         for (const Point& corner : loop) box.add(corner);
-    box.lo -= Vec3{tolerance_, tolerance_, tolerance_};
-    box.hi += Vec3{tolerance_, tolerance_, tolerance_};
+    box.lo -= Vec3{near, near, near};
+    box.hi += Vec3{near, near, near};
     std::vector<Segment> segments;
     borders_.visit_box(box, [&](std::uint32_t i) {
-        if (edges_[i].region != region)
-            contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, tolerance_, segments);
+        if (edges_[i].region != region) contacts_of_edge(edges_[i].a, edges_[i].b, plane, near, near, segments);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
-        if (scene_->surfaces()[s].region != region)
-            crossing_of_face(scene_->outline(s), plane, tolerance_, tolerance_, segments);
+        if (scene_->surfaces()[s].region != region) crossing_of_face(scene_->outline(s), plane, near, near, segments);
     });
     std::vector<std::pair<Point, Point>> out;
     for (const Segment& s : segments) out.emplace_back(s.a, s.b);
