@@ -25,11 +25,21 @@ const page_text = `<!doctype html><meta charset="utf-8"><canvas id="c"></canvas>
 <script type="module">
 import * as THREE from 'three';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
+import {EXRLoader} from 'three/addons/loaders/EXRLoader.js';
 const renderer = new THREE.WebGLRenderer({canvas: document.getElementById('c'), antialias: true, preserveDrawingBuffer: true});
 renderer.setSize(${size[0]}, ${size[1]});
 // What stock three.js shows of a model, from a camera of 'exitance render' (Z up, horizontal angle).
-window.show = async (url, eye, target, fov) => {
+window.show = async (url, eye, target, fov, exr, exposure) => {
     const model = await new GLTFLoader().loadAsync(url);
+    if (exr) {  // as docs/light_maps.md says
+        const map = await new EXRLoader().loadAsync(exr);
+        map.flipY = true; map.channel = 1;
+        model.scene.traverse(mesh => {
+            if (!mesh.isMesh) return;
+            mesh.material.lightMap = map;
+            mesh.material.lightMapIntensity = Math.PI * exposure;
+        });
+    }
     const scene = new THREE.Scene();
     scene.background = new THREE.Color(0);
     scene.add(model.scene);
@@ -76,12 +86,13 @@ async function check_models(page, origin) {
     await page.goto(`${origin}/three.html`);
     await page.waitForFunction('window.ready');
     let failed = 0, camera = process.env.CAMERA;
-    for (const kind of ['emissive', 'unlit']) {
+    for (const kind of ['emissive', 'unlit', 'moz']) {
         const manifest = JSON.parse(fs.readFileSync(path.join(folder, kind, 'lightmaps.json')));
         const [reference, chosen] = render(kind, camera, manifest.exposure);
         camera = camera || chosen;
         const [eye, target, fov] = camera.split(' ').map(words => words.split(',').map(Number));
-        const shown = await page.evaluate(a => window.show(...a), [`/${kind}/scene.glb`, eye, target, fov[0]]);
+        const numbers = kind === 'moz' ? [`/${kind}/lightmap_0.exr`, manifest.exposure] : [];
+        const shown = await page.evaluate(a => window.show(...a), [`/${kind}/scene.glb`, eye, target, fov[0], ...numbers]);
         if (process.env.KEEP) fs.writeFileSync(`${process.env.KEEP}/${kind}_three.png`, Buffer.from(shown.split(',')[1], 'base64'));
         if (process.env.KEEP) fs.copyFileSync(path.join(folder, `${kind}.png`), `${process.env.KEEP}/${kind}_render.png`);
         const [mean, far] = await page.evaluate(a => window.compare(...a), [shown, reference]);
