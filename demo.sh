@@ -35,7 +35,7 @@ Done in $SECONDS s. In $out/:
   false_colour.png  the irradiance of its surfaces, with a legend
   report.html       pictures, tables and figures on one page (its numbers: report.json)
   lit.glb           the room with its light, for any glTF viewer
-  lit.hdf        the elements, for ParaView
+  lit.hdf           the elements, for ParaView
   solution.h5       the light, with what it took (exitance stats $out/solution.h5)
   room.obj          the scene
 EOT

@@ -9,9 +9,7 @@
 namespace exitance {
 namespace {
 
-struct Segment {
-    Point a, b;
-};
+using Segment = ContactLines::Line;
 
 bool hovers(double hp, double hq, double tolerance, double gap) {
     return std::min(hp, hq) >= -tolerance && std::max(hp, hq) <= gap;
@@ -23,12 +21,12 @@ void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double
                       std::vector<Segment>& out) {
     const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
     if (!hovers(hp, hq, tolerance, gap)) return;
-    out.push_back({p, q});
-    const double height = std::max(hp, hq);
+    const double height = std::max({hp, hq, 0.0});
+    out.push_back({p, q, height});
     if (height <= 10 * tolerance) return;
     const Vec3 across = (height / norm(q - p)) * cross(plane.n, q - p);
-    out.push_back({p + across, q + across});
-    out.push_back({p - across, q - across});
+    out.push_back({p + across, q + across, height});
+    out.push_back({p - across, q - across, height});
 }
 
 /// The line in which a face crosses a plane; its edges that hover over the plane are left out.
@@ -50,7 +48,7 @@ void crossing_of_face(std::span<const Point> outline, const Plane& plane, double
     const Vec3 direction = crossings[1] - crossings[0];
     std::sort(crossings.begin(), crossings.end(),
               [&](const Point& a, const Point& b) { return dot(a, direction) < dot(b, direction); });
-    out.push_back({crossings.front(), crossings.back()});
+    out.push_back({crossings.front(), crossings.back(), 0});
 }
 
 /// Length of the part of a segment inside a convex polygon, as a share of the segment, and where it runs.
@@ -116,9 +114,7 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
 std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree, ElementId e) const {
     const Plane& plane = scene_->regions()[tree.region(e)].plane;
     const std::vector<Vec2> domain = tree.domain(e);
-    // Under an edge this near the light changes within a strip as narrow as the gap: for the element that is a jump.
-    constexpr double narrow = 0.05;
-    const double gap = std::max(tolerance_, narrow * std::sqrt(tree.area(e)));
+    const double gap = std::max(tolerance_, height_of_jump(tree.area(e)));
     Box box;
     for (const Point& corner : tree.outline(e)) {
         box.add(corner - tolerance_ * plane.n);
@@ -147,25 +143,37 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
 }
 
 std::vector<std::pair<Point, Point>> ContactLines::of_region(RegionId region) const {
-    const Plane& plane = scene_->regions()[region].plane;
+    std::vector<std::pair<Point, Point>> out;
+    for (const Line& line : over_plane({&region, 1}, 0)) out.emplace_back(line.a, line.b);
+    return out;
+}
+
+std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionId> regions, double gap) const {
+    const Plane& plane = scene_->regions()[regions.front()].plane;
+    const auto is_of_others = [&](RegionId r) {
+        return !std::binary_search(regions.begin(), regions.end(), r,
+                                   [](RegionId a, RegionId b) { return a.value < b.value; });
+    };
     // What covers a place may hover over it by as much (Occluders::is_covered).
     constexpr double coplanar = 1e-6;  // of the scene's size
-    const double near = coplanar * scene_->size();
+    const double near = coplanar * scene_->size(), highest = std::max(near, gap);
     Box box;
-    for (const std::vector<Point>& loop : scene_->regions()[region].loops)
-        for (const Point& corner : loop) box.add(corner);
+    for (RegionId region : regions)
+        for (const std::vector<Point>& loop : scene_->regions()[region].loops)
+            for (const Point& corner : loop) {
+                box.add(corner - near * plane.n);
+                box.add(corner + highest * plane.n);
+            }
     box.lo -= Vec3{near, near, near};
     box.hi += Vec3{near, near, near};
-    std::vector<Segment> segments;
+    std::vector<Line> out;
     borders_.visit_box(box, [&](std::uint32_t i) {
-        if (edges_[i].region != region) contacts_of_edge(edges_[i].a, edges_[i].b, plane, near, near, segments);
+        if (is_of_others(edges_[i].region)) contacts_of_edge(edges_[i].a, edges_[i].b, plane, near, highest, out);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
-        if (scene_->surfaces()[s].region != region) crossing_of_face(scene_->outline(s), plane, near, near, segments);
+        if (is_of_others(scene_->surfaces()[s].region)) crossing_of_face(scene_->outline(s), plane, near, highest, out);
     });
-    std::vector<std::pair<Point, Point>> out;
-    for (const Segment& s : segments) out.emplace_back(s.a, s.b);
     return out;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "exitance/geometry/bvh.hpp"
@@ -21,6 +23,18 @@ class ContactLines {
 
     /// All contacts of a whole region's plane within the region's box, along its border, too. Metres.
     std::vector<std::pair<Point, Point>> of_region(RegionId region) const;
+
+    /// A stretch of a line over a plane, and how high it is above it at most, metres.
+    struct Line {
+        Point a, b;
+        double height;
+    };
+    /// The same of regions in one plane, ascending, but for contacts among themselves; up to a height of `gap` metres.
+    std::vector<Line> over_plane(std::span<const RegionId> regions, double gap) const;
+
+    /// Under an edge that hovers over a surface light changes within a strip as narrow as the edge is high: that is a
+    /// jump to elements whose area (m^2) is so large.
+    static double height_of_jump(double area) { return 0.05 * std::sqrt(area); }
 
   private:
     struct Edge {

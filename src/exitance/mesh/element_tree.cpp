@@ -84,7 +84,8 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
             return {Patch{p.origin, ratio * p.a, p.b}, Patch{p.origin + ratio * p.a, (1 - ratio) * p.a, p.b}};
         case Cut::v:
             return {Patch{p.origin, p.a, ratio * p.b}, Patch{p.origin + ratio * p.b, p.a, (1 - ratio) * p.b}};
-        case Cut::line:  // not a way of cutting patches: ElementTree::split_by_line
+        case Cut::line:  // no ways of cutting patches: ElementTree::split_by_line, split_fan
+        case Cut::fan:
         case Cut::both:
             break;
     }
@@ -109,7 +110,7 @@ ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
 }
 
 ElementId ElementTree::split(ElementId leaf, Cut way, double ratio) {
-    EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && way != Cut::none && way != Cut::line);
+    EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && way != Cut::none && way != Cut::line && way != Cut::fan);
     Content& c = content_.change();
     const std::size_t first = c.patch.size();
     for (const Patch& piece : cut(c.patch[leaf], way, ratio))
@@ -155,6 +156,42 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
     node.line = static_cast<std::uint32_t>(c.cuts.size());
     c.cuts.push_back(record);
     return ElementId(first);
+}
+
+ElementId ElementTree::split_fan(ElementId leaf, const Fan& fan) {
+    EXI_CHECK(is_leaf(leaf) && fan.border.size() >= 2);
+    constexpr double least = 1e-12;  // of the element's frame
+    for (std::size_t i = 1; i < fan.border.size(); ++i)
+        if (!(cross(fan.border[i - 1] - fan.apex, fan.border[i] - fan.apex) > least)) return ElementId();
+    Content& c = content_.change();
+    const std::size_t first = c.patch.size();
+    const Patch parent = c.patch[leaf];
+    const Point apex = parent.at(fan.apex);
+    for (std::size_t i = 1; i < fan.border.size(); ++i) {
+        const Patch triangle{apex, parent.at(fan.border[i - 1]) - apex, parent.at(fan.border[i]) - apex,
+                             Patch::Shape::triangle};
+        c.add(RegionId(c.region[leaf]), leaf, triangle, triangle.area());
+    }
+    Node& node = c.nodes[leaf];
+    node.children = {first, c.patch.size()};
+    node.way = Cut::fan;
+    node.line = static_cast<std::uint32_t>(c.fans.size());
+    c.fans.push_back(fan);
+    return ElementId(first);
+}
+
+/// The triangle that a place lies in deepest.
+ElementTree::Place ElementTree::in_fan(ElementId e, Vec2 uv) const {
+    const Fan& fan = this->fan(e);
+    Place out;
+    double deepest = -HUGE_VAL;
+    for (std::size_t i = 1; i < fan.border.size(); ++i) {
+        const Vec2 a = fan.border[i - 1] - fan.apex, b = fan.border[i] - fan.apex, at = uv - fan.apex;
+        const double area = cross(a, b), u = cross(at, b) / area, v = cross(a, at) / area;
+        const double depth = std::min({u, v, 1 - u - v});
+        if (depth > deepest) deepest = depth, out = {children(e)[i - 1], {u, v}};
+    }
+    return out;
 }
 
 std::vector<Vec2> ElementTree::domain(ElementId e) const {
@@ -226,6 +263,10 @@ ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
             const Vec2 from = uv - cut.origin[side];
             uv = {from.x / cut.size[side].x, from.y / cut.size[side].y};
             e = node->children[side];
+        } else if (node->way == Cut::fan) {
+            const Place place = in_fan(e, uv);
+            uv = place.uv;
+            e = place.element;
         } else {
             const auto [child, inside] = descend(uv, node->shape, node->way, node->ratio);
             uv = inside;
@@ -239,12 +280,14 @@ void ElementTree::shrink_to_fit() {
     Content& c = content_.change();
     c.patch.shrink_to_fit(), c.nodes.shrink_to_fit(), c.parent.shrink_to_fit(), c.region.shrink_to_fit();
     c.area.shrink_to_fit(), c.cell.shrink_to_fit();
-    c.first_corner.shrink_to_fit(), c.corners.shrink_to_fit(), c.cuts.shrink_to_fit();
+    c.first_corner.shrink_to_fit(), c.corners.shrink_to_fit(), c.cuts.shrink_to_fit(), c.fans.shrink_to_fit();
 }
 
 std::size_t ElementTree::memory_bytes() const {
     const Content& c = *content_;
-    return c.patch.size() * (sizeof(Patch) + sizeof(Node) + 3 * sizeof(ElementId) + sizeof(double)) +
+    std::size_t of_fans = 0;
+    for (const Fan& fan : c.fans) of_fans += sizeof(Fan) + fan.border.size() * sizeof(Vec2);
+    return of_fans + c.patch.size() * (sizeof(Patch) + sizeof(Node) + 3 * sizeof(ElementId) + sizeof(double)) +
            c.cuts.size() * sizeof(LineCut) + 4 * c.first_corner.size() + c.corners.size() * sizeof(Vec2);
 }
 

@@ -39,8 +39,8 @@ struct Patch {
 };
 
 /// How an element is cut: across its u direction, across v, or both; a triangle has one way, `both`: four, at its
-/// edges' midpoints. `line`: along any straight line, into cells.
-enum class Cut : std::uint8_t { none, u, v, both, line };
+/// edges' midpoints. `line`: along any straight line, into cells. `fan`: into triangles around a place.
+enum class Cut : std::uint8_t { none, u, v, both, line, fan };
 
 /// A straight line in an element's own coordinates: its first side is normal . uv <= offset.
 struct CutLine {
@@ -48,6 +48,12 @@ struct CutLine {
     double offset = 0;
 
     double distance(Vec2 uv) const { return dot(normal, uv) - offset; }
+};
+
+/// Triangles around a place of an element: (apex, border[i], border[i + 1]), counter-clockwise, in its coordinates.
+struct Fan {
+    Vec2 apex;
+    std::vector<Vec2> border;
 };
 
 /// Coordinates that rounding left at most a little outside the reference shape, moved onto it.
@@ -75,6 +81,10 @@ class ElementTree {
     /// done, when less than `least` of the leaf's area would lie on one side.
     ElementId split_by_line(ElementId leaf, CutLine line, double least = 1e-6);
 
+    /// Cuts a leaf into the triangles of a fan, which are to cover it; returns the first child. None, and nothing is
+    /// done, when one of them has no area.
+    ElementId split_fan(ElementId leaf, const Fan& fan);
+
     std::size_t size() const { return content_->patch.size(); }
     IdRange<ElementId> ids() const { return content_->patch.ids(); }  ///< Parents before children.
     const std::vector<ElementId>& roots() const { return content_->roots; }
@@ -91,6 +101,8 @@ class ElementTree {
     const CutLine& line(ElementId e) const {
         return content_->cuts[content_->nodes[e].line].line;
     }  ///< Of an element cut along a line.
+    /// Of an element cut into a fan.
+    const Fan& fan(ElementId e) const { return content_->fans[content_->nodes[e].line]; }
     /// Of an element cut along a line: the frame of its cell on a side, origin and size in the element's coordinates.
     std::array<Vec2, 2> cell_frame(ElementId e, std::size_t side) const {
         const LineCut& cut = content_->cuts[content_->nodes[e].line];
@@ -127,7 +139,7 @@ class ElementTree {
     struct Node {
         IdRange<ElementId> children;
         double ratio = 0.5;
-        std::uint32_t line = none;  ///< Of an element cut along a line: where that stands in `cuts_`.
+        std::uint32_t line = none;  ///< Of an element cut along a line or into a fan: where that stands among those.
         Cut way = Cut::none;
         Patch::Shape shape = Patch::Shape::parallelogram;
     };
@@ -149,8 +161,10 @@ class ElementTree {
         std::vector<std::uint32_t> first_corner = {0};
         std::vector<Vec2> corners;  ///< of these.
         std::vector<LineCut> cuts;
+        std::vector<Fan> fans;
         std::vector<ElementId> roots;
     };
+    Place in_fan(ElementId e, Vec2 uv) const;
     std::span<const Vec2> cell_domain(ElementId e) const {
         const std::uint32_t* const first = &content_->first_corner[content_->cell[e]];
         return std::span(content_->corners).subspan(first[0], first[1] - first[0]);

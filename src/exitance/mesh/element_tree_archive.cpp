@@ -15,6 +15,7 @@ struct CutMade {
     Cut way = Cut::none;
     double ratio = 0.5;
     CutLine line;
+    std::uint32_t fan_size = 0;  ///< Of a fan: how many places make its border.
 };
 
 }  // namespace
@@ -22,6 +23,7 @@ struct CutMade {
 void archive(ArchiveWriter& a, const ElementTree& tree) {
     std::vector<Root> roots;
     std::vector<CutMade> cuts;
+    std::vector<Vec2> fans;  // apex, then border
     for (ElementId e : tree.ids()) {
         const ElementId parent = tree.parent(e);
         if (parent.is_none()) {
@@ -29,24 +31,36 @@ void archive(ArchiveWriter& a, const ElementTree& tree) {
         } else if (tree.children(parent).front() == e) {
             const Cut way = tree.way(parent);
             cuts.push_back({parent, way, tree.ratio(parent), way == Cut::line ? tree.line(parent) : CutLine{}});
+            if (way != Cut::fan) continue;
+            const Fan& fan = tree.fan(parent);
+            cuts.back().fan_size = static_cast<std::uint32_t>(fan.border.size());
+            fans.push_back(fan.apex);
+            fans.insert(fans.end(), fan.border.begin(), fan.border.end());
         }
     }
-    a(roots, cuts);
+    a(roots, cuts, fans);
 }
 
 void archive(ArchiveReader& a, ElementTree& tree) {
     std::vector<Root> roots;
     std::vector<CutMade> cuts;
-    a(roots, cuts);
+    std::vector<Vec2> fans;
+    a(roots, cuts, fans);
     tree = {};
     std::size_t next = 0;
+    auto fan = fans.begin();
     const auto cut_until = [&](std::size_t size) {
         for (; tree.size() < size && next < cuts.size(); ++next) {
             const CutMade& cut = cuts[next];
-            if (cut.way == Cut::line)
+            if (cut.way == Cut::line) {
                 tree.split_by_line(cut.element, cut.line, 0);
-            else
+            } else if (cut.way == Cut::fan) {
+                const auto border = fan + 1;
+                fan = border + cut.fan_size;
+                tree.split_fan(cut.element, {*(border - 1), {border, fan}});
+            } else {
                 tree.split(cut.element, cut.way, cut.ratio);
+            }
         }
     };
     for (const Root& root : roots) {

@@ -20,6 +20,14 @@ ElementTree well_cut_tree(Patch::Shape shape) {
     tree.split(children[1], shape == Patch::Shape::triangle ? Cut::both : Cut::u, 0.3);
     tree.split_by_line(children[2], {{0.6, 0.8}, 0.45});
     tree.split_by_line(tree.children(children[2])[1], {{-0.8, 0.6}, -0.1});
+    // Around a place within, and around one on a side.
+    const std::vector<Vec2> corners = tree.domain(children[0]);
+    Fan around{tree.centre(children[0]), corners};
+    around.border.push_back(corners[0]);
+    tree.split_fan(children[0], around);
+    Fan from_side{0.4 * corners[0] + 0.6 * corners[1], {corners.begin() + 1, corners.end()}};
+    from_side.border.push_back(corners[0]);
+    tree.split_fan(children[3], from_side);
     return tree;
 }
 
@@ -71,6 +79,15 @@ TEST(ElementTree, ALineThatMissesAnElementCutsNothing) {
     EXPECT_TRUE(tree.split_by_line(ElementId(0), {{1, 0}, 1.5}).is_none());
     EXPECT_TRUE(tree.split_by_line(ElementId(0), {{1, 0}, 0}).is_none());
     EXPECT_TRUE(tree.is_leaf(ElementId(0)));
+}
+
+TEST(ElementTree, AFanWithATriangleOfNoAreaIsNone) {
+    ElementTree tree;
+    tree.add_root(RegionId(0), patch(Patch::Shape::parallelogram));
+    EXPECT_TRUE(tree.split_fan(ElementId(0), {{0, 0}, {{0.5, 0}, {1, 0}, {1, 1}, {0, 1}}}).is_none());
+    EXPECT_TRUE(tree.is_leaf(ElementId(0)));
+    EXPECT_EQ(tree.split_fan(ElementId(0), {{0.5, 0}, {{1, 0}, {1, 1}, {0, 1}, {0, 0}}}), ElementId(1));
+    EXPECT_EQ(tree.children(ElementId(0)).size(), 3u);
 }
 
 TEST_P(EveryShape, DomainsEndWhereTheyAreReached) {

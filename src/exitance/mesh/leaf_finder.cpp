@@ -12,7 +12,8 @@ struct LeafFinder::Builder {
     Field<ElementId, std::uint32_t> number;
     std::size_t leaves_met = 0;
 
-    /// Own coordinates of an element are (root's - origin) x scale: all elements are parallel to their root.
+    /// Own coordinates of an element are (root's - origin) x scale: all but a fan's triangles are parallel to their
+    /// root.
     struct Frame {
         Vec2 origin, scale;
 
@@ -28,13 +29,16 @@ struct LeafFinder::Builder {
     }
     void set(std::uint32_t node, std::size_t side, std::uint32_t part) { out.nodes_[node].part[side] = part; }
 
+    std::uint32_t add_leaf(ElementId e, Vec2 origin, Vec2 du, Vec2 dv) {
+        ++leaves_met;
+        out.leaves_[number[e]] = {origin, du, dv, e, tree.patch(e).shape};
+        return is_leaf | number[e];
+    }
+
     std::uint32_t add(ElementId e, const Frame& frame) {
-        if (tree.is_leaf(e)) {
-            ++leaves_met;
-            out.leaves_[number[e]] = {frame.origin, frame.scale, e, tree.patch(e).shape};
-            return is_leaf | number[e];
-        }
+        if (tree.is_leaf(e)) return add_leaf(e, frame.origin, {frame.scale.x, 0}, {0, frame.scale.y});
         if (tree.way(e) == Cut::line) return add_line(e, frame);
+        if (tree.way(e) == Cut::fan) return add_fan(e, frame);
         return tree.patch(e).is_triangle() ? add_triangle(e, frame) : add_parallelogram(e, frame);
     }
 
@@ -46,6 +50,43 @@ struct LeafFinder::Builder {
             const auto [origin, size] = tree.cell_frame(e, side);
             set(node, side, add(children[side], frame.part(origin, {1 / size.x, 1 / size.y})));
         }
+        return node;
+    }
+
+    /// Lines through the apex. Where the triangles go all around it, the first line parts them in two halves, which
+    /// share the triangle on its far side.
+    std::uint32_t add_fan(ElementId e, const Frame& frame) {
+        const Fan& fan = tree.fan(e);
+        const std::size_t count = fan.border.size() - 1;
+        if (!(fan.border.front() == fan.border.back())) return add_sectors(e, frame, 0, count);
+        const Vec2 start = fan.border[0] - fan.apex;
+        std::size_t far = 0;
+        while (far + 1 < count && cross(start, fan.border[far + 1] - fan.apex) >= 0) ++far;
+        const std::uint32_t node = add_ray(fan, 0, frame);
+        set(node, 1, add_sectors(e, frame, 0, far + 1));
+        set(node, 0, add_sectors(e, frame, far, count));
+        return node;
+    }
+
+    std::uint32_t add_ray(const Fan& fan, std::size_t i, const Frame& frame) {
+        const Vec2 d = fan.border[i] - fan.apex, n = {-d.y, d.x};
+        return add_node(frame, n, dot(n, fan.apex));
+    }
+
+    /// Triangles that together take half a turn at most.
+    std::uint32_t add_sectors(ElementId e, const Frame& frame, std::size_t begin, std::size_t end) {
+        const Fan& fan = tree.fan(e);
+        if (end - begin == 1) {
+            const Vec2 a = fan.border[begin] - fan.apex, b = fan.border[end] - fan.apex, s = frame.scale;
+            const double area = cross(a, b);
+            return add_leaf(tree.children(e)[begin],
+                            {frame.origin.x + fan.apex.x / s.x, frame.origin.y + fan.apex.y / s.y},
+                            {s.x * b.y / area, -s.y * b.x / area}, {-s.x * a.y / area, s.y * a.x / area});
+        }
+        const std::size_t middle = (begin + end) / 2;
+        const std::uint32_t node = add_ray(fan, middle, frame);
+        set(node, 0, add_sectors(e, frame, begin, middle));
+        set(node, 1, add_sectors(e, frame, middle, end));
         return node;
     }
 
@@ -140,8 +181,8 @@ LeafFinder::Found LeafFinder::find(std::size_t root, Vec2 uv) const {
     while (!(part & is_leaf)) part = nodes_[part].part_of(uv);
     const std::uint32_t number = part & ~is_leaf;
     const Leaf& leaf = leaves_[number];
-    const Vec2 own = {(uv.x - leaf.origin.x) * leaf.scale.x, (uv.y - leaf.origin.y) * leaf.scale.y};
-    return {number, into_shape(own, leaf.shape)};
+    const Vec2 from = uv - leaf.origin;
+    return {number, into_shape({dot(leaf.du, from), dot(leaf.dv, from)}, leaf.shape)};
 }
 
 void LeafFinder::find(std::span<Query> queries) const {

@@ -48,7 +48,7 @@ class LeafFinder {
         std::uint32_t part_of(Vec2 uv) const { return part[dot(normal, uv) >= offset ? 1 : 0]; }
     };
     struct Leaf {
-        Vec2 origin, scale;  ///< Own coordinates are (root's - origin) x scale.
+        Vec2 origin, du, dv;  ///< Own coordinates are du and dv . (root's - origin).
         ElementId id;
         Patch::Shape shape;
     };

@@ -23,6 +23,16 @@ ElementTree cut_at_random(int cuts, std::uint64_t seed) {
             tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), 0.2 + 0.6 * random.uniform());
         }
     }
+    // Fans of every third leaf, around its middle or around a place on its first side.
+    for (ElementId leaf : tree.leaves()) {
+        if (leaf.value % 3 != 0) continue;
+        std::vector<Vec2> corners = tree.domain(leaf);
+        corners.push_back(corners[0]);
+        if (leaf.value % 2 == 0)
+            tree.split_fan(leaf, {tree.centre(leaf), corners});
+        else
+            tree.split_fan(leaf, {0.3 * corners[0] + 0.7 * corners[1], {corners.begin() + 1, corners.end()}});
+    }
     return tree;
 }
 

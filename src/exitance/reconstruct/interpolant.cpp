@@ -4,6 +4,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/reconstruct/continuous.hpp"
 
 namespace exitance {
 namespace {
@@ -39,18 +40,15 @@ class Interpolation {
                             {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
             report.error = error();
             report.interrupted = stop.requested();
-            if (report.error <= options_.tolerance || round == options_.max_depth || report.interrupted ||
-                out_.tree.size() > options_.max_elements)
-                break;
+            const bool last =
+                round == options_.max_depth || report.interrupted || out_.tree.size() > options_.max_elements;
+            if (report.error <= options_.tolerance || last) {
+                ElementFunction continuous = join();
+                report.error = error();
+                if (report.error <= options_.tolerance || last) return continuous;
+            }
             active = split_largest(report.error);
         }
-        for (ElementId e : out_.tree.leaves()) {
-            if (out_.first_value.size() < out_.tree.size()) out_.first_value.resize(out_.tree.size());
-            out_.first_value[e] = static_cast<std::uint32_t>(out_.values.size());
-            for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i)
-                out_.add_value(fitted_[e].corners[static_cast<std::size_t>(i)]);
-        }
-        return std::move(out_);
     }
 
   private:
@@ -78,6 +76,43 @@ class Interpolation {
                 rule[i].weight * squared(w * (value[i] - indirect.at(rule[i].uv))) / static_cast<double>(bands);
         if (!options_.light_in.empty()) out.misfit_squared *= relative_weight(e);
         return out;
+    }
+
+    /// The continuous function nearest to all fits. What it is further from the light than they are counts with them.
+    ElementFunction join() {
+        ElementFunction apart;
+        apart.tree = out_.tree;
+        apart.first_value.resize(out_.tree.size());
+        for (ElementId e : out_.tree.leaves()) {
+            apart.first_value[e] = static_cast<std::uint32_t>(apart.values.size());
+            for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i)
+                apart.add_value(fitted_[e].corners[static_cast<std::size_t>(i)]);
+        }
+        ElementFunction out = nearest_continuous(apart, stage_.scene, stage_.contacts);
+        for (auto& value : out.values)  // all light together is nowhere below zero
+            for (float& of_band : value) of_band = std::max(of_band, 0.0f);
+        parallel_for(apart.tree.size(), 64, [&](std::size_t i) {
+            const ElementId e(i);
+            if (apart.tree.is_leaf(e)) fitted_[e].misfit_squared += squared_step(apart, out, e);
+        });
+        return out;
+    }
+
+    /// The mean square of w (a - b) on a leaf of a, which is a leaf or a fan of b.
+    double squared_step(const ElementFunction& a, const ElementFunction& b, ElementId e) const {
+        const Patch& whole = a.tree.patch(e);
+        const Spectrum w = light_weight(stage_.scene.material(a.tree.region(e)));
+        const auto on = [&](ElementId part) {
+            double sum = 0;
+            for (const WeightedPlace& place : element_rule(b.tree, part, RuleOrder::nodes)) {
+                const Spectrum there = a.at({e, whole.coordinates(b.tree.patch(part).at(place.uv))});
+                sum += place.weight * squared(w * (there - b.at({part, place.uv}))) / static_cast<double>(bands);
+            }
+            return b.tree.area(part) / b.tree.area(e) * sum;
+        };
+        double sum = b.tree.is_leaf(e) ? on(e) : 0;
+        for (ElementId part : b.tree.children(e)) sum += on(part);
+        return options_.light_in.empty() ? sum : relative_weight(e) * sum;
     }
 
     /// By which an error counts where rooms are judged apart.

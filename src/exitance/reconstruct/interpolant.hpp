@@ -21,7 +21,8 @@ struct InterpolantReport {
 /// Direct and indirect irradiance together as plain elements, for files and for readers that hold no exact direct
 /// light: the direct projection (less the share of it that `indirect` holds), plus on each of its leaves the polynomial
 /// nearest to the indirect light. Leaves are cut while their misfits together exceed the tolerance, those with the
-/// largest shares first. O(elements x places), and exact direct light for the leaves that are new.
+/// largest shares first. Continuous but where light jumps (`nearest_continuous`). O(elements x places), and exact
+/// direct light for the leaves that are new.
 ElementFunction make_interpolant(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
                                  const Spectrum& direct_share, const InterpolantOptions& options,
                                  InterpolantReport& report, const StopRequest& stop);

@@ -12,17 +12,18 @@ QuickFunction::QuickFunction(const ElementFunction& function, std::size_t region
         const Patch &patch = tree.patch(e), &whole = tree.patch(root[e]);
         const Vec2 middle = whole.coordinates(patch.at(0.5, 0.5));
         Polynomial p{static_cast<float>(middle.x), static_cast<float>(middle.y), {}};
-        // The leaf is parallel to its root: its sides are so long in the root's coordinates, some of them reversed.
+        // The leaf's own coordinates at the middle, and what they gain along the root's. Those of a parallelogram are
+        // parallel to the root's, so that uv is a multiple of uv there.
         const Point origin = whole.at(p.u, p.v);
-        const Vec2 at = patch.coordinates(origin);
-        const double a = dot(patch.a, whole.a) / squared_norm(whole.a),
-                     b = dot(patch.b, whole.b) / squared_norm(whole.b);
+        const Vec2 at = patch.coordinates(origin), along_u = patch.coordinates(origin + whole.a) - at,
+                   along_v = patch.coordinates(origin + whole.b) - at;
         const auto* corner = &function.values[function.first_value[e]];
         for (std::size_t k = 0; k < bands; ++k) {
             const double c0 = corner[0][k], cu = corner[1][k] - c0, cv = corner[patch.is_triangle() ? 2 : 3][k] - c0;
             const double cm = patch.is_triangle() ? 0 : corner[2][k] - c0 - cu - cv;
-            const double value[4] = {c0 + cu * at.x + cv * at.y + cm * at.x * at.y, (cu + cm * at.y) / a,
-                                     (cv + cm * at.x) / b, cm / (a * b)};
+            const double du = cu + cm * at.y, dv = cv + cm * at.x;
+            const double value[4] = {c0 + cu * at.x + cv * at.y + cm * at.x * at.y, du * along_u.x + dv * along_u.y,
+                                     du * along_v.x + dv * along_v.y, cm * along_u.x * along_v.y};
             for (std::size_t i = 0; i < 4; ++i) p.coefficient[i][k] = static_cast<float>(value[i]);
         }
         leaves_.push_back(p);

@@ -17,6 +17,9 @@ class Replay {
           ratio_(file.read<double>(group + "/ratio", 1, parent_.size())),
           line_element_(file.read<std::uint32_t>(group + "/line_element")),
           line_(file.read<double>(group + "/line", 3, line_element_.size())),
+          fan_element_(file.read<std::uint32_t>(group + "/fan_element")),
+          fan_places_(file.read<std::uint32_t>(group + "/fan_places", 1, fan_element_.size())),
+          fan_(file.read<double>(group + "/fan", 2)),
           region_(file.read<std::uint32_t>(group + "/root_region")),
           shape_(file.read<std::uint8_t>(group + "/root_shape", 1, region_.size())),
           patch_(file.read<double>(group + "/root_patch", 9, region_.size())),
@@ -58,9 +61,10 @@ class Replay {
     bool split(ElementTree& tree) {
         const std::size_t first = tree.size();
         const std::uint32_t p = parent_[first];
-        if (p >= first || !tree.is_leaf(ElementId(p)) || cut_[p] == 0 || cut_[p] > 4) return false;
+        if (p >= first || !tree.is_leaf(ElementId(p)) || cut_[p] == 0 || cut_[p] > 5) return false;
         const Cut way = static_cast<Cut>(cut_[p]);
         if (way == Cut::line) return split_by_line(tree, ElementId(p));
+        if (way == Cut::fan) return split_fan(tree, ElementId(p));
         if (!(ratio_[p] > 0 && ratio_[p] < 1) || tree.is_cell(ElementId(p))) return false;
         const std::size_t pieces = way == Cut::both || tree.patch(ElementId(p)).is_triangle() ? 4 : 2;
         if (pieces > parent_.size() - first) return false;
@@ -82,11 +86,34 @@ class Replay {
         return a > 0 && b > 0 && a + b <= 1.5 * tree.area(e);
     }
 
+    /// Fans come in the order in which they were cut.
+    bool split_fan(ElementTree& tree, ElementId e) {
+        if (fans_read_ == fan_element_.size() || fan_element_[fans_read_] != e.value) return false;
+        const std::size_t places = fan_places_[fans_read_++], first = tree.size();
+        if (places < 3 || places > fan_.size() / 2 - fan_places_read_ || places - 2 > parent_.size() - first)
+            return false;
+        Fan fan;
+        for (std::size_t i = 0; i < places; ++i) {
+            const double* at = &fan_[2 * (fan_places_read_ + i)];
+            constexpr double around = 1e-6;  // an element may end so far from its frame by rounding
+            for (int k = 0; k < 2; ++k)
+                if (!(at[k] >= -around && at[k] <= 1 + around)) return false;
+            (i == 0 ? fan.apex : fan.border.emplace_back()) = {at[0], at[1]};
+        }
+        fan_places_read_ += places;
+        for (std::size_t i = 0; i + 2 < places; ++i)
+            if (parent_[first + i] != e.value) return false;
+        return !tree.split_fan(e, fan).is_none();
+    }
+
     std::vector<std::uint32_t> parent_;
     std::vector<std::uint8_t> cut_;
     std::vector<double> ratio_;
     std::vector<std::uint32_t> line_element_;  ///< Ascending.
     std::vector<double> line_;
+    std::vector<std::uint32_t> fan_element_, fan_places_;
+    std::vector<double> fan_;
+    std::size_t fans_read_ = 0, fan_places_read_ = 0;
     std::vector<std::uint32_t> region_;
     std::vector<std::uint8_t> shape_;
     std::vector<double> patch_;
@@ -113,13 +140,21 @@ std::vector<float> leaf_values(const ElementFunction& function) {
 
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function) {
     const ElementTree& tree = function.tree;
-    std::vector<std::uint32_t> parent, line_element, region;
+    std::vector<std::uint32_t> parent, line_element, fan_element, fan_places, region;
     std::vector<std::uint8_t> way, shape;
-    std::vector<double> ratio, line, patches;
+    std::vector<double> ratio, line, fans, patches;
     for (ElementId e : tree.ids()) {
         parent.push_back(tree.parent(e).value);
         way.push_back(static_cast<std::uint8_t>(tree.way(e)));
         ratio.push_back(tree.ratio(e));
+        if (!tree.parent(e).is_none() && tree.way(tree.parent(e)) == Cut::fan &&
+            tree.children(tree.parent(e)).front() == e) {
+            const Fan& fan = tree.fan(tree.parent(e));
+            fan_element.push_back(tree.parent(e).value);
+            fan_places.push_back(static_cast<std::uint32_t>(1 + fan.border.size()));
+            fans.insert(fans.end(), {fan.apex.x, fan.apex.y});
+            for (const Vec2& place : fan.border) fans.insert(fans.end(), {place.x, place.y});
+        }
         if (tree.way(e) != Cut::line) continue;
         line_element.push_back(e.value);
         line.insert(line.end(), {tree.line(e).normal.x, tree.line(e).normal.y, tree.line(e).offset});
@@ -134,10 +169,16 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
     file.make_group(group);
     file.write(in("parent"), parent, 1, {"1", "parent of an element; 4294967295 for a root"});
     file.write(in("cut"), way, 1,
-               {"1", "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line"});
+               {"1",
+                "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line, "
+                "5 into triangles around a place"});
     file.write(in("ratio"), ratio, 1, {"1", "where a cut across one direction stands, in (0, 1)"});
     file.write(in("line_element"), line_element, 1, {"1", "elements that are cut along a line, ascending"});
     file.write(in("line"), line, 3, {"1", "n and d of a cut n . (u, v) = d in the element's coordinates"});
+    file.write(in("fan_element"), fan_element, 1, {"1", "elements that are cut into triangles, in the order of these"});
+    file.write(in("fan_places"), fan_places, 1, {"1", "how many places of `fan` are such an element's"});
+    file.write(in("fan"), fans, 2,
+               {"1", "places in the element's coordinates: apex p, then q_1 ... q_n of triangles (p, q_i, q_i+1)"});
     file.write(in("root_region"), region, 1, {"1", "region of a root"});
     file.write(in("root_shape"), shape, 1, {"1", "shape of a root: 0 parallelogram, 1 triangle"});
     file.write(in("root_patch"), patches, 9, {"m", "origin, a and b of a root: its points are origin + u a + v b"});

@@ -21,8 +21,8 @@ constexpr Hdf5Label label = {"1", "made up"};
 struct Parts {
     std::vector<std::uint32_t> parent = {0xffffffffu, 0, 0, 0, 0}, root_region = {0};
     std::vector<std::uint8_t> cut = {3, 0, 0, 0, 0}, root_shape = {0};
-    std::vector<double> ratio = {0.5, 0.5, 0.5, 0.5, 0.5}, root_patch = {0, 0, 0, 1, 0, 0, 0, 1, 0}, line;
-    std::vector<std::uint32_t> line_element;
+    std::vector<double> ratio = {0.5, 0.5, 0.5, 0.5, 0.5}, root_patch = {0, 0, 0, 1, 0, 0, 0, 1, 0}, line, fan;
+    std::vector<std::uint32_t> line_element, fan_element, fan_places;
     std::vector<float> values = std::vector<float>(16 * bands, 1);
 
     std::string wrong(const std::string& path) const {
@@ -33,6 +33,9 @@ struct Parts {
         out.write("f/ratio", ratio, 1, label);
         out.write("f/line_element", line_element, 1, label);
         out.write("f/line", line, 3, label);
+        out.write("f/fan_element", fan_element, 1, label);
+        out.write("f/fan_places", fan_places, 1, label);
+        out.write("f/fan", fan, 2, label);
         out.write("f/root_region", root_region, 1, label);
         out.write("f/root_shape", root_shape, 1, label);
         out.write("f/root_patch", root_patch, 9, label);
@@ -81,6 +84,30 @@ TEST(HostileSolutions, CutNothingAlongLinesThatMissIt) {
         p.line = line;
         EXPECT_EQ(p.wrong(folder / "f.h5"), "data set f/parent makes no tree at element 1");
     }
+}
+
+TEST(HostileSolutions, MakeNoFansOfNonsense) {
+    const TemporaryFolder folder;
+    Parts good;
+    good.parent = {0xffffffffu, 0, 0, 0}, good.cut = {5, 0, 0, 0}, good.ratio = {0.5, 0.5, 0.5, 0.5};
+    good.fan_element = {0}, good.fan_places = {5}, good.fan = {0.5, 0, 1, 0, 1, 1, 0, 1, 0, 0};
+    good.values.resize(9 * bands);
+    const auto outcome = [&](const auto& change) {
+        Parts p = good;
+        change(p);
+        return p.wrong(folder / "f.h5");
+    };
+    const std::string no_tree = "data set f/parent makes no tree at element 1";
+    EXPECT_EQ(outcome([](Parts&) {}), "");
+    EXPECT_EQ(outcome([](Parts& p) { p.fan_element = {1}; }), no_tree);
+    EXPECT_EQ(outcome([](Parts& p) { p.fan_element = {}, p.fan_places = {}; }), no_tree);
+    EXPECT_EQ(outcome([](Parts& p) { p.fan_places = {6}; }), no_tree);
+    EXPECT_EQ(outcome([](Parts& p) { p.fan_places = {2}; }), no_tree);
+    EXPECT_EQ(outcome([](Parts& p) { p.fan_places = {4294967295u}; }), no_tree);
+    EXPECT_EQ(outcome([](Parts& p) { p.fan[3] = NAN; }), no_tree);
+    EXPECT_EQ(outcome([](Parts& p) { p.fan[2] = 1e300; }), no_tree);
+    EXPECT_EQ(outcome([](Parts& p) { std::swap(p.fan[2], p.fan[6]); }), no_tree);  // clockwise
+    EXPECT_EQ(outcome([](Parts& p) { p.parent[3] = 1; }), no_tree);
 }
 
 TEST(HostileSolutions, SliversCutFromSliversAreNone) {

@@ -1,0 +1,364 @@
+#include "exitance/mesh/conforming.hpp"
+
+#include <algorithm>
+
+#include "exitance/core/disjoint_sets.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/geometry/bvh.hpp"
+#include "exitance/joining/weld.hpp"
+#include "exitance/mesh/planes.hpp"
+
+namespace exitance {
+namespace {
+
+/// A leaf as a polygon, with the corners of others that stand on its sides.
+struct Polygon {
+    ElementId leaf;
+    std::vector<std::uint32_t> vertex;  ///< Welded.
+    std::vector<Vec2> uv;               ///< In the leaf's coordinates.
+    std::vector<bool> is_own;           ///< Not one of another leaf.
+    std::uint32_t first_slot = 0;       ///< The number of the first vertex among all polygons' vertices.
+};
+
+/// A side of a polygon, from its vertex `slot` on.
+struct Side {
+    std::uint32_t from, to;  ///< Vertices.
+    std::uint32_t polygon, slot;
+};
+
+/// The leaves of one plane: what is cut, and which corners share a node.
+class PlaneNodes {
+  public:
+    PlaneNodes(const ElementTree& tree, std::span<const ElementId> leaves, std::span<const ContactLines::Line> jumps)
+        : tree_(tree) {
+        find_vertices(leaves, jumps);
+        insert_hanging_vertices();
+        join_corners(jumps);
+        choose_fans();
+    }
+
+    struct Leaf {
+        ElementId leaf;
+        Fan fan;                          ///< Empty border: the leaf stays.
+        std::vector<std::uint32_t> node;  ///< Of the plane: of the apex, then of the border; of the leaf's corners.
+    };
+    std::vector<Leaf> leaves;
+    std::uint32_t node_count = 0;
+
+  private:
+    void find_vertices(std::span<const ElementId> leaves, std::span<const ContactLines::Line> jumps);
+    void insert_hanging_vertices();
+    void join_corners(std::span<const ContactLines::Line> jumps);
+    void choose_fans();
+    std::vector<Side> sorted_sides() const;
+    std::vector<Side> unmatched_sides() const;
+    struct Hanging;
+    void find_hanging(std::span<const Side> sides, std::vector<std::uint32_t> ends, std::vector<Hanging>& out) const;
+    Leaf with_own_nodes(const Polygon& polygon);
+    Leaf as_fan(const Polygon& polygon, const std::vector<std::uint32_t>& node_of_slot);
+
+    const ElementTree& tree_;
+    std::vector<Point> places_;
+    double tolerance_ = 0;  ///< Metres: places nearer to one another are one.
+    std::vector<std::uint32_t> on_jumps_;
+    std::vector<Polygon> polygons_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_;  ///< Slots that share a node.
+    std::uint32_t slot_count_ = 0;
+};
+
+void PlaneNodes::find_vertices(std::span<const ElementId> leaves, std::span<const ContactLines::Line> jumps) {
+    Box box;
+    for (ElementId leaf : leaves) {
+        Polygon& polygon = polygons_.emplace_back(Polygon{leaf, {}, tree_.domain(leaf), {}});
+        for (const Vec2& uv : polygon.uv) {
+            polygon.vertex.push_back(static_cast<std::uint32_t>(places_.size()));
+            places_.push_back(tree_.patch(leaf).at(uv));
+            box.add(places_.back());
+        }
+    }
+    constexpr double rounding = 1e-9;  // of the surface, and of where it lies
+    tolerance_ = rounding * (norm(box.hi - box.lo) + std::max(norm(box.hi - Point{}), norm(box.lo - Point{})));
+    // Around the end of a line all corners share a node: a jump needs one in the middle, too.
+    const Patch& patch = tree_.patch(leaves.front());
+    for (const ContactLines::Line& line : jumps)
+        for (const Point& place : {line.a, line.b, 0.5 * (line.a + line.b)}) {
+            on_jumps_.push_back(static_cast<std::uint32_t>(places_.size()));
+            places_.push_back(patch.at(patch.coordinates(place)));
+        }
+    const std::vector<std::uint32_t> welded = weld(places_, tolerance_);
+    for (std::uint32_t& v : on_jumps_) v = welded[v];
+    for (Polygon& polygon : polygons_) {
+        for (std::uint32_t& v : polygon.vertex) v = welded[v];
+        for (std::size_t i = polygon.vertex.size(); i-- > 0 && polygon.vertex.size() > 1;)
+            if (polygon.vertex[i] == polygon.vertex[(i + 1) % polygon.vertex.size()]) {
+                polygon.vertex.erase(polygon.vertex.begin() + static_cast<std::ptrdiff_t>(i));
+                polygon.uv.erase(polygon.uv.begin() + static_cast<std::ptrdiff_t>(i));
+            }
+        polygon.is_own.assign(polygon.vertex.size(), true);
+    }
+}
+
+/// All sides, those between the same vertices side by side.
+std::vector<Side> PlaneNodes::sorted_sides() const {
+    std::vector<Side> sides;
+    for (std::uint32_t p = 0; p < polygons_.size(); ++p) {
+        const std::vector<std::uint32_t>& v = polygons_[p].vertex;
+        for (std::uint32_t i = 0; i < v.size(); ++i) sides.push_back({v[i], v[(i + 1) % v.size()], p, i});
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        const auto key = [](const Side& s) {
+            return std::tuple(std::min(s.from, s.to), std::max(s.from, s.to), s.polygon, s.slot);
+        };
+        return key(a) < key(b);
+    });
+    return sides;
+}
+
+bool are_opposite(const Side& a, const Side& b) {
+    return a.from == b.to && a.to == b.from;
+}
+
+std::vector<Side> PlaneNodes::unmatched_sides() const {
+    const std::vector<Side> sides = sorted_sides();
+    std::vector<Side> out;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        if (i + 1 < sides.size() && are_opposite(sides[i], sides[i + 1]))
+            ++i;
+        else
+            out.push_back(sides[i]);
+    }
+    return out;
+}
+
+struct PlaneNodes::Hanging {
+    std::uint32_t polygon, slot, vertex;
+    double at;  ///< In (0, 1) along the side.
+};
+
+/// Which of these vertices stand on which sides?
+void PlaneNodes::find_hanging(std::span<const Side> sides, std::vector<std::uint32_t> ends,
+                              std::vector<Hanging>& out) const {
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    if (ends.empty()) return;
+    std::vector<Box> boxes(ends.size());
+    for (std::size_t i = 0; i < ends.size(); ++i) boxes[i].add(places_[ends[i]]);
+    const Bvh tree(boxes);
+    const Vec3 around{tolerance_, tolerance_, tolerance_};
+    for (const Side& side : sides) {
+        const Point a = places_[side.from], b = places_[side.to];
+        const double length = norm(b - a);
+        Box box;
+        box.add(a), box.add(b);
+        box.lo -= around, box.hi += around;
+        tree.visit_box(box, [&](std::uint32_t i) {
+            if (ends[i] == side.from || ends[i] == side.to) return;
+            const Vec3 w = places_[ends[i]] - a;
+            const double at = dot(w, b - a) / (length * length);
+            if (at <= 0 || at >= 1 || norm(w - at * (b - a)) > tolerance_) return;
+            out.push_back({side.polygon, side.slot, ends[i], at});
+        });
+    }
+}
+
+/// Corners of other leaves, which are ends of sides that match no other, and ends and middles of lines at which light
+/// jumps.
+void PlaneNodes::insert_hanging_vertices() {
+    const std::vector<Side> open = unmatched_sides();
+    std::vector<std::uint32_t> ends;
+    for (const Side& side : open) ends.insert(ends.end(), {side.from, side.to});
+    std::vector<Hanging> found;
+    find_hanging(open, std::move(ends), found);
+    find_hanging(sorted_sides(), on_jumps_, found);
+    // The last first, so that what is inserted moves nothing that is still to come.
+    std::sort(found.begin(), found.end(), [](const Hanging& a, const Hanging& b) {
+        return std::tuple(a.polygon, a.slot, a.at, a.vertex) > std::tuple(b.polygon, b.slot, b.at, b.vertex);
+    });
+    found.erase(std::unique(found.begin(), found.end(),
+                            [](const Hanging& a, const Hanging& b) {
+                                return a.polygon == b.polygon && a.slot == b.slot && a.vertex == b.vertex;
+                            }),
+                found.end());
+    for (const Hanging& h : found) {
+        Polygon& p = polygons_[h.polygon];
+        const auto after = static_cast<std::ptrdiff_t>(h.slot) + 1;
+        p.vertex.insert(p.vertex.begin() + after, h.vertex);
+        p.uv.insert(p.uv.begin() + after, tree_.patch(p.leaf).coordinates(places_[h.vertex]));
+        p.is_own.insert(p.is_own.begin() + after, false);
+    }
+}
+
+/// Does a stretch of a line lie on one at which light jumps?
+class OnJump {
+  public:
+    OnJump(std::span<const ContactLines::Line> jumps, const Normal& n, const Point& in_plane, double tolerance)
+        : tolerance_(tolerance) {
+        std::vector<Box> boxes;
+        const auto foot = [&](const Point& p) { return p - dot(p - in_plane, n) * n; };
+        for (const ContactLines::Line& line : jumps) {
+            lines_.push_back({foot(line.a), foot(line.b), line.height});
+            boxes.emplace_back().add(lines_.back().a);
+            boxes.back().add(lines_.back().b);
+        }
+        tree_ = Bvh(boxes);
+    }
+
+    /// `area`: of the smaller of the two elements that meet there, m^2.
+    bool operator()(const Point& a, const Point& b, double area) const {
+        if (lines_.empty()) return false;
+        constexpr double parallel = 1e-3;
+        const Point middle = 0.5 * (a + b);
+        const Vec3 around{tolerance_, tolerance_, tolerance_};
+        Box box;
+        box.add(middle - around), box.add(middle + around);
+        return tree_.visit_box(box, [&](std::uint32_t i) {
+            const auto& [p, q, height] = lines_[i];
+            const Vec3 d = q - p, side = b - a;
+            if (height > std::max(tolerance_, ContactLines::height_of_jump(area))) return false;
+            if (norm(cross(d, side)) > parallel * norm(d) * norm(side)) return false;
+            const double at = std::clamp(dot(middle - p, d) / squared_norm(d), 0.0, 1.0);
+            return norm(middle - p - at * d) <= tolerance_;
+        });
+    }
+
+  private:
+    std::vector<ContactLines::Line> lines_;
+    Bvh tree_;
+    double tolerance_;
+};
+
+void PlaneNodes::join_corners(std::span<const ContactLines::Line> jumps) {
+    for (Polygon& p : polygons_) p.first_slot = slot_count_, slot_count_ += static_cast<std::uint32_t>(p.vertex.size());
+    if (polygons_.empty()) return;
+    constexpr double off_line = 1e3;  // a cut follows its line less closely than rounding
+    const Patch& patch = tree_.patch(polygons_[0].leaf);
+    const OnJump jumps_at(jumps, patch.normal(), patch.origin, off_line * tolerance_);
+    const std::vector<Side> sides = sorted_sides();
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side &a = sides[i], &b = sides[i + 1];
+        if (!are_opposite(a, b)) continue;
+        ++i;
+        const double area = std::min(tree_.area(polygons_[a.polygon].leaf), tree_.area(polygons_[b.polygon].leaf));
+        if (jumps_at(places_[a.from], places_[a.to], area)) continue;
+        const auto slot = [&](const Side& s, std::uint32_t further) {
+            const Polygon& p = polygons_[s.polygon];
+            return p.first_slot + (s.slot + further) % static_cast<std::uint32_t>(p.vertex.size());
+        };
+        joined_.emplace_back(slot(a, 0), slot(b, 1));
+        joined_.emplace_back(slot(a, 1), slot(b, 0));
+    }
+}
+
+PlaneNodes::Leaf PlaneNodes::with_own_nodes(const Polygon& polygon) {
+    Leaf out{polygon.leaf, {}, {}};
+    for (int i = 0; i < tree_.patch(polygon.leaf).corner_count(); ++i) out.node.push_back(node_count++);
+    return out;
+}
+
+/// Has every triangle an area, beside the element's frame?
+bool has_area(const Fan& fan) {
+    constexpr double least = 1e-6;
+    for (std::size_t i = 1; i < fan.border.size(); ++i)
+        if (cross(fan.border[i - 1] - fan.apex, fan.border[i] - fan.apex) < least) return false;
+    return true;
+}
+
+/// Around the one corner of another leaf that stands on the sides, where there is one alone; a cell without any around
+/// its first corner; else around the middle.
+PlaneNodes::Leaf PlaneNodes::as_fan(const Polygon& polygon, const std::vector<std::uint32_t>& node_of_slot) {
+    const std::size_t n = polygon.vertex.size();
+    const auto hanging = static_cast<std::size_t>(std::count(polygon.is_own.begin(), polygon.is_own.end(), false));
+    const auto node = [&](std::size_t i) { return node_of_slot[polygon.first_slot + i % n]; };
+    Leaf out{polygon.leaf, {}, {}};
+    if (hanging <= 1) {
+        const auto stands = static_cast<std::size_t>(std::find(polygon.is_own.begin(), polygon.is_own.end(), false) -
+                                                     polygon.is_own.begin()) %
+                            n;
+        out.fan.apex = polygon.uv[stands];
+        out.node.push_back(node(stands));
+        for (std::size_t i = stands + 1; i < stands + n; ++i)
+            out.fan.border.push_back(polygon.uv[i % n]), out.node.push_back(node(i));
+        if (has_area(out.fan)) return out;
+        out = {polygon.leaf, {}, {}};
+    }
+    out.fan.apex = tree_.centre(polygon.leaf);
+    out.node.push_back(node_count++);
+    for (std::size_t i = 0; i <= n; ++i) out.fan.border.push_back(polygon.uv[i % n]), out.node.push_back(node(i));
+    return out;
+}
+
+void PlaneNodes::choose_fans() {
+    DisjointSets sets(slot_count_);
+    for (const auto& [a, b] : joined_) sets.unite(a, b);
+    constexpr std::uint32_t unset = 0xffffffffu;
+    std::vector<std::uint32_t> node_of_slot(slot_count_, unset);
+    for (std::uint32_t slot = 0; slot < slot_count_; ++slot) {
+        std::uint32_t& node = node_of_slot[sets.root(slot)];
+        if (node == unset) node = node_count++;
+        node_of_slot[slot] = node;
+    }
+    for (const Polygon& polygon : polygons_) {
+        const std::size_t n = polygon.vertex.size();
+        if (n < 3) {
+            leaves.push_back(with_own_nodes(polygon));
+        } else if (!tree_.is_cell(polygon.leaf) &&
+                   n == static_cast<std::size_t>(tree_.patch(polygon.leaf).corner_count())) {
+            const auto first = node_of_slot.begin() + polygon.first_slot;
+            leaves.push_back({polygon.leaf, {}, {first, first + static_cast<std::ptrdiff_t>(n)}});
+        } else {
+            leaves.push_back(as_fan(polygon, node_of_slot));
+        }
+    }
+}
+
+}  // namespace
+
+SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
+                            const ContactLines& contacts) {
+    const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(tree, plane);
+    const std::size_t planes = leaves.size();
+    std::vector<std::vector<RegionId>> regions(planes);
+    for (RegionId r : plane.ids()) regions[plane[r]].push_back(r);
+    std::vector<std::vector<PlaneNodes::Leaf>> found(planes);
+    std::vector<std::uint32_t> count(planes);
+    parallel_for(planes, 1, [&](std::size_t p) {
+        if (leaves[p].empty()) return;
+        double largest = 0;
+        for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
+        PlaneNodes nodes(tree, leaves[p], contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
+        found[p] = std::move(nodes.leaves);
+        count[p] = nodes.node_count;
+    });
+
+    SharedNodes out;
+    out.first_node.push_back(0);
+    for (std::size_t p = 0; p < planes; ++p) {
+        const std::uint32_t first = out.first_node.back();
+        std::uint32_t more = 0;  // nodes of slivers that could not be cut after all
+        const auto add_leaf = [&](ElementId e, std::initializer_list<std::uint32_t> nodes) {
+            out.first_corner.resize(tree.size());
+            out.first_corner[e] = static_cast<std::uint32_t>(out.node_of.size());
+            out.node_of.insert(out.node_of.end(), nodes);
+        };
+        for (const PlaneNodes::Leaf& leaf : found[p]) {
+            const std::vector<std::uint32_t>& n = leaf.node;
+            const ElementId child = leaf.fan.border.empty() ? ElementId() : tree.split_fan(leaf.leaf, leaf.fan);
+            if (!child.is_none()) {
+                for (std::uint32_t i = 0; i + 1 < leaf.fan.border.size(); ++i)
+                    add_leaf(ElementId(child.value + i), {first + n[0], first + n[i + 1], first + n[i + 2]});
+                continue;
+            }
+            const bool stays = leaf.fan.border.empty();
+            const auto corner = [&](std::size_t i) { return first + (stays ? n[i] : count[p] + more++); };
+            if (tree.patch(leaf.leaf).is_triangle())
+                add_leaf(leaf.leaf, {corner(0), corner(1), corner(2)});
+            else
+                add_leaf(leaf.leaf, {corner(0), corner(1), corner(2), corner(3)});
+        }
+        out.first_node.push_back(first + count[p] + more);
+    }
+    out.first_corner.resize(tree.size());
+    return out;
+}
+
+}  // namespace exitance
