@@ -93,8 +93,10 @@ class DirectLight {
     /// Form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.
     double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
 
-  private:
+    /// A point of region `own` (or none) as visible parts are seen from it: in the region's plane.
     Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
+
+  private:
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
                  Workspace& scratch) const;
     void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch) const;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
@@ -17,6 +18,7 @@
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/solve_archive.hpp"
 #include "exitance/methods/solve_report.hpp"
+#include "exitance/reconstruct/continuous.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/error/certificate.hpp"
 #include "exitance/reconstruct/error/clustering_error.hpp"
@@ -41,6 +43,7 @@ class Solver {
         : progress_(progress), stop_(stop), checkpoints_(checkpoints), solution_{.scene = scene}, stage_(scene) {
         const auto [options, why] = choose_method(stage_, asked);
         options_ = options;
+        may_become_linear_ = asked.method == Method::automatic && options.method == Method::matrix;
         const MethodEntry& method = entry_of(options.method);
         if (!why.empty()) progress.note(fmt::format("method {}: {}", name_in(method_names, method.id), why));
         if (asked.method != Method::automatic && asked.method != method.id)
@@ -122,7 +125,8 @@ class Solver {
     /// All that the steps to come depend on; `phase` is the state within a step, or empty.
     template <class Archive>
     void archive_state(Archive& a, std::string& phase) {
-        a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase);
+        a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase,
+          becomes_linear_);
         a(light_in_, solution_.indirect, solution_.direct_share, solution_.direct_in_elements, solution_.statistics);
         bool has_local_pass = local_pass_.has_value();
         a(has_local_pass);
@@ -138,6 +142,7 @@ class Solver {
         archive_state(reader, resumed_phase_);
         EXI_CHECK(reader.good() && reader.left() == 0);  // the store has checked every byte
         statistics().threads = own.threads, statistics().schedule = own.schedule;
+        if (becomes_linear_) options_.basis = BasisKind::linear;
     }
 
     void keep(std::string phase) {
@@ -198,13 +203,26 @@ class Solver {
             progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}",
                                        100 * certificate_.largest(), 100 * *demand,
                                        finer.method ? "" : ", on the light that the method found"));
-            knobs_ = finer.knobs;
+            const Knobs before = std::exchange(knobs_, finer.knobs);
             if (finer.method) light_.reset();
+            if (finer.method && may_become_linear()) become_linear(before);
             if (options_.memory_limit_bytes) {
                 const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
                 if (!fits || !*fits) return stop_early("memory limit");
             }
         }
+    }
+
+    /// Finer constants need a number of elements and rays that grows with the square of the precision; linear functions
+    /// on the elements there are have a third of their error for three times the rays. So constants are for one
+    /// attempt.
+    bool may_become_linear() const {
+        return may_become_linear_ && !becomes_linear_ && !options_.basis && options_.bounces < 0 && !sums_;
+    }
+    void become_linear(const Knobs& before) {
+        becomes_linear_ = true;
+        knobs_.solve_mesh = before.solve_mesh, knobs_.direct_tolerance = before.direct_tolerance;
+        knobs_.solve_rays = before.solve_rays;
     }
 
     void project_direct() {
@@ -229,7 +247,9 @@ class Solver {
     void attempt() {
         if (step_ == Step::project) {
             fresh_ = !light_;
-            if (fresh_) project_direct();
+            const bool stays = fresh_ && becomes_linear_ && !options_.basis;  // the mesh, and direct light on it
+            if (becomes_linear_) options_.basis = BasisKind::linear, statistics().basis = "linear";
+            if (fresh_ && !stays) project_direct();
             if (stop_.requested()) return;  // where there is no light of another attempt, direct light is all there is
             reach(Step::solve);
         }
@@ -258,8 +278,9 @@ class Solver {
         reach(Step::certify);
         const std::vector<ElementGather> elements = refines() ? parts_to_sum(refined_) : parts_to_sum({&light, 1});
         progress_.phase("certify");
-        CertificateOptions look{.error = options_.error_target(),
-                                .points = CertificateOptions::points_for(solution_.indirect.tree.leaves().size())};
+        CertificateOptions look{
+            .error = options_.error_target(),
+            .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
         if (sums_) look.points /= 2;  // without noise
         if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
         certify_solution(look, options_.error_demand(), elements);
@@ -506,8 +527,9 @@ class Solver {
     Certificate certificate_;
     int attempt_ = 1;
     Step step_ = Step::project;
-    bool fresh_ = true;             ///< Does the method find new light in this attempt?
-    Spectrum share_;                ///< c of that light, see find_direct_share.
+    bool fresh_ = true;                                        ///< Does the method find new light in this attempt?
+    bool may_become_linear_ = false, becomes_linear_ = false;  ///< What the method `matrix` takes for granted.
+    Spectrum share_;                                           ///< c of that light, see find_direct_share.
     std::vector<double> light_in_;  ///< Of every room by the mean light; empty where all is one room.
     std::string resumed_phase_;
     double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.

@@ -164,4 +164,14 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
     return out;
 }
 
+std::size_t elements_of_continuous(const ElementTree& tree) {
+    std::size_t count = 0;
+    for (ElementId e : tree.ids()) {
+        const ElementId parent = tree.parent(e);
+        const bool in_fan = !parent.is_none() && tree.way(parent) == Cut::fan;
+        count += tree.way(e) == Cut::fan || (tree.is_leaf(e) && !in_fan);
+    }
+    return count;
+}
+
 }  // namespace exitance

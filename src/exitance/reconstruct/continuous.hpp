@@ -12,4 +12,7 @@ namespace exitance {
 /// O(n log n); the same bits on any number of threads.
 ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene, const ContactLines& contacts);
 
+/// How many elements a continuous function is made of: its leaves, those of a fan counted as the one they were.
+std::size_t elements_of_continuous(const ElementTree& tree);
+
 }  // namespace exitance

@@ -1,6 +1,8 @@
 #include "exitance/reconstruct/unlit_sides.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/error/path_tracer.hpp"
@@ -39,21 +41,27 @@ std::vector<Side> sides_of_sheets(const Stage& stage) {
     return out;
 }
 
+/// Paths first: they find what light there is nearly everywhere, where exact direct light may cost thousands of times
+/// as much.
 bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsigned paths, std::uint64_t seed) {
     const Normal& n = stage.scene.regions()[side.region].plane.n;
     const ScrambledSobol where(hash(seed, static_cast<std::uint64_t>(Stream::reference), side.region.value));
-    ClusteredLight::Workspace workspace;
-    constexpr LightAccuracy any_light{.relative = 0.1};
+    std::vector<std::pair<Point, unsigned>> open;
     for (unsigned i = 0; i < places; ++i) {
         const Point x = side.at(where(i, 0), where(i, 1), where(i, 2));
-        if (stage.occluders.is_covered(x, n, side.region)) continue;
-        if (max(stage.clustered.at(x, n, side.region, any_light, workspace).irradiance) > 0) return true;
+        if (!stage.occluders.is_covered(x, n, side.region)) open.emplace_back(x, i);
+    }
+    for (const auto& [x, i] : open) {
         RandomStream random(seed, Stream::reference, side.region.value, i);
         const ScrambledSobol directions(hash(random.key(), 1u));
         for (unsigned p = 0; p < paths; ++p)
             if (max(tracer.path({x, n, side.region}, directions(p, 0), directions(p, 1), random)) > 0) return true;
     }
-    return false;
+    ClusteredLight::Workspace workspace;
+    constexpr LightAccuracy any_light{.relative = 0.1};
+    return std::any_of(open.begin(), open.end(), [&](const auto& place) {
+        return max(stage.clustered.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
+    });
 }
 
 }  // namespace

@@ -30,12 +30,35 @@ DirectFit fit_at_places(const Stage& stage, const ElementTree& tree, ElementId e
     return out;
 }
 
-DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, const ReceiverLight& light,
+/// Leaves noise in a fit to values whose noise has the mean square `noise`, by weight w: it has as many freedoms as the
+/// element has corners, as much of the noise stays in it, and the rest looks like misfit.
+void count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit& fit) {
+    const double places = static_cast<double>(element_rule(tree, e, RuleOrder::fine).size());
+    const double kept = std::min(1.0, tree.patch(e).corner_count() / places);
+    constexpr double seldom = 2;  // of noise alone, the squares of a few freedoms are seldom more than this
+    fit.misfit_squared = std::max(0.0, fit.misfit_squared - seldom * (1 - kept) * noise) + kept * noise;
+}
+
+/// Exact, but where rays find what is hidden for less (`CrowdedLight`). `allowed`: mean square of w (E - polynomial)
+/// that noise may leave; 0: exact.
+DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, ReceiverLight& light,
                      DirectLight::Workspace& workspace) {
     if (light.is_dark()) return {};
-    return fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
-        return stage.direct.irradiance(light, x, workspace, &parallel);
+    const double w = mean(light_weight(stage.scene.material(tree.region(e))));
+    unsigned rays = 0;
+    const std::vector<ReceiverLight::Source> crowded =
+        stage.crowded.take_crowded(light, tree.patch(e).at(tree.centre(e)), allowed / (w * w), workspace, rays);
+    double noise = 0, places = 0;
+    DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
+        Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
+        if (!crowded.empty()) {
+            const CrowdedLight::Estimate more = stage.crowded.at(light, crowded, x, rays, workspace);
+            E += more.irradiance, noise += more.variance, ++places;
+        }
+        return E;
     });
+    if (noise > 0) count_noise(tree, e, w * w * noise / places, out);
+    return out;
 }
 
 /// What clusters of emitters may miss at one place of an element that an error of `allowed` is left to.
@@ -45,8 +68,6 @@ LightAccuracy accuracy_on(const Stage& stage, RegionId region, double allowed) {
     return {at_least, of_error * std::sqrt(allowed) / mean(light_weight(stage.scene.material(region)))};
 }
 
-/// The nearest polynomial has as many freedoms as the element has corners: as much of the noise stays in it, and the
-/// rest looks like misfit.
 DirectFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                        ClusteredLight::Workspace& workspace) {
     const RegionId region = tree.region(e);
@@ -61,10 +82,7 @@ DirectFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e,
         return at.irradiance;
     });
     const double w = mean(light_weight(stage.scene.material(region)));
-    noise *= w * w / places;
-    const double kept = std::min(1.0, tree.patch(e).corner_count() / places);
-    constexpr double seldom = 2;  // of noise alone, the squares of a few freedoms are seldom more than this
-    out.misfit_squared = std::max(0.0, out.misfit_squared - seldom * (1 - kept) * noise) + kept * noise;
+    count_noise(tree, e, w * w * noise / places, out);
     return out;
 }
 
@@ -81,16 +99,19 @@ bool suits_clusters(const Stage& stage, const ElementTree& tree, ElementId e, do
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                            DirectFitRoom& room) {
-    return suits_clusters(stage, tree, e, allowed, room.clustered)
-               ? fit_clusters(stage, tree, e, allowed, room.clustered)
-               : fit_direct_light(stage, tree, e, room.light, room.clustered.exact);
+    if (suits_clusters(stage, tree, e, allowed, room.clustered))
+        return fit_clusters(stage, tree, e, allowed, room.clustered);
+    const RegionId region = tree.region(e);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, room.light,
+                         room.clustered.exact);
+    return fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
 }
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace) {
     const RegionId region = tree.region(e);
     stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, light, workspace);
-    return fit_values(stage, tree, e, light, workspace);
+    return fit_values(stage, tree, e, 0, light, workspace);
 }
 
 namespace {
@@ -145,7 +166,7 @@ DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementI
         return fit_clusters(stage, tree, e, allowed, room.clustered);
     stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, of.strong, room.light,
                          room.clustered.exact);
-    DirectFit out = fit_values(stage, tree, e, room.light, room.clustered.exact);
+    DirectFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
     for (Spectrum& corner : out.corners) corner += of.weak;
     out.mean += of.weak;
     // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
@@ -244,7 +265,9 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         return static_cast<unsigned>(
             std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
     };
-    double share = many ? share_of(estimated_flux(stage, out.tree, active, options.seed, stop)) : 0;
+    // Where elements are many, the first of them are to know what they may leave, too.
+    const bool estimates = active.size() > few && stage.direct.beams().empty();
+    double share = estimates ? share_of(estimated_flux(stage, out.tree, active, options.seed, stop)) : 0;
     std::vector<double> share_in;               // of the rooms, where there are several
     const auto allowed_on = [&](ElementId e) {  // (W/m^2)^2 m^2
         if (share_in.empty()) return share;

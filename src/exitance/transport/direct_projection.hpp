@@ -51,8 +51,9 @@ struct DirectFitRoom {
 };
 
 /// Of one element, by values at the places of its fine rule: by clusters of emitters where that pays
-/// (`ClusteredLight`), else exact. `allowed`: mean square of w (E - polynomial) that noise may leave, (W/m^2)^2. Noise
-/// is no misfit, but what it leaves in the polynomial is.
+/// (`ClusteredLight`), with rays to sources that many things stand before (`CrowdedLight`), else exact. `allowed`: mean
+/// square of w (E - polynomial) that noise may leave, (W/m^2)^2. Noise is no misfit, but what it leaves in the
+/// polynomial is.
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                            DirectFitRoom& room);
 

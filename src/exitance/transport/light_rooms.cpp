@@ -16,8 +16,10 @@ constexpr double widest_opening = 0.1;  ///< Of the smaller room's walls.
 constexpr double narrower = 0.5;        ///< An opening, than cuts on either side of it.
 constexpr double beside = 0.2;          ///< Of the smaller room's walls: how far off these are.
 constexpr double least_share = 0.05;    ///< Of a room in what is no ground or sky.
+constexpr double least_detail = 0.001;  ///< Of a small room beside ground and sky in all elements.
 constexpr double far_larger = 20;       ///< Ground and sky than all else, from corner to corner.
 constexpr double flattest = 0.1;        ///< A room's height by its length; below, it is a gap.
+constexpr double thinnest = 0.03;       ///< How far off what walls see is, by the root of their area; likewise.
 constexpr int steps =
     60;  ///< Of light to and fro, half of which stays: what an opening of a twentieth joins differs by a third still.
 constexpr std::size_t fewest_walls = 4;  ///< Of a room.
@@ -109,19 +111,21 @@ Cuts sweep(const Flow& flow, const Leaves& order, std::uint16_t part) {
 /// Elements that light joins, and what they enclose.
 struct Part {
     Leaves leaves;
-    double area = 0;  ///< m^2
+    double area = 0;    ///< m^2
+    double volume = 0;  ///< Areas times how high what they see is above them, m^3.
     Box box;
 
     void add(const Part& other) {
         if (other.leaves.empty()) return;
         leaves.insert(leaves.end(), other.leaves.begin(), other.leaves.end());
         area += other.area;
+        volume += other.volume;
         box.add(other.box.lo), box.add(other.box.hi);
     }
-    /// Not so a gap, or a single wall.
+    /// Not so a gap, several gaps, or a single wall.
     bool may_be_room() const {
         const Vec3 size = box.size();
-        return leaves.size() >= fewest_walls &&
+        return leaves.size() >= fewest_walls && volume >= thinnest * std::pow(area, 1.5) &&
                std::min({size.x, size.y, size.z}) >= flattest * std::max({size.x, size.y, size.z});
     }
 };
@@ -155,12 +159,26 @@ class RoomFinder {
 
   private:
     Part part_of(Leaves leaves) const {
-        Part part{std::move(leaves), 0, {}};
+        Part part;
+        part.leaves = std::move(leaves);
         for (std::uint32_t i : part.leaves) {
             part.area += flow_.area[i];
+            part.volume += flow_.area[i] * height_seen(i);
             for (const Point& p : tree_.outline(numbering_.leaves[i])) part.box.add(p);
         }
         return part;
+    }
+
+    /// How high the elements that one sees are above its plane, on average over its rays, metres.
+    double height_seen(std::uint32_t i) const {
+        const Patch& patch = tree_.patch(numbering_.leaves[i]);
+        const Normal n = patch.normal();
+        double sum = 0;
+        std::size_t met = 0;
+        for (std::uint32_t j : flow_.rows.hits(i))
+            if (j != RayRows::missed)
+                sum += std::max(0.0, dot(n, tree_.patch(numbering_.leaves[j]).centre() - patch.centre())), ++met;
+        return met > 0 ? sum / static_cast<double>(met) : std::sqrt(flow_.area[i]);
     }
 
     void sort() {
@@ -202,6 +220,8 @@ class RoomFinder {
     bool counts(const Part& part) const {
         if (!part.may_be_room()) return false;
         if (part.area >= least_share * total_) return true;
+        if (static_cast<double>(part.leaves.size()) < least_detail * static_cast<double>(flow_.area.size()))
+            return false;
         Box inner = inner_;
         inner.add(part.box.lo), inner.add(part.box.hi);
         return whole_.diagonal() >= far_larger * inner.diagonal();

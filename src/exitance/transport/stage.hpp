@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exitance/direct/clustered_light.hpp"
+#include "exitance/direct/crowded_light.hpp"
 #include "exitance/mesh/contact_lines.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
 #include "exitance/transport/light_rooms.hpp"
@@ -25,7 +26,8 @@ struct Stage {
           tracer(s),
           occluders(s),
           direct(s, occluders),
-          clustered(direct, tracer) {
+          clustered(direct, tracer),
+          crowded(direct, tracer) {
         leave_out({});
     }
     Stage(const Stage&) = delete;
@@ -38,7 +40,8 @@ struct Stage {
     RayTracer tracer;
     Occluders occluders;
     DirectLight direct;
-    ClusteredLight clustered;  ///< The same where emitters are many and small.
+    ClusteredLight clustered;  ///< The same where emitters are many and small,
+    CrowdedLight crowded;      ///< and where many things stand before them.
     /// Sides of sheets that no light reaches are no surfaces to anybody: they do not count in `area` and are not cut
     /// into elements in advance. Light that comes there after all is treated as everywhere.
     void leave_out(Field<RegionId, std::uint8_t> sides) {

@@ -214,7 +214,7 @@ double rms_standard_error(const Stage& stage, const GlobalLight& light) {
 }
 
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) {
-    constexpr double least = 1e-6;
+    constexpr double black = 1e-3;  // beside the brightest room: so dark a room may be off by as much of that one
     const double mean_light = light.mean_reflected(stage.area);
     if (stage.rooms.count() == 0 || mean_light <= 0) return {};
     std::vector<double> out(stage.rooms.count());
@@ -223,7 +223,8 @@ std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) 
         const std::size_t room = stage.rooms.of(light.tree, e);
         out[room] += light.tree.area(e) * mean(light.reflected[i]) / (stage.rooms.area(room) * mean_light);
     }
-    for (double& value : out) value = std::max(value, least);
+    const double brightest = *std::max_element(out.begin(), out.end());
+    for (double& value : out) value = std::max(value, black * brightest);
     return out;
 }
 

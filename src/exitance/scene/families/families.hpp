@@ -29,6 +29,17 @@ PolygonKit make_chair(const FamilyValues& values);
 PolygonKit make_float(const FamilyValues& values);
 PolygonKit make_spiral(const FamilyValues& values);
 
+// Closed rooms whose light is hard to find.
+PolygonKit make_cove(const FamilyValues& values);
+PolygonKit make_blinds(const FamilyValues& values);
+PolygonKit make_clutter(const FamilyValues& values);
+PolygonKit make_gaps(const FamilyValues& values);
+PolygonKit make_door(const FamilyValues& values);
+PolygonKit make_keyhole(const FamilyValues& values);
+PolygonKit make_bright(const FamilyValues& values);
+PolygonKit make_tree(const FamilyValues& values);
+PolygonKit make_lightwell(const FamilyValues& values);
+
 /// A value as a file name carries it: 0.7 is 0p7.
 std::string in_a_name(double value);
 
