@@ -80,6 +80,7 @@ std::string statistics_json(const SolveStatistics& s) {
         {"relative_error_bound", value_or_null(s.relative_error_bound)},
         {"relative_error_estimate_interpolant", value_or_null(s.relative_error_estimate_interpolant)},
         {"relative_error_estimate_worst_room", value_or_null(s.relative_error_estimate_worst_room)},
+        {"error_p99", value_or_null(s.error_p99)},
         {"rooms", rooms},
         {"standard_error", s.standard_error > 0 ? Json(s.standard_error) : Json(nullptr)},
         {"energy",

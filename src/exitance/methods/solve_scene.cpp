@@ -172,6 +172,7 @@ class Solver {
     void tell_exact() {
         statistics().relative_error_estimate = statistics().relative_error_bound = 0;
         statistics().relative_error_estimate_worst_room = 0;
+        statistics().error_p99 = 0;
         statistics().rooms = {{stage_.area, 0, 0}};
     }
 

@@ -58,6 +58,7 @@ struct SolveStatistics {
     /// Of what `probe` evaluates, and the same as an upper bound; none where a run was stopped before its first
     /// estimate.
     std::optional<double> relative_error_estimate, relative_error_bound;
+    std::optional<double> error_p99;  ///< What the error is below on 99% of the area, relative like the estimate.
     std::optional<double> relative_error_estimate_interpolant;  ///< Of what `export` writes; likewise.
     std::vector<RoomError> rooms;                               ///< The largest first; one, where all is one room.
     std::optional<double> relative_error_estimate_worst_room;   ///< Of what `probe` evaluates.

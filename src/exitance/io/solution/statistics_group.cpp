@@ -23,6 +23,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("relative_error_bound", s.relative_error_bound);
     visit("relative_error_estimate_interpolant", s.relative_error_estimate_interpolant);
     visit("relative_error_estimate_worst_room", s.relative_error_estimate_worst_room);
+    visit("error_p99", s.error_p99);
     visit("standard_error", s.standard_error);
     visit("energy_emitted", s.energy.emitted);
     visit("energy_absorbed", s.energy.absorbed);

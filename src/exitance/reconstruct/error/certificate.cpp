@@ -1,6 +1,9 @@
 #include "exitance/reconstruct/error/certificate.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <utility>
+#include <vector>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/transport/ray_rows.hpp"
@@ -103,6 +106,16 @@ constexpr std::size_t local_every = 4;
 
 constexpr std::size_t batches = 32;   ///< Of samples, for the spread of their mean.
 constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
+
+/// The value that so large a share of the weights belong to none above.
+double quantile(std::vector<std::pair<double, double>> weighted, double share) {
+    std::sort(weighted.begin(), weighted.end());
+    double all = 0, below = 0;
+    for (const auto& [value, weight] : weighted) all += weight;
+    for (const auto& [value, weight] : weighted)
+        if ((below += weight) >= share * all) return value;
+    return weighted.empty() ? 0 : weighted.back().first;
+}
 
 /// The mean of batches, and how uncertain it is.
 struct BatchMean {
@@ -288,13 +301,15 @@ Certificate Certifier::Content::judge() {
     Certificate out{.constant = constant, .mean_reflected = mean_reflected, .points = samples.size(), .rays = H.rays()};
     const std::vector<Spectrum> response = late_response();
     std::array<double, batches> residual_squared{}, error_squared{};
+    std::vector<std::pair<double, double>> squares;  // and how much of the area has them
     double local_squared = 0, method_squared = 0, told = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
         const double weight = s.weight / static_cast<double>(looks);
         const Spectrum& late = response[s.leaf];
         residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
-        error_squared[k % batches] += weight * batches * mean((s.r1 + late) * (s.r2 + late));
+        squares.emplace_back(mean((s.r1 + late) * (s.r2 + late)), weight);
+        error_squared[k % batches] += weight * batches * squares.back().first;
         if (s.tells_local) {
             told += weight;
             local_squared += weight * mean(s.local1 * s.local2);
@@ -313,6 +328,7 @@ Certificate Certifier::Content::judge() {
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
     out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
     out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
+    out.p99 = std::sqrt(std::max(0.0, quantile(std::move(squares), 0.99))) / mean_reflected;
     judge_rooms(response, out);
     return out;
 }
