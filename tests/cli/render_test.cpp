@@ -44,6 +44,34 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
     EXPECT_EQ(run_program({"render", solution, "-o", folder / "absent/room.png", "--size", "4x4"}).status, 5);
 }
 
+TEST(ProgramRender, ShowsOrdersOfEdgesAndShadowClassesOfADiscontinuityMesh) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder), plain = folder / "plain.h5", meshed = folder / "meshed.h5";
+    ASSERT_EQ(run_program({"solve", scene, "-o", plain, "--error", "0.1", "-q"}).status, 0);
+    ASSERT_EQ(run_program(
+                  {"solve", scene, "-o", meshed, "--method", "discontinuity", "--bounces", "0", "--error", "0.1", "-q"})
+                  .status,
+              0);
+    const auto render = [&](const std::string& solution, const std::string& picture,
+                            const std::vector<std::string>& more) {
+        std::vector<std::string> words = {"render", solution, "-o",        folder / picture,
+                                          "--size", "40x25",  "--samples", "1"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_program(words);
+    };
+    for (const char* name : {"--mesh", "--shadow-classes"}) {
+        const Finished run = render(meshed, "events.png", {name});
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_TRUE(read_text(folder / "events.png").starts_with("\x89PNG"));
+    }
+    EXPECT_EQ(render(meshed, "both.png", {"--mesh", "--shadow-classes", "--isolux"}).status, 0);
+    const Finished refused = render(plain, "none.png", {"--shadow-classes"});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("--method discontinuity"), std::string::npos) << refused.err;
+    EXPECT_EQ(render(meshed, "events.exr", {"--shadow-classes"}).status, 2);
+    EXPECT_EQ(render(meshed, "events.png", {"--shadow-classes", "--false-colour", "illuminance"}).status, 2);
+}
+
 TEST(ProgramRender, KnowsProjectionsAndWritesLinearPictures) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";

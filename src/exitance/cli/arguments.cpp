@@ -448,7 +448,11 @@ void declare(CLI::App& app, RenderArguments& arguments) {
         ->group("PNG")
         ->each([&arguments](const std::string&) { arguments.has_scale = true; });
     app.add_flag("--isolux", arguments.isolux, "Draw lines of equal illuminance, with their values")->group("PNG");
-    app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges")->group("PNG");
+    app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges; those of a discontinuity mesh coloured by order")
+        ->group("PNG");
+    app.add_flag("--shadow-classes", arguments.shadow_classes,
+                 "Faces of a discontinuity mesh as lit, penumbra and umbra, with a legend")
+        ->group("PNG");
     declare_work(app, arguments, arguments.threads);
 }
 

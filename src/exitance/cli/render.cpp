@@ -11,6 +11,7 @@
 #include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/linear_image.hpp"
+#include "exitance/io/pictures/mesh_colours.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -28,9 +29,12 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
                      "name the output something.png");
     if (a.has_scale && !a.false_colour && !a.isolux)
         return usage("has nothing to colour", "--scale, --bands, --palette", "they go with --false-colour or --isolux");
-    if (end != ".png" && (a.false_colour || a.isolux || a.mesh))
+    if (end != ".png" && (a.false_colour || a.isolux || a.mesh || a.shadow_classes))
         return usage(fmt::format("{} holds radiance, and nothing is drawn into it", end), a.output,
-                     "--false-colour, --isolux and --mesh go with .png");
+                     "--false-colour, --isolux, --mesh and --shadow-classes go with .png");
+    if (a.false_colour && a.shadow_classes)
+        return usage("shows classes, --false-colour values, and a pixel has one colour", "--shadow-classes",
+                     "make a picture of each");
     if (a.gather > 0 && (!std::has_single_bit(a.gather) || a.gather > 1 << 20))
         return usage(fmt::format("{} is not a power of two from 4 to 1048576", a.gather), "--gather", "");
     const double most = a.projection == Projection::fisheye ? 360 : 170;
@@ -61,10 +65,22 @@ Image develop(const RenderArguments& arguments, const Picture& picture, ImageTex
 Result<void> write_display(const RenderArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                            const Picture& picture, Terminal& terminal) {
     ImageTexts texts{{"Software", "exitance"}, {"Camera", describe(camera)}};
-    Image image = develop(arguments, picture, texts, terminal);
-    if (arguments.mesh)
+    const SixNodeMesh& mesh = light.solution().discontinuity;
+    const Scene& scene = light.solution().scene;
+    MeshView view;
+    std::vector<KeyEntry> key;
+    if (!mesh.empty() && (arguments.mesh || arguments.shadow_classes))
+        view = view_mesh(mesh, scene, light.stage().tracer, camera, arguments.size);
+    if (arguments.shadow_classes) key = shadow_class_key();
+    Image image =
+        arguments.shadow_classes ? shadow_class_image(mesh, scene, view) : develop(arguments, picture, texts, terminal);
+    if (arguments.mesh && !mesh.empty()) {
+        draw_ordered_edges(image, mesh_edges(mesh, view));
+        for (const KeyEntry& entry : edge_order_key()) key.push_back(entry);
+    } else if (arguments.mesh)
         draw_edges(image, element_edges(light.solution(), light.stage().tracer, camera, arguments.size));
-    const bool photometric = light.solution().scene.is_photometric();
+    if (!key.empty()) draw_key(image, key);
+    const bool photometric = scene.is_photometric();
     if (arguments.isolux)
         draw_isolux(image, picture, make_colour_scale(picture, Quantity::illuminance, arguments.scale),
                     title(Quantity::illuminance, photometric));
@@ -93,13 +109,18 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
 
+    if (arguments.shadow_classes && solution->discontinuity.empty())
+        return terminal.fail(Error{ErrorCode::usage, "the solution has no faces with shadow classes",
+                                   "--shadow-classes", "solve with --method discontinuity"});
+
     const RadiosityFunction light(*solution);
     const Result<Camera> camera = choose_camera(arguments, light);
     if (!camera) return terminal.fail(camera.error());
     if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(*camera)));
     PictureOptions options{*camera, arguments.size, static_cast<int>(arguments.samples)};
     options.gather = static_cast<unsigned>(arguments.gather);
-    const Picture picture = take_picture(light, options, terminal.progress(), stop);
+    const bool shows_light = !arguments.shadow_classes || arguments.isolux;
+    const Picture picture = shows_light ? take_picture(light, options, terminal.progress(), stop) : Picture{};
     terminal.progress().finish();
     const Result<void> written = ending(arguments.output) == ".png"
                                      ? write_display(arguments, light, *camera, picture, terminal)

@@ -131,7 +131,7 @@ class Builder {
             }
         });
         for (std::uint32_t f = 0; f < lights_.size(); ++f) {
-            const ShadowClass c = class_of(f);
+            const ShadowClass c = class_of(f, mesh_.centre(f));
             ++(c == ShadowClass::lit        ? report_.counts.lit
                : c == ShadowClass::penumbra ? report_.counts.penumbra
                                             : report_.counts.umbra);
@@ -165,11 +165,11 @@ class Builder {
         return out;
     }
 
-    ShadowClass class_of(std::uint32_t face) const {
+    /// `centre`: of the face, or of a triangle of it.
+    ShadowClass class_of(std::uint32_t face, const Point& centre) const {
         const ReceiverLight& light = lights_[face];
         if (light.is_dark()) return ShadowClass::umbra;
         if (!light.is_unshadowed()) return ShadowClass::penumbra;
-        const Point centre = mesh_.centre(face);
         std::size_t facing = 0;
         for (const DirectLight::Emitter& e : stage_.direct.emitters()) {
             if (e.region == light.own || e.plane.signed_distance(centre) <= 0) continue;
@@ -307,24 +307,22 @@ class Builder {
             }
             return number[node];
         };
-        for (const BisectionMesh::Triangle& t : mesh_.triangles()) {
+        std::vector<std::optional<ShadowClass>> classes(lights_.size());
+        for (std::uint32_t index = 0; index < mesh_.triangles().size(); ++index) {
+            const BisectionMesh::Triangle& t = mesh_.triangles()[index];
             std::array<std::uint32_t, 6> nodes;
             for (std::size_t k = 0; k < 3; ++k) nodes[k] = add(t.corner[k]), nodes[3 + k] = add(t.middle[k]);
             out.nodes.push_back(nodes);
             out.region.push_back(region_[t.face]);
             out.edge_order.push_back(t.order);
-            out.shadow.push_back(class_of_light(t.face));
+            std::optional<ShadowClass>& shadow = classes[t.face];
+            if (!shadow) shadow = class_of(t.face, mesh_.centre(index));
+            out.shadow.push_back(*shadow);
         }
         out.curves = curves_;
         report_.counts.triangles = out.size();
         report_.counts.mean_radius_ratio = out.mean_radius_ratio();
         return out;
-    }
-
-    /// Faces that were renewed lie within others.
-    ShadowClass class_of_light(std::uint32_t face) const {
-        if (lights_[face].is_dark()) return ShadowClass::umbra;
-        return lights_[face].is_unshadowed() ? ShadowClass::lit : ShadowClass::penumbra;
     }
 
     /// RMS over all surfaces of w (E - mesh), W/m^2.

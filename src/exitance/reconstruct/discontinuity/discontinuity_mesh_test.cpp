@@ -40,6 +40,24 @@ TEST(DiscontinuityMesh, TheBlockersCurvesStandWhereTheClosedFormSays) {
     EXPECT_EQ(found, (std::set<long>{-1173077, -365385, 365385, 1173077}));
 }
 
+TEST(DiscontinuityMesh, FacesAreLitHalfShadowedOrDarkWhereTheClosedFormSays) {
+    const auto class_at = [](const Scene& scene, const Point& p) {
+        const Solution s = meshed(scene, 0.02);
+        const auto place = SixNodeLocator(s.discontinuity, s.scene).find(RegionId(0), p);
+        return s.discontinuity.shadow[place.triangle];
+    };
+    // The umbra ends at 0.3654 m, the penumbra at 1.1731 m.
+    EXPECT_EQ(class_at(blocker(0), {0, 0.05, 0}), ShadowClass::umbra);
+    EXPECT_EQ(class_at(blocker(0), {0.7, 0.05, 0}), ShadowClass::penumbra);
+    EXPECT_EQ(class_at(blocker(0), {1.5, 0.05, 0}), ShadowClass::lit);
+    // A second source is seen whole from below the blocker, where the first one is hidden: that is half-shadow.
+    const Scene two = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                                  {{{-0.5, -0.5, 0.7}, {0.5, -0.5, 0.7}, {0.5, 0.5, 0.7}, {-0.5, 0.5, 0.7}}, 0},
+                                  {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100},
+                                  {{{1.6, 0.1, 1}, {1.9, 0.1, 1}, {1.9, -0.1, 1}, {1.6, -0.1, 1}}, 100}});
+    EXPECT_EQ(class_at(two, {0, 0.05, 0}), ShadowClass::penumbra);
+}
+
 TEST(DiscontinuityMesh, ATurnedBlockersCurvesAreThoseOfAllPairsOfCornersAndEdges) {
     const double turn = pi / 6;
     const Solution s = meshed(blocker(turn), 0.01);
