@@ -103,6 +103,7 @@ std::string statistics_json(const SolveStatistics& s) {
         json["faces"] = {{"lit", d->lit}, {"penumbra", d->penumbra}, {"umbra", d->umbra}};
         json["triangles"] = d->triangles, json["mean_radius_ratio"] = d->mean_radius_ratio;
     }
+    for (const auto& [name, value] : s.figures) json[name] = value;
     return dump(json, 2);
 }
 
@@ -142,6 +143,8 @@ std::string options_json(const SolveOptions& o) {
         {"importance", o.importance.empty() ? Json(nullptr) : Json(fingerprint(o.importance))},
         {"form_factors", name_or_null(form_factor_names, o.form_factors)},
         {"oracle", name_in(oracle_names, o.oracle)},
+        {"threshold", value_or_null(o.threshold)},
+        {"task_engine", o.task_engine},
         {"hemicube_cells", value_or_null(o.hemicube_cells)},
         {"keep_links", o.keep_links},
         {"seed", o.seed},
