@@ -4,12 +4,15 @@
 //     exitance-task-schedules SCENE.obj [-o F.csv] [--threshold W] [--min-area M2] [--repeats N]
 //
 // Wall seconds are the least of so many repeats. A row a schedule, machine and number of processors; `measured` rows
-// have the engine's own time, `simulated` ones that of `simulate_schedule`.
+// have the engine's own time, `busiest` ones the processor time of the busiest thread of every iteration (the wall
+// clock of a machine with nothing else to do), `simulated` ones that of `simulate_schedule`.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
@@ -23,8 +26,21 @@ using namespace exitance;
 
 struct Measured {
     double wall = std::numeric_limits<double>::infinity(), processor = wall;
+    double busiest = wall;  ///< Processor time of the busiest thread, iteration by iteration, and what is serial.
     std::size_t stolen = 0;
 };
+
+/// What the wall clock would have told on a machine with nothing else to do.
+double busiest_seconds(const TaskGraph& graph) {
+    double sum = 0;
+    for (const TaskGraph::Iteration& iteration : graph.iterations) {
+        std::vector<double> of_worker(graph.workers, 0);
+        for (std::size_t t = iteration.first_task; t < iteration.first_task + iteration.task_count; ++t)
+            of_worker[graph.tasks[t].worker] += graph.tasks[t].cost();
+        sum += *std::max_element(of_worker.begin(), of_worker.end()) + iteration.serial;
+    }
+    return sum;
+}
 
 /// The least of the repeats; the graph of the one with the least processor time, where it is wanted.
 Measured measure(const Stage& stage, TaskOptions options, int repeats, TaskGraph* graph) {
@@ -37,6 +53,7 @@ Measured measure(const Stage& stage, TaskOptions options, int repeats, TaskGraph
         const TaskReport report = engine.run(silent, stop);
         double processor = report.serial;
         for (double s : report.seconds) processor += s;
+        if (options.record) out.busiest = std::min(out.busiest, busiest_seconds(engine.graph()));
         if (graph && processor < out.processor) *graph = engine.take_graph();
         out.processor = std::min(out.processor, processor);
         if (report.wall < out.wall) out.wall = report.wall, out.stolen = report.stolen;
@@ -70,13 +87,18 @@ int main(int argc, char** argv) {
         options.schedule = schedule;
         TaskGraph graph;
         options.threads = 1;
-        (void)measure(stage, options, repeats, &graph);
+        const Measured recorded = measure(stage, options, repeats, &graph);
         const Measured one = measure(stage, options, repeats, nullptr);
         options.threads = 2;
         const Measured two = measure(stage, options, repeats, nullptr);
+        TaskGraph graph_of_two;
+        const Measured shared = measure(stage, options, repeats, &graph_of_two);
         std::fprintf(out, "measured,%s,,1,%.6f,1,%.6f,,,,,0\n", name.data(), one.wall, one.processor);
         std::fprintf(out, "measured,%s,,2,%.6f,%.3f,%.6f,,,,,%zu\n", name.data(), two.wall, one.wall / two.wall,
                      two.processor, two.stolen);
+        std::fprintf(out, "busiest,%s,,1,%.6f,1,%.6f,,,,,0\n", name.data(), recorded.busiest, recorded.processor);
+        std::fprintf(out, "busiest,%s,,2,%.6f,%.3f,%.6f,,,,,%zu\n", name.data(), shared.busiest,
+                     recorded.busiest / shared.busiest, shared.processor, shared.stolen);
         for (const MachineModel& machine : machine_models) {
             const double alone = simulate_schedule(graph, schedule, 1, machine).seconds;
             for (std::size_t P = 1; P <= 1024; P *= 2) {

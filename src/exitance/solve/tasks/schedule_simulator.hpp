@@ -25,13 +25,13 @@ struct MachineModel {
     double slowness = 1;
 };
 
-/// Threads of one socket: an uncontended lock, a cache line from another core (50 ns), from another socket (150 ns)
+/// Threads of one socket: a lock, a line from the cache that its cores share (15 ns), from another socket (150 ns)
 /// beyond 32 of them.
 inline constexpr MachineModel shared_memory{.name = "shared",
                                             .queue = 60e-9,
                                             .probe = 20e-9,
                                             .steal = 200e-9,
-                                            .near = 50e-9,
+                                            .near = 15e-9,
                                             .far = 150e-9,
                                             .ring = 32,
                                             .slowness = 1};
@@ -51,7 +51,7 @@ inline constexpr MachineModel network{.name = "network",
                                       .queue = 1.5e-6,
                                       .probe = 1.5e-6,
                                       .steal = 3e-6,
-                                      .near = 50e-9,
+                                      .near = 15e-9,
                                       .far = 1.5e-6,
                                       .ring = 32,
                                       .slowness = 1};
