@@ -1,0 +1,387 @@
+// The structures of the thesis [Gatenby95] beside ours, as CSV:
+//
+//     exitance-thesis-structures candidates|rays|triangulation|layers SCENE.obj...
+//
+// candidates     how many polygons a node or polygon keeps that may hide the source from it: by front-to-back orderings
+//                of a BSP tree, and by shafts
+// rays           10^6 rays through the BSP tree and through Embree: rays per second, and how many meet the same
+// triangulation  triangles, shapes and error of three schemes over a DM-tree and of Delaunay's triangulation, on the
+//                convex receiver with the most curves, for eight thresholds
+// layers         bytes of forms of a layer, and one mesh a source against one for all, likewise, at the threshold 0.01
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exitance/core/random.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/mesh/discontinuity/bisection_mesh.hpp"
+#include "exitance/mesh/dm_tree/dm_tree.hpp"
+#include "exitance/mesh/dm_tree/light_layer.hpp"
+#include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
+#include "exitance/visibility/bsp/source_orderings.hpp"
+
+namespace {
+
+using namespace exitance;
+
+double cpu_seconds() {
+    timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// ------------------------------------------------------------------------------------------------- candidates
+
+struct Mean {
+    double sum = 0;
+    std::size_t count = 0;
+    void add(std::size_t v) { sum += static_cast<double>(v), ++count; }
+    double share(std::size_t of) const { return count > 0 ? sum / static_cast<double>(count * of) : 0; }
+};
+
+void candidates(const char* name, const Scene& scene) {
+    const Occluders occluders(scene);
+    const BspTree tree(occluders);
+    constexpr std::size_t most_nodes = 400;
+    const std::size_t step = std::max<std::size_t>(1, tree.nodes().size() / most_nodes);
+    enum { penumbra, shadowed, lists };
+    Mean bsp[lists], facing[lists], shaft_list[lists];
+    std::size_t split_near_root = 0;
+    std::size_t emitters = 0;
+    constexpr std::size_t most_emitters = 8;
+    for (SurfaceId s : scene.emitters()) {
+        if (++emitters > most_emitters) break;
+        const RegionId source_region = scene.surfaces()[s].region;
+        const std::vector<Point> hull = convex_hull(scene.outline(s), scene.surfaces()[s].normal);
+        if (hull.size() < 3 || hull.size() > 64) continue;
+        const SourceOrderings orderings(tree, hull);
+        for (const BspTree::Node& node : tree.nodes()) {
+            if (node.depth > 3) continue;
+            int sides = 0;
+            for (const Point& p : hull) sides |= tree.side(node, p) > 0 ? 1 : tree.side(node, p) < 0 ? 2 : 0;
+            split_near_root += sides == 3;
+        }
+        const Facet source{hull, scene.surfaces()[s].normal, source_region};
+        Shaft shaft;
+        std::vector<PieceId> found;
+        for (std::size_t n = 0; n < tree.nodes().size(); n += step) {
+            const BspTree::Node& node = tree.nodes()[n];
+            bool is_penumbra = false, is_umbra = false;
+            Mean longest;
+            for (const BspTree::Fragment& f : tree.fragments(node)) {
+                const ConvexPiece& piece = occluders.pieces()[f.piece];
+                shaft.set(occluders, {tree.outline(f), piece.plane.n, piece.region}, source);
+                const View view = shaft.classify(found);
+                is_penumbra |= view == View::mixed;
+                // Turned away is none, too, and is no shadow.
+                is_umbra |= view == View::none && !shaft.blocker().is_none();
+                if (view == View::mixed) longest.add(found.size());
+            }
+            if (!is_penumbra && !is_umbra) continue;
+            const std::size_t all = orderings.candidate_pieces(static_cast<std::uint32_t>(n)).size();
+            const std::size_t front = orderings.candidate_pieces(static_cast<std::uint32_t>(n), true).size();
+            const auto ours =
+                static_cast<std::size_t>(longest.count > 0 ? longest.sum / static_cast<double>(longest.count) : 1);
+            for (int list = is_penumbra ? penumbra : shadowed; list < lists; ++list)
+                bsp[list].add(all), facing[list].add(front), shaft_list[list].add(ours);
+        }
+    }
+    const std::size_t pieces = occluders.pieces().size();
+    for (int list = 0; list < lists; ++list)
+        std::printf("%s,%zu,%zu,%zu,%zu,%zu,%s,%zu,%.4f,%.4f,%.4f\n", name, pieces, tree.nodes().size(),
+                    tree.fragments().size(), tree.depth(), split_near_root,
+                    list == penumbra ? "penumbra" : "penumbra+umbra", bsp[list].count, bsp[list].share(pieces),
+                    facing[list].share(pieces), shaft_list[list].share(pieces));
+}
+
+// ------------------------------------------------------------------------------------------------------- rays
+
+void rays(const char* name, const Scene& scene) {
+    constexpr std::size_t count = 1'000'000;
+    const Occluders occluders(scene);
+    double begin = cpu_seconds();
+    const BspTree tree(occluders);
+    const double built = cpu_seconds() - begin;
+    const RayTracer tracer(scene);
+    RandomStream random(1, Stream::mesh);
+    const Vec3 size = scene.box().size();
+    std::vector<Point> origins(count);
+    std::vector<Vec3> directions(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        origins[i] =
+            scene.box().lo + Vec3{random.uniform() * size.x, random.uniform() * size.y, random.uniform() * size.z};
+        const double z = 2 * random.uniform() - 1, turn = 2 * pi * random.uniform(), r = std::sqrt(1 - z * z);
+        directions[i] = {r * std::cos(turn), r * std::sin(turn), z};
+    }
+    std::vector<RayHit> expected(count);
+    begin = cpu_seconds();
+    tracer.nearest(origins, directions, RegionId(), expected);
+    const double embree = cpu_seconds() - begin;
+    std::vector<BspTree::Hit> hits(count);
+    begin = cpu_seconds();
+    for (std::size_t i = 0; i < count; ++i) hits[i] = tree.nearest(origins[i], directions[i]);
+    const double bsp = cpu_seconds() - begin;
+    std::size_t same = 0, same_distance = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool none = hits[i].piece.is_none() && expected[i].surface.is_none();
+        const bool near = none || std::abs(hits[i].distance - expected[i].distance) < 1e-5 * scene.size();
+        same_distance += near;
+        same += none ||
+                (near && !hits[i].piece.is_none() && occluders.pieces()[hits[i].piece].region == expected[i].region);
+    }
+    std::printf("%s,%zu,%zu,%zu,%.3f,%.3g,%.3g,%zu,%zu\n", name, occluders.pieces().size(), tree.fragments().size(),
+                tree.memory_bytes(), built, static_cast<double>(count) / bsp, static_cast<double>(count) / embree,
+                count - same, count - same_distance);
+}
+
+// --------------------------------------------------------------------------------------------- triangulations
+
+using Light = std::function<double(const Point&)>;
+
+struct RefinedMesh {
+    BisectionMesh mesh;
+    std::vector<double> value;  ///< Of nodes; NaN: not looked at.
+    double rms = 0, ratio = 0, area = 0;
+};
+
+double value_at(RefinedMesh& m, std::uint32_t node, const Light& light) {
+    m.value.resize(m.mesh.nodes().size(), NAN);
+    if (std::isnan(m.value[node])) m.value[node] = light(m.mesh.nodes()[node].seen_from);
+    return m.value[node];
+}
+
+double quadratic(RefinedMesh& m, const BisectionMesh::Triangle& t, const std::array<double, 3>& L, const Light& light) {
+    const std::array<double, 6> w = six_node_weights({L[1], L[2]});
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        sum += w[k] * value_at(m, t.corner[k], light) + w[3 + k] * value_at(m, t.middle[k], light);
+    return sum;
+}
+
+/// Bisects triangles while their quadratic polynomial is off by more than `allowed` at one of seven places.
+RefinedMesh refine(const LabelledTriangles& triangles, const PlaneFrame& frame, const Light& light, double allowed) {
+    constexpr std::uint8_t deepest = 14;
+    constexpr std::size_t most = 200'000;
+    RefinedMesh m{BisectionMesh(1e-9), {}};
+    m.mesh.add(triangles, frame);
+    for (std::vector<std::uint32_t> changed = m.mesh.take_changed(); !changed.empty(); changed = m.mesh.take_changed())
+        for (std::uint32_t number : changed) {
+            const BisectionMesh::Triangle t = m.mesh.triangles()[number];
+            if (t.depth >= deepest || m.mesh.triangles().size() > most) continue;
+            double misfit = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t end = 0; end < 2; ++end) {
+                    std::array<double, 3> L{};
+                    L[k] = end == 0 ? 0.75 : 0.25, L[(k + 1) % 3] = 1 - L[k];
+                    misfit =
+                        std::max(misfit, std::abs(quadratic(m, t, L, light) - value_at(m, t.quarter[k][end], light)));
+                }
+            std::array<double, 3> L{0.25, 0.25, 0.25};
+            L[(t.longest + 2) % 3] = 0.5;
+            misfit = std::max(misfit, std::abs(quadratic(m, t, L, light) - value_at(m, t.inner, light)));
+            if (misfit > allowed) m.mesh.bisect(number);
+        }
+    for (std::uint32_t i = 0; i < m.mesh.triangles().size(); ++i) {
+        const BisectionMesh::Triangle t = m.mesh.triangles()[i];
+        const double area = m.mesh.area(i), third = 1.0 / 3;
+        const double off = quadratic(m, t, {third, third, third}, light) - light(m.mesh.centre(i));
+        m.rms += area * off * off, m.area += area;
+        std::array<Vec2, 3> c;
+        for (std::size_t k = 0; k < 3; ++k) c[k] = frame.flat(m.mesh.nodes()[t.corner[k]].at);
+        m.ratio += radius_ratio(c[0], c[1], c[2]);
+    }
+    m.rms = std::sqrt(m.rms / m.area);
+    m.ratio /= static_cast<double>(m.mesh.triangles().size());
+    return m;
+}
+
+struct ChosenReceiver {
+    RegionId region;
+    std::optional<ReceiverCurves> curves;
+    double largest = 0;  ///< Of its light at random places, W/m^2.
+};
+
+/// The region of one convex loop with the most curves.
+ChosenReceiver choose(const Stage& stage) {
+    const BlockerEdges edges(stage.occluders);
+    const CurveFinder finder(stage, edges, {});
+    ChosenReceiver out;
+    for (RegionId r : stage.scene.regions().ids()) {
+        const Region& region = stage.scene.regions()[r];
+        if (region.loops.size() != 1 || !is_convex(region.loops[0], region.plane.n)) continue;
+        ReceiverCurves curves = finder.find(r);
+        if (!out.curves || curves.curves.size() > out.curves->curves.size())
+            out.region = r, out.curves = std::move(curves);
+    }
+    if (!out.curves) return out;
+    DirectLight::Workspace workspace;
+    RandomStream random(1, Stream::mesh);
+    const Region& region = stage.scene.regions()[out.region];
+    for (int i = 0; i < 1000; ++i) {
+        Point p = region.loops[0][0];
+        for (const Point& q : region.loops[0]) p += random.uniform() * (q - p);
+        out.largest = std::max(out.largest, mean(stage.direct.irradiance(p, region.plane.n, out.region, workspace)));
+    }
+    return out;
+}
+
+LabelledTriangles triangles_of(const ReceiverCurves& receiver, TriangulationScheme scheme, double tolerance,
+                               const std::function<bool(const FlatCurve&)>& is_wanted, std::size_t* construction) {
+    constexpr auto label = static_cast<std::uint8_t>(CurveOrder::d2);
+    if (scheme == TriangulationScheme::delaunay) {
+        std::vector<LabelledSegment> segments;
+        for (const FlatCurve& c : receiver.curves)
+            if (is_wanted(c)) segments.push_back({c.a, c.b, label});
+        return labelled_triangles(receiver.loops, segments);
+    }
+    DmTree tree(receiver.loops[0], tolerance);
+    std::uint32_t number = 0;
+    for (const FlatCurve& c : receiver.curves)
+        if (is_wanted(c)) tree.insert(c.a, c.b, number++);
+    if (construction) *construction = tree.construction_edges();
+    return triangulated(tree, scheme, label);
+}
+
+void triangulation(const char* name, const Scene& scene) {
+    const Stage stage(scene);
+    const ChosenReceiver receiver = choose(stage);
+    if (!receiver.curves) return;
+    const Normal n = scene.regions()[receiver.region].plane.n;
+    DirectLight::Workspace workspace;
+    const Light light = [&](const Point& p) { return mean(stage.direct.irradiance(p, n, receiver.region, workspace)); };
+    for (double threshold : {0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.003, 0.002})
+        for (const auto& [scheme, scheme_name] : triangulation_names) {
+            std::size_t construction = 0;
+            const LabelledTriangles first = triangles_of(
+                *receiver.curves, scheme, 1e-7 * scene.size(), [](const FlatCurve&) { return true; }, &construction);
+            const RefinedMesh m = refine(first, receiver.curves->frame, light, threshold * receiver.largest);
+            std::printf("%s,%zu,%g,%s,%zu,%zu,%zu,%.4f,%.6f\n", name, receiver.curves->curves.size(), threshold,
+                        scheme_name, construction, first.corners.size(), m.mesh.triangles().size(), m.ratio,
+                        m.rms / receiver.largest);
+            std::fflush(stdout);
+        }
+}
+
+// ----------------------------------------------------------------------------------------------------- layers
+
+LayerTriangles layer_of(RefinedMesh& m, const PlaneFrame& frame, const Light& light) {
+    LayerTriangles out;
+    std::map<std::uint32_t, std::uint32_t> number;
+    for (const BisectionMesh::Triangle& t : m.mesh.triangles()) {
+        auto& c = out.corners.emplace_back();
+        auto& middle = out.middles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [at, is_new] = number.try_emplace(t.corner[k], static_cast<std::uint32_t>(out.points.size()));
+            if (is_new) {
+                out.points.push_back(frame.flat(m.mesh.nodes()[t.corner[k]].at));
+                out.values.push_back(value_at(m, t.corner[k], light));
+            }
+            c[k] = at->second;
+            middle[k] = value_at(m, t.middle[k], light);
+        }
+    }
+    return out;
+}
+
+/// The largest difference at triangles' centres, over the largest light.
+double worst(const LayerTriangles& exact, const LightLayer& layer, double largest) {
+    double out = 0;
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < exact.corners.size(); ++t) {
+        if (exact.is_dark(t)) continue;
+        const Vec2 middle{1.0 / 3, 1.0 / 3};
+        out = std::max(out, std::abs(exact.at(t, middle) - layer.at(kept++, middle)) / largest);
+    }
+    return out;
+}
+
+void layers(const char* name, const Scene& scene) {
+    const Stage stage(scene);
+    const ChosenReceiver receiver = choose(stage);
+    if (!receiver.curves) return;
+    const Normal n = scene.regions()[receiver.region].plane.n;
+    const double allowed = 0.01 * receiver.largest;
+    DirectLight::Workspace workspace;
+    std::vector<LightLayer> parts;
+    const auto run = [&](const char* kind, const Light& light, const std::function<bool(const FlatCurve&)>& is_wanted) {
+        const LabelledTriangles first =
+            triangles_of(*receiver.curves, TriangulationScheme::delaunay, 1e-7 * scene.size(), is_wanted, nullptr);
+        RefinedMesh m = refine(first, receiver.curves->frame, light, allowed);
+        const LayerTriangles all = layer_of(m, receiver.curves->frame, light);
+        const LightLayer floats(all, LightLayer::Form::floats), halves(all, LightLayer::Form::halves);
+        std::printf("%s,%s,%zu,%zu,%zu,%zu,%zu,%.6f,%.2g,%.2g\n", name, kind, all.corners.size(), floats.size(),
+                    winged_edge_bytes(all), floats.memory_bytes(), halves.memory_bytes(), m.rms / receiver.largest,
+                    worst(all, floats, receiver.largest), worst(all, halves, receiver.largest));
+        parts.push_back(halves);
+    };
+    const Light together = [&](const Point& p) {
+        return mean(stage.direct.irradiance(p, n, receiver.region, workspace));
+    };
+    run("merged", together, [](const FlatCurve&) { return true; });
+    parts.clear();
+    for (const DirectLight::Emitter& emitter : stage.direct.emitters())
+        run(
+            "layer",
+            [&](const Point& p) {
+                return mean(emitter.exitance) * stage.direct.form_factor({p, n, receiver.region}, emitter, workspace);
+            },
+            [&](const FlatCurve& c) { return c.cause == CurveCause::contact || c.source == emitter.region; });
+    for (LightLayer& part : parts) part.make_grid();
+    RandomStream random(2, Stream::mesh);
+    const auto& loop = scene.regions()[receiver.region].loops[0];
+    double off = 0;
+    constexpr int places = 5000;
+    for (int i = 0; i < places; ++i) {
+        const double s = random.uniform(), t = random.uniform();
+        const Point p = loop[0] + s * (loop[1] - loop[0]) + t * (1 - s) * (loop[2] - loop[0]);
+        double sum = 0;
+        for (const LightLayer& part : parts) sum += part.at(receiver.curves->frame.flat(p));
+        off += (sum - together(p)) * (sum - together(p));
+    }
+    std::printf("%s,sum of %zu layers,,,,,,%.6f,,\n", name, parts.size(), std::sqrt(off / places) / receiver.largest);
+}
+
+struct Study {
+    const char* name;
+    const char* header;
+    void (*run)(const char*, const Scene&);
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const Study studies[] = {
+        {"candidates",
+         "scene,polygons,nodes,fragments,depth,source_splits_to_depth_3,lists,count,bsp_share,bsp_facing_share,shaft_"
+         "share",
+         candidates},
+        {"rays",
+         "scene,polygons,fragments,bytes,build_seconds,bsp_rays_per_second,embree_rays_per_second,other_hits,other_"
+         "distances",
+         rays},
+        {"triangulation", "scene,curves,threshold,scheme,construction_edges,first_triangles,triangles,radius_ratio,rms",
+         triangulation},
+        {"layers", "scene,kind,triangles,kept,winged_bytes,float_bytes,half_bytes,rms,float_worst,half_worst", layers},
+    };
+    for (const Study& study : studies) {
+        if (argc < 3 || std::strcmp(argv[1], study.name) != 0) continue;
+        std::printf("%s\n", study.header);
+        for (int i = 2; i < argc; ++i) {
+            const CheckedScene checked = load_scene({argv[i]}, {});
+            if (!checked.scene) return std::fprintf(stderr, "%s\n", checked.scene.error().message.c_str()), 3;
+            const std::string path = argv[i];
+            const std::string name = path.substr(path.rfind('/') + 1, path.rfind('.') - path.rfind('/') - 1);
+            study.run(name.c_str(), *checked.scene);
+            std::fflush(stdout);
+        }
+        return 0;
+    }
+    return std::fprintf(stderr, "usage: %s candidates|rays|triangulation|layers SCENE.obj...\n", argv[0]), 2;
+}
