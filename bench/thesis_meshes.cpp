@@ -1,18 +1,14 @@
-// The structures of the thesis [Gatenby95] beside ours, as CSV:
+// The thesis's meshes [Gatenby95] beside ours, as CSV, on the convex receiver with the most curves:
 //
-//     exitance-thesis-structures candidates|rays|triangulation|layers SCENE.obj...
+//     exitance-thesis-meshes triangulation|layers SCENE.obj...
 //
-// candidates     how many polygons a node or polygon keeps that may hide the source from it: by front-to-back orderings
-//                of a BSP tree, and by shafts
-// rays           10^6 rays through the BSP tree and through Embree: rays per second, and how many meet the same
-// triangulation  triangles, shapes and error of three schemes over a DM-tree and of Delaunay's triangulation, on the
-//                convex receiver with the most curves, for eight thresholds
-// layers         bytes of forms of a layer, and one mesh a source against one for all, likewise, at the threshold 0.01
+// triangulation  triangles, shapes and error of three schemes over a DM-tree and of Delaunay's triangulation, for eight
+//                thresholds
+// layers         bytes of forms of a layer, and one mesh a source against one for all, at the threshold 0.01
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <optional>
@@ -25,121 +21,10 @@
 #include "exitance/mesh/dm_tree/dm_tree.hpp"
 #include "exitance/mesh/dm_tree/light_layer.hpp"
 #include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
-#include "exitance/visibility/bsp/source_orderings.hpp"
 
 namespace {
 
 using namespace exitance;
-
-double cpu_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-// ------------------------------------------------------------------------------------------------- candidates
-
-struct Mean {
-    double sum = 0;
-    std::size_t count = 0;
-    void add(std::size_t v) { sum += static_cast<double>(v), ++count; }
-    double share(std::size_t of) const { return count > 0 ? sum / static_cast<double>(count * of) : 0; }
-};
-
-void candidates(const char* name, const Scene& scene) {
-    const Occluders occluders(scene);
-    const BspTree tree(occluders);
-    constexpr std::size_t most_nodes = 400;
-    const std::size_t step = std::max<std::size_t>(1, tree.nodes().size() / most_nodes);
-    enum { penumbra, shadowed, lists };
-    Mean bsp[lists], facing[lists], shaft_list[lists];
-    std::size_t split_near_root = 0;
-    std::size_t emitters = 0;
-    constexpr std::size_t most_emitters = 8;
-    for (SurfaceId s : scene.emitters()) {
-        if (++emitters > most_emitters) break;
-        const RegionId source_region = scene.surfaces()[s].region;
-        const std::vector<Point> hull = convex_hull(scene.outline(s), scene.surfaces()[s].normal);
-        if (hull.size() < 3 || hull.size() > 64) continue;
-        const SourceOrderings orderings(tree, hull);
-        for (const BspTree::Node& node : tree.nodes()) {
-            if (node.depth > 3) continue;
-            int sides = 0;
-            for (const Point& p : hull) sides |= tree.side(node, p) > 0 ? 1 : tree.side(node, p) < 0 ? 2 : 0;
-            split_near_root += sides == 3;
-        }
-        const Facet source{hull, scene.surfaces()[s].normal, source_region};
-        Shaft shaft;
-        std::vector<PieceId> found;
-        for (std::size_t n = 0; n < tree.nodes().size(); n += step) {
-            const BspTree::Node& node = tree.nodes()[n];
-            bool is_penumbra = false, is_umbra = false;
-            Mean longest;
-            for (const BspTree::Fragment& f : tree.fragments(node)) {
-                const ConvexPiece& piece = occluders.pieces()[f.piece];
-                shaft.set(occluders, {tree.outline(f), piece.plane.n, piece.region}, source);
-                const View view = shaft.classify(found);
-                is_penumbra |= view == View::mixed;
-                // Turned away is none, too, and is no shadow.
-                is_umbra |= view == View::none && !shaft.blocker().is_none();
-                if (view == View::mixed) longest.add(found.size());
-            }
-            if (!is_penumbra && !is_umbra) continue;
-            const std::size_t all = orderings.candidate_pieces(static_cast<std::uint32_t>(n)).size();
-            const std::size_t front = orderings.candidate_pieces(static_cast<std::uint32_t>(n), true).size();
-            const auto ours =
-                static_cast<std::size_t>(longest.count > 0 ? longest.sum / static_cast<double>(longest.count) : 1);
-            for (int list = is_penumbra ? penumbra : shadowed; list < lists; ++list)
-                bsp[list].add(all), facing[list].add(front), shaft_list[list].add(ours);
-        }
-    }
-    const std::size_t pieces = occluders.pieces().size();
-    for (int list = 0; list < lists; ++list)
-        std::printf("%s,%zu,%zu,%zu,%zu,%zu,%s,%zu,%.4f,%.4f,%.4f\n", name, pieces, tree.nodes().size(),
-                    tree.fragments().size(), tree.depth(), split_near_root,
-                    list == penumbra ? "penumbra" : "penumbra+umbra", bsp[list].count, bsp[list].share(pieces),
-                    facing[list].share(pieces), shaft_list[list].share(pieces));
-}
-
-// ------------------------------------------------------------------------------------------------------- rays
-
-void rays(const char* name, const Scene& scene) {
-    constexpr std::size_t count = 1'000'000;
-    const Occluders occluders(scene);
-    double begin = cpu_seconds();
-    const BspTree tree(occluders);
-    const double built = cpu_seconds() - begin;
-    const RayTracer tracer(scene);
-    RandomStream random(1, Stream::mesh);
-    const Vec3 size = scene.box().size();
-    std::vector<Point> origins(count);
-    std::vector<Vec3> directions(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        origins[i] =
-            scene.box().lo + Vec3{random.uniform() * size.x, random.uniform() * size.y, random.uniform() * size.z};
-        const double z = 2 * random.uniform() - 1, turn = 2 * pi * random.uniform(), r = std::sqrt(1 - z * z);
-        directions[i] = {r * std::cos(turn), r * std::sin(turn), z};
-    }
-    std::vector<RayHit> expected(count);
-    begin = cpu_seconds();
-    tracer.nearest(origins, directions, RegionId(), expected);
-    const double embree = cpu_seconds() - begin;
-    std::vector<BspTree::Hit> hits(count);
-    begin = cpu_seconds();
-    for (std::size_t i = 0; i < count; ++i) hits[i] = tree.nearest(origins[i], directions[i]);
-    const double bsp = cpu_seconds() - begin;
-    std::size_t same = 0, same_distance = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const bool none = hits[i].piece.is_none() && expected[i].surface.is_none();
-        const bool near = none || std::abs(hits[i].distance - expected[i].distance) < 1e-5 * scene.size();
-        same_distance += near;
-        same += none ||
-                (near && !hits[i].piece.is_none() && occluders.pieces()[hits[i].piece].region == expected[i].region);
-    }
-    std::printf("%s,%zu,%zu,%zu,%.3f,%.3g,%.3g,%zu,%zu\n", name, occluders.pieces().size(), tree.fragments().size(),
-                tree.memory_bytes(), built, static_cast<double>(count) / bsp, static_cast<double>(count) / embree,
-                count - same, count - same_distance);
-}
 
 // --------------------------------------------------------------------------------------------- triangulations
 
@@ -358,14 +243,6 @@ struct Study {
 
 int main(int argc, char** argv) {
     const Study studies[] = {
-        {"candidates",
-         "scene,polygons,nodes,fragments,depth,source_splits_to_depth_3,lists,count,bsp_share,bsp_facing_share,shaft_"
-         "share",
-         candidates},
-        {"rays",
-         "scene,polygons,fragments,bytes,build_seconds,bsp_rays_per_second,embree_rays_per_second,other_hits,other_"
-         "distances",
-         rays},
         {"triangulation", "scene,curves,threshold,scheme,construction_edges,first_triangles,triangles,radius_ratio,rms",
          triangulation},
         {"layers", "scene,kind,triangles,kept,winged_bytes,float_bytes,half_bytes,rms,float_worst,half_worst", layers},
@@ -383,5 +260,5 @@ int main(int argc, char** argv) {
         }
         return 0;
     }
-    return std::fprintf(stderr, "usage: %s candidates|rays|triangulation|layers SCENE.obj...\n", argv[0]), 2;
+    return std::fprintf(stderr, "usage: %s triangulation|layers SCENE.obj...\n", argv[0]), 2;
 }
