@@ -30,6 +30,9 @@ using namespace exitance;
 
 using Light = std::function<double(const Point&)>;
 
+/// How far within a triangle its border is looked at, as a share of the scene's size.
+constexpr double nudge_share = 1e-6;
+
 struct RefinedMesh {
     BisectionMesh mesh;
     std::vector<double> value;  ///< Of nodes; NaN: not looked at.
@@ -51,10 +54,11 @@ double quadratic(RefinedMesh& m, const BisectionMesh::Triangle& t, const std::ar
 }
 
 /// Bisects triangles while their quadratic polynomial is off by more than `allowed` at one of seven places.
-RefinedMesh refine(const LabelledTriangles& triangles, const PlaneFrame& frame, const Light& light, double allowed) {
+RefinedMesh refine(const LabelledTriangles& triangles, const PlaneFrame& frame, const Light& light, double allowed,
+                   double nudge) {
     constexpr std::uint8_t deepest = 14;
     constexpr std::size_t most = 200'000;
-    RefinedMesh m{BisectionMesh(1e-9), {}};
+    RefinedMesh m{BisectionMesh(nudge), {}};
     m.mesh.add(triangles, frame);
     for (std::vector<std::uint32_t> changed = m.mesh.take_changed(); !changed.empty(); changed = m.mesh.take_changed())
         for (std::uint32_t number : changed) {
@@ -119,19 +123,26 @@ ChosenReceiver choose(const Stage& stage) {
 
 LabelledTriangles triangles_of(const ReceiverCurves& receiver, TriangulationScheme scheme, double tolerance,
                                const std::function<bool(const FlatCurve&)>& is_wanted, std::size_t* construction) {
-    constexpr auto label = static_cast<std::uint8_t>(CurveOrder::d2);
+    std::vector<std::uint8_t> labels;
     if (scheme == TriangulationScheme::delaunay) {
         std::vector<LabelledSegment> segments;
         for (const FlatCurve& c : receiver.curves)
-            if (is_wanted(c)) segments.push_back({c.a, c.b, label});
+            if (is_wanted(c)) segments.push_back({c.a, c.b, static_cast<std::uint8_t>(c.order)});
         return labelled_triangles(receiver.loops, segments);
     }
     DmTree tree(receiver.loops[0], tolerance);
-    std::uint32_t number = 0;
-    for (const FlatCurve& c : receiver.curves)
-        if (is_wanted(c)) tree.insert(c.a, c.b, number++);
+    for (const FlatCurve& c : receiver.curves) {
+        if (!is_wanted(c)) continue;
+        tree.insert(c.a, c.b, static_cast<std::uint32_t>(labels.size()));
+        labels.push_back(static_cast<std::uint8_t>(c.order));
+    }
     if (construction) *construction = tree.construction_edges();
-    return triangulated(tree, scheme, label);
+    return triangulated(tree, scheme, labels);
+}
+
+/// Mean of the bands, W/m^2; none beneath other surfaces.
+double light_at(const Stage& stage, const Point& p, const Normal& n, RegionId r, DirectLight::Workspace& workspace) {
+    return stage.occluders.is_covered(p, n, r) ? 0 : mean(stage.direct.irradiance(p, n, r, workspace));
 }
 
 void triangulation(const char* name, const Scene& scene) {
@@ -140,13 +151,14 @@ void triangulation(const char* name, const Scene& scene) {
     if (!receiver.curves) return;
     const Normal n = scene.regions()[receiver.region].plane.n;
     DirectLight::Workspace workspace;
-    const Light light = [&](const Point& p) { return mean(stage.direct.irradiance(p, n, receiver.region, workspace)); };
+    const Light light = [&](const Point& p) { return light_at(stage, p, n, receiver.region, workspace); };
     for (double threshold : {0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.003, 0.002})
         for (const auto& [scheme, scheme_name] : triangulation_names) {
             std::size_t construction = 0;
             const LabelledTriangles first = triangles_of(
                 *receiver.curves, scheme, 1e-7 * scene.size(), [](const FlatCurve&) { return true; }, &construction);
-            const RefinedMesh m = refine(first, receiver.curves->frame, light, threshold * receiver.largest);
+            const RefinedMesh m =
+                refine(first, receiver.curves->frame, light, threshold * receiver.largest, nudge_share * scene.size());
             std::printf("%s,%zu,%g,%s,%zu,%zu,%zu,%.4f,%.6f\n", name, receiver.curves->curves.size(), threshold,
                         scheme_name, construction, first.corners.size(), m.mesh.triangles().size(), m.ratio,
                         m.rms / receiver.largest);
@@ -198,7 +210,7 @@ void layers(const char* name, const Scene& scene) {
     const auto run = [&](const char* kind, const Light& light, const std::function<bool(const FlatCurve&)>& is_wanted) {
         const LabelledTriangles first =
             triangles_of(*receiver.curves, TriangulationScheme::delaunay, 1e-7 * scene.size(), is_wanted, nullptr);
-        RefinedMesh m = refine(first, receiver.curves->frame, light, allowed);
+        RefinedMesh m = refine(first, receiver.curves->frame, light, allowed, nudge_share * scene.size());
         const LayerTriangles all = layer_of(m, receiver.curves->frame, light);
         const LightLayer floats(all, LightLayer::Form::floats), halves(all, LightLayer::Form::halves);
         std::printf("%s,%s,%zu,%zu,%zu,%zu,%zu,%.6f,%.2g,%.2g\n", name, kind, all.corners.size(), floats.size(),
@@ -206,15 +218,14 @@ void layers(const char* name, const Scene& scene) {
                     worst(all, floats, receiver.largest), worst(all, halves, receiver.largest));
         parts.push_back(halves);
     };
-    const Light together = [&](const Point& p) {
-        return mean(stage.direct.irradiance(p, n, receiver.region, workspace));
-    };
+    const Light together = [&](const Point& p) { return light_at(stage, p, n, receiver.region, workspace); };
     run("merged", together, [](const FlatCurve&) { return true; });
     parts.clear();
     for (const DirectLight::Emitter& emitter : stage.direct.emitters())
         run(
             "layer",
             [&](const Point& p) {
+                if (stage.occluders.is_covered(p, n, receiver.region)) return 0.0;
                 return mean(emitter.exitance) * stage.direct.form_factor({p, n, receiver.region}, emitter, workspace);
             },
             [&](const FlatCurve& c) { return c.cause == CurveCause::contact || c.source == emitter.region; });

@@ -57,9 +57,10 @@ inline constexpr std::array<std::pair<TriangulationScheme, const char*>, 4> tria
     {TriangulationScheme::delaunay, "delaunay"},
 }};
 
-/// All faces of a tree by one of the thesis's schemes; edges of curves and of the border have the label `curve_label`
-/// and LabelledTriangles::border. Not for `delaunay` (`labelled_triangles`).
-LabelledTriangles triangulated(const DmTree& tree, TriangulationScheme scheme, std::uint8_t curve_label);
+/// All faces of a tree by one of the thesis's schemes; edges of curves have the label of their curve, those of the
+/// border LabelledTriangles::border. Not for `delaunay` (`labelled_triangles`).
+LabelledTriangles triangulated(const DmTree& tree, TriangulationScheme scheme,
+                               std::span<const std::uint8_t> label_of_curve);
 
 /// Radius of the inscribed circle over that of the circumscribed one, 0 to 0.5.
 double radius_ratio(const Vec2& a, const Vec2& b, const Vec2& c);

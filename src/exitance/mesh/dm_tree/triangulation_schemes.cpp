@@ -46,14 +46,6 @@ class FaceTriangulation {
   private:
     const Vec2& at(std::uint32_t v) const { return points_[v]; }
 
-    /// Twice the area of a ring's part from corner i to corner j, over the squared length of what closes it: 0 where
-    /// the corners lie in a row.
-    double thickness(const Ring& r, std::size_t i, std::size_t j) const {
-        double twice = 0;
-        for (std::size_t k = i + 1; k < j; ++k) twice += cross(at(r[k]) - at(r[i]), at(r[k + 1]) - at(r[i]));
-        return std::abs(twice) / std::max(1e-300, dot(at(r[j]) - at(r[i]), at(r[j]) - at(r[i])));
-    }
-
     /// Of the two angles into which a diagonal splits the one at its end: the ratio of the smaller sine to the larger,
     /// times the smaller.
     double end_value(const Vec2& corner, const Vec2& before, const Vec2& after, const Vec2& other) const {
@@ -74,18 +66,22 @@ class FaceTriangulation {
                end_value(at(r[j]), at(r[j - 1]), at(r[(j + 1) % n]), at(r[i]));
     }
 
-    /// The diagonal of the largest value among those with area on both sides.
+    /// The diagonal of the largest value among those with area on both sides. O(corners^2).
     std::pair<std::size_t, std::size_t> best_diagonal(const Ring& r) const {
-        constexpr double flat = 1e-9;
+        constexpr double flat = 1e-9;  // of a diagonal's squared length
         std::pair<std::size_t, std::size_t> best{0, 0};
         double most = -HUGE_VAL;
         const std::size_t n = r.size();
+        // Twice the area between the first corner and the edges before each.
+        std::vector<double> swept(n + 1, 0);
+        for (std::size_t k = 0; k < n; ++k)
+            swept[k + 1] = swept[k] + cross(at(r[k]) - at(r[0]), at(r[(k + 1) % n]) - at(r[0]));
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = i + 2; j < n; ++j) {
                 if (i == 0 && j == n - 1) continue;
-                Ring rest(r.begin() + static_cast<std::ptrdiff_t>(j), r.end());
-                rest.insert(rest.end(), r.begin(), r.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-                if (thickness(r, i, j) < flat || thickness(rest, 0, rest.size() - 1) < flat) continue;
+                const Vec2 d = at(r[j]) - at(r[i]);
+                const double side = swept[j] - swept[i] + cross(at(r[j]) - at(r[0]), at(r[i]) - at(r[0]));
+                if (std::min(side, swept[n] - side) < flat * dot(d, d)) continue;
                 if (const double v = value(r, i, j); v > most) most = v, best = {i, j};
             }
         return best;
@@ -104,7 +100,8 @@ class FaceTriangulation {
 
 }  // namespace
 
-LabelledTriangles triangulated(const DmTree& tree, TriangulationScheme scheme, std::uint8_t curve_label) {
+LabelledTriangles triangulated(const DmTree& tree, TriangulationScheme scheme,
+                               std::span<const std::uint8_t> label_of_curve) {
     const WingedEdgeMesh& mesh = tree.mesh();
     LabelledTriangles out;
     for (const WingedEdgeMesh::Vertex& v : mesh.vertices()) out.points.push_back(v.at);
@@ -119,7 +116,8 @@ LabelledTriangles triangulated(const DmTree& tree, TriangulationScheme scheme, s
     for (const WingedEdgeMesh::Edge& e : mesh.edges()) {
         const bool is_border = e.face[0] == WingedEdgeMesh::none || e.face[1] == WingedEdgeMesh::none;
         if (is_border || e.curve != WingedEdgeMesh::none)
-            labels[std::minmax(e.vertex[0], e.vertex[1])] = is_border ? LabelledTriangles::border : curve_label;
+            labels[std::minmax(e.vertex[0], e.vertex[1])] =
+                is_border ? LabelledTriangles::border : label_of_curve[e.curve];
     }
     std::map<Ends, std::uint32_t> sides;
     for (std::uint32_t t = 0; t < out.corners.size(); ++t)
