@@ -1,9 +1,10 @@
 // The thesis's meshes [Gatenby95] beside ours, as CSV, on the convex receiver with the most curves:
 //
-//     exitance-thesis-meshes triangulation|layers SCENE.obj...
+//     exitance-thesis-meshes triangulation|premesh|layers SCENE.obj...
 //
 // triangulation  triangles, shapes and error of three schemes over a DM-tree and of Delaunay's triangulation, for eight
 //                thresholds
+// premesh        faces, construction edges and shapes of a DM-tree by the order of its curves, and after coarse grids
 // layers         bytes of forms of a layer, and one mesh a source against one for all, at the threshold 0.01
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -244,6 +246,39 @@ void layers(const char* name, const Scene& scene) {
     std::printf("%s,sum of %zu layers,,,,,,%.6f,,\n", name, parts.size(), std::sqrt(off / places) / receiver.largest);
 }
 
+// ---------------------------------------------------------------------------------------------------- premesh
+
+/// Faces and construction edges of a DM-tree by the order in which curves come to it: as they are found; the longest
+/// first, a stand-in for the penumbra's outlines first; after a grid of cells.
+void premesh(const char* name, const Scene& scene) {
+    const Stage stage(scene);
+    const ChosenReceiver receiver = choose(stage);
+    if (!receiver.curves) return;
+    std::vector<FlatCurve> longest = receiver.curves->curves;
+    std::stable_sort(longest.begin(), longest.end(), [](const FlatCurve& a, const FlatCurve& b) {
+        return dot(a.b - a.a, a.b - a.a) > dot(b.b - b.a, b.b - b.a);
+    });
+    const auto run = [&](const char* order, std::span<const FlatCurve> curves, std::size_t grid) {
+        DmTree tree(receiver.curves->loops[0], 1e-7 * scene.size());
+        if (grid > 0) tree.insert_grid(grid);
+        std::vector<std::uint8_t> labels;
+        for (const FlatCurve& c : curves) {
+            tree.insert(c.a, c.b, static_cast<std::uint32_t>(labels.size()));
+            labels.push_back(static_cast<std::uint8_t>(c.order));
+        }
+        const LabelledTriangles t = triangulated(tree, TriangulationScheme::shortest, labels);
+        double ratio = 0;
+        for (const auto& c : t.corners) ratio += radius_ratio(t.points[c[0]], t.points[c[1]], t.points[c[2]]);
+        std::printf("%s,%zu,%s,%zu,%zu,%zu,%.4f,%zu\n", name, curves.size(), order, tree.mesh().faces().size(),
+                    tree.construction_edges(), t.corners.size(), ratio / static_cast<double>(t.corners.size()),
+                    tree.memory_bytes());
+    };
+    run("found", receiver.curves->curves, 0);
+    run("longest first", longest, 0);
+    run("grid 4", receiver.curves->curves, 4);
+    run("grid 16", receiver.curves->curves, 16);
+}
+
 struct Study {
     const char* name;
     const char* header;
@@ -256,6 +291,7 @@ int main(int argc, char** argv) {
     const Study studies[] = {
         {"triangulation", "scene,curves,threshold,scheme,construction_edges,first_triangles,triangles,radius_ratio,rms",
          triangulation},
+        {"premesh", "scene,curves,order,faces,construction_edges,triangles,radius_ratio,tree_bytes", premesh},
         {"layers", "scene,kind,triangles,kept,winged_bytes,float_bytes,half_bytes,rms,float_worst,half_worst", layers},
     };
     for (const Study& study : studies) {
@@ -271,5 +307,5 @@ int main(int argc, char** argv) {
         }
         return 0;
     }
-    return std::fprintf(stderr, "usage: %s triangulation|layers SCENE.obj...\n", argv[0]), 2;
+    return std::fprintf(stderr, "usage: %s triangulation|premesh|layers SCENE.obj...\n", argv[0]), 2;
 }

@@ -12,8 +12,11 @@ using Json = nlohmann::json;
 namespace {
 
 Finished solve_by_tasks(const TemporaryFolder& folder, const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> words{"solve",    write_small_room(folder), "-o",     folder / (name + ".h5"),
-                                   "--method", "hierarchical",           "--json", "--task-engine"};
+    std::vector<std::string> words{"solve",       write_small_room(folder),
+                                   "-o",          folder / (name + ".h5"),
+                                   "--method",    "hierarchical",
+                                   "--json",      "--task-engine",
+                                   "--threshold", "0.01"};
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words);
 }

@@ -7,8 +7,8 @@
 
 namespace exitance {
 
-/// What the tasks of an engine did whose tasks make tasks: enough to rebuild the graph and to replay it on any number of
-/// processors. Iterations follow one another behind barriers. Times in seconds.
+/// What the tasks of an engine did whose tasks make tasks: enough to rebuild the graph and to replay it on any number
+/// of processors. Iterations follow one another behind barriers. Times in seconds.
 struct TaskGraph {
     static constexpr std::uint32_t none = 0xffffffffu;
 
