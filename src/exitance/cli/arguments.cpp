@@ -302,6 +302,11 @@ void declare_method(CLI::App& app, SolveArguments& arguments) {
     add_choice(app, "--oracle", oracle_names, o.oracle,
                "By what links are cut: error of what they bring (default), form factor, or power")
         ->group("Method");
+    add_positive(app, "--threshold", o.threshold, "X", "Of the oracles ff (no unit) and bf (W in the brightest band)")
+        ->group("Method");
+    app.add_flag("--task-engine", o.task_engine,
+                 "With --method hierarchical: as tasks that make tasks, the light of emitters through links, too")
+        ->group("Method");
     add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
         ->group("Method");
     add_count(app, "--hemicube-cells", o.hemicube_cells, 2, "Along an edge of a hemicube's top, even")->group("Method");

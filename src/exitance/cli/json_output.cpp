@@ -104,6 +104,7 @@ std::string statistics_json(const SolveStatistics& s) {
         json["faces"] = {{"lit", d->lit}, {"penumbra", d->penumbra}, {"umbra", d->umbra}};
         json["triangles"] = d->triangles, json["mean_radius_ratio"] = d->mean_radius_ratio;
     }
+    for (const auto& [name, value] : s.figures) json[name] = value;
     return dump(json, 2);
 }
 
@@ -138,6 +139,8 @@ std::string options_json(const SolveOptions& o) {
         {"overshooting", o.overshooting},
         {"visibility", name_in(visibility_names, o.visibility)},
         {"visibility_samples", value_or_null(o.visibility_samples)},
+        {"threshold", value_or_null(o.threshold)},
+        {"task_engine", o.task_engine},
         {"clusters", value_or_null(o.clusters)},
         {"smoothing", value_or_null(o.smoothing)},
         {"importance", o.importance.empty() ? Json(nullptr) : Json(fingerprint(o.importance))},

@@ -7,6 +7,7 @@
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/summary.hpp"
+#include "exitance/cli/task_engine_check.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
@@ -158,6 +159,7 @@ ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) 
 ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     SolveArguments arguments = given;
+    if (const Result<void> engine = check_task_engine(given); !engine) return terminal.fail(engine.error());
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);

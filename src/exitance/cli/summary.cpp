@@ -55,7 +55,11 @@ std::string summary(const SolveStatistics& s) {
                       ? fmt::format("{} of the light that probe evaluates (at most {}), {} of what export writes",
                                     percent(*s.relative_error_estimate), known(s.relative_error_bound),
                                     known(s.relative_error_estimate_interpolant))
-                      : "not known: the run was stopped before its first estimate");
+                  : s.stopped_by.empty() ? "not estimated"
+                                         : "not known: the run was stopped before its first estimate");
+    if (const auto predicted = s.figures.find("predicted_links"); predicted != s.figures.end())
+        line("tasks", fmt::format("{}, {} stolen; {:.4g} links predicted", s.figures.at("tasks"),
+                                  s.figures.at("stolen_tasks"), predicted->second));
     if (s.rooms.size() > 1) line("rooms", rooms_line(s.rooms));
     line("reached", s.converged ? "yes" : s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by));
     line("elements", fmt::format("{} ({} leaves) on {} surfaces", s.elements, s.leaf_elements, s.surfaces));

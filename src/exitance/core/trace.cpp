@@ -37,4 +37,11 @@ void TaskTrace::end_loop(Loop loop) {
     loops_.push_back(std::move(loop));
 }
 
+void TaskTrace::add_graph(TaskGraph graph) {
+    graph.phase = phases_.empty() ? 0 : phases_.size() - 1;
+    graph.id = next_id_;
+    next_id_ += graph.iterations.size() + graph.tasks.size();
+    graphs_.push_back(std::move(graph));
+}
+
 }  // namespace exitance

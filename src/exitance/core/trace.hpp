@@ -8,6 +8,7 @@
 
 #include "exitance/core/progress.hpp"
 #include "exitance/core/schedule.hpp"
+#include "exitance/core/task_graph.hpp"
 
 namespace exitance {
 
@@ -56,12 +57,16 @@ class TaskTrace {
     /// For parallel loops: `tasks` of them are to begin, or have ended.
     Loop begin_loop(const char* name, std::size_t count, std::size_t grain, std::size_t tasks);
     void end_loop(Loop loop);
+    /// Of an engine whose tasks make tasks; its times count from this trace's beginning.
+    void add_graph(TaskGraph graph);
+    const std::vector<TaskGraph>& graphs() const { return graphs_; }
     double now() const { return watch_.seconds(); }
 
   private:
     Stopwatch watch_;
     std::vector<Phase> phases_;
     std::vector<Loop> loops_;
+    std::vector<TaskGraph> graphs_;
     std::uint64_t next_id_ = 0;
 };
 

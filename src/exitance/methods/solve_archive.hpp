@@ -50,11 +50,11 @@ void archive(Archive& a, SolveStatistics& statistics) {
     auto& [method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations,
            converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, standard_error, energy, seconds,
            peak_memory_bytes, link_memory_bytes, element_memory_bytes, elements_by_level, warnings, discontinuity,
-           stopped_by] = statistics;
+           figures, stopped_by] = statistics;
     a(method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations);
     a(converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, standard_error, energy, seconds,
       peak_memory_bytes, link_memory_bytes);
-    a(element_memory_bytes, elements_by_level, warnings, stopped_by);
+    a(element_memory_bytes, elements_by_level, warnings, figures, stopped_by);
 }
 
 }  // namespace exitance

@@ -18,6 +18,7 @@
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/solve_archive.hpp"
 #include "exitance/methods/solve_report.hpp"
+#include "exitance/methods/tasks/solve_by_tasks.hpp"
 #include "exitance/reconstruct/continuous.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/error/certificate.hpp"
@@ -542,6 +543,7 @@ Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Pr
                              const StopRequest& stop, CheckpointStore* checkpoints) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
+    if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);
     const Stopwatch watch;
     Result<Solution> solution = Solver(scene, options, progress, stop, checkpoints).run();
     if (!solution) return solution;

@@ -73,7 +73,8 @@ struct SolveStatistics {
     std::vector<std::size_t> elements_by_level;
     std::vector<std::string> warnings;
     std::optional<DiscontinuityCounts> discontinuity;
-    std::string stopped_by;  ///< Empty, or "time limit", "memory limit", "iterations", "interrupt".
+    std::map<std::string, double> figures;  ///< What a part has to tell beyond these, by the name of its JSON key.
+    std::string stopped_by;                 ///< Empty, or "time limit", "memory limit", "iterations", "interrupt".
 };
 
 /// The links of a hierarchy, and the elements that they lead between.

@@ -129,6 +129,8 @@ struct SolveOptions {
     bool overshooting = false;  ///< Shooting sends more than the unshot light, expecting what returns.
 
     VisibilityKind visibility = VisibilityKind::automatic;
+    std::optional<double> threshold = {};  ///< Of the oracles ff (no unit) and bf (W in the brightest band).
+    bool task_engine = false;              ///< Classical hierarchical radiosity as tasks that make tasks.
     std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
     bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
     LinkOracle oracle = LinkOracle::transport;  ///< By what links are held to be good enough.
@@ -155,7 +157,7 @@ struct SolveOptions {
     /// Where points are looked at, it is the error there.
     std::optional<double> error_demand() const {
         if (error) return error;
-        return has_knobs() || !importance.empty() ? std::nullopt : std::optional(default_error);
+        return has_knobs() || task_engine || !importance.empty() ? std::nullopt : std::optional(default_error);
     }
     /// The error that knobs left open are derived from.
     double error_target() const { return error.value_or(default_error); }

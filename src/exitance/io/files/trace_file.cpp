@@ -38,6 +38,29 @@ std::string describe(const TaskTrace::Loop& loop, const TaskTrace::Task& task) {
     return out;
 }
 
+/// Iterations as loops, and tasks whose parent is the task that made them: roots' is their iteration.
+void write_graph(const TaskTrace& trace, const TaskGraph& graph, AtomicFile& file) {
+    const std::uint64_t first_task = graph.id + graph.iterations.size();
+    for (std::size_t i = 0; i < graph.iterations.size(); ++i) {
+        const TaskGraph::Iteration& iteration = graph.iterations[i];
+        file.write(event("iteration", "loop", 0, iteration.begin, iteration.end, graph.id + i,
+                         fmt::format(R"(,"parent":{},"tasks":{},"total_radiosity":{:.9g},"serial":{:.3f})",
+                                     trace.phases()[graph.phase].id, iteration.task_count, iteration.total_radiosity,
+                                     1e6 * iteration.serial)));
+    }
+    for (std::size_t t = 0; t < graph.tasks.size(); ++t) {
+        const TaskGraph::Task& task = graph.tasks[t];
+        const bool is_root = task.maker == TaskGraph::none;
+        std::string more =
+            fmt::format(R"(,"parent":{},"iteration":{},"receiver_polygon":{},"level":{},"interactions":{})",
+                        is_root ? graph.id + task.iteration : first_task + task.maker, task.iteration, task.polygon,
+                        task.level, task.interactions);
+        for (std::size_t k = 0; k < TaskGraph::cost_names.size(); ++k)
+            more += fmt::format(R"(,"{}":{:.3f})", TaskGraph::cost_names[k], 1e6 * task.seconds[k]);
+        file.write(event("patch", "task", task.worker + 1, task.begin, task.end, first_task + t, more));
+    }
+}
+
 }  // namespace
 
 Result<void> write_trace(const TaskTrace& trace, const std::string& path) {
@@ -46,6 +69,7 @@ Result<void> write_trace(const TaskTrace& trace, const std::string& path) {
     std::size_t workers = 0;
     for (const TaskTrace::Loop& loop : trace.loops())
         for (const TaskTrace::Task& task : loop.tasks) workers = std::max(workers, task.worker + 1);
+    for (const TaskGraph& graph : trace.graphs()) workers = std::max(workers, graph.workers);
     file->write(
         fmt::format("{{\"displayTimeUnit\":\"ms\",\"otherData\":{{\"schedule\":\"{}\",\"threads\":{}}},"
                     "\"traceEvents\":[\n{}",
@@ -61,6 +85,7 @@ Result<void> write_trace(const TaskTrace& trace, const std::string& path) {
             file->write(event(loop.name, "task", task.worker + 1, task.begin, task.end, loop.id + 1 + task.index,
                               describe(loop, task)));
     }
+    for (const TaskGraph& graph : trace.graphs()) write_graph(trace, graph, *file);
     file->write("\n]}\n");
     return file->commit();
 }

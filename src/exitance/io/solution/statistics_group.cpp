@@ -75,6 +75,8 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
     file.make_group(group + "/seconds");
     for (const auto& [phase, seconds] : statistics.seconds)
         file.set_attribute(group + "/seconds", phase.c_str(), seconds);
+    file.make_group(group + "/figures");
+    for (const auto& [name, value] : statistics.figures) file.set_attribute(group + "/figures", name.c_str(), value);
     if (!statistics.elements_by_level.empty()) {
         const std::vector<std::int64_t> levels(statistics.elements_by_level.begin(),
                                                statistics.elements_by_level.end());
@@ -112,6 +114,9 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
     for (const std::string& phase : file.attribute_names(group + "/seconds"))
         if (const auto seconds = file.number_attribute(group + "/seconds", phase.c_str()))
             statistics.seconds[phase] = *seconds;
+    if (const std::string figures = group + "/figures"; file.has(figures))
+        for (const std::string& name : file.attribute_names(figures))
+            if (const auto value = file.number_attribute(figures, name.c_str())) statistics.figures[name] = *value;
     if (const std::string levels = group + "/elements_by_level"; file.has(levels))
         for (const std::int64_t count : file.read<std::int64_t>(levels))
             statistics.elements_by_level.push_back(static_cast<std::size_t>(std::max<std::int64_t>(0, count)));

@@ -1,0 +1,255 @@
+// The thesis's structures for visibility [Gatenby95] beside ours, as CSV:
+//
+//     exitance-thesis-visibility candidates|volumes|rays SCENE.obj...
+//
+// candidates     share of the polygons that may hide the source: of BSP nodes, by front-to-back orderings, all and
+// those
+//                alone that face the source; of the same fragments, and of points on them, by shafts
+// volumes        polygons that survive shadow volumes (chains of SVBSP planes), and shafts, for pairs of a source and a
+//                polygon; looks at planes, microseconds
+// rays           10^6 rays through the BSP tree and through Embree: rays per second, and how many meet the same
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "exitance/core/random.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/visibility/bsp/shadow_volume.hpp"
+#include "exitance/visibility/bsp/source_orderings.hpp"
+#include "exitance/visibility/shaft.hpp"
+
+namespace {
+
+using namespace exitance;
+
+double cpu_seconds() {
+    timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// ------------------------------------------------------------------------------------------------- candidates
+
+struct Mean {
+    double sum = 0;
+    std::size_t count = 0;
+    void add(std::size_t v) { sum += static_cast<double>(v), ++count; }
+    double share(std::size_t of) const { return count > 0 ? sum / static_cast<double>(count * of) : 0; }
+};
+
+/// Lists of points in half-shadow: squares of a thousandth of the scene's size stand for them.
+void add_points(const Occluders& occluders, std::span<const Point> outline, const ConvexPiece& piece,
+                const Facet& source, RandomStream& random, Mean& lists) {
+    constexpr int places = 8;
+    const double half = 0.0005 * occluders.scene().size();
+    const Frame frame(piece.plane.n);
+    Shaft shaft;
+    std::vector<PieceId> found;
+    for (int i = 0; i < places; ++i) {
+        Point p = outline[0];
+        for (const Point& q : outline) p += random.uniform() * (q - p);
+        const std::array<Point, 4> square{p + frame.to_world(-half, -half, 0), p + frame.to_world(half, -half, 0),
+                                          p + frame.to_world(half, half, 0), p + frame.to_world(-half, half, 0)};
+        shaft.set(occluders, {square, piece.plane.n, piece.region}, source);
+        if (shaft.classify(found) == View::mixed) lists.add(found.size());
+    }
+}
+
+void candidates(const char* name, const Scene& scene) {
+    const Occluders occluders(scene);
+    const BspTree tree(occluders);
+    constexpr std::size_t most_nodes = 400;
+    const std::size_t step = std::max<std::size_t>(1, tree.nodes().size() / most_nodes);
+    enum { penumbra, shadowed, lists };
+    Mean bsp[lists], facing[lists], shaft_list[lists];
+    Mean points;
+    RandomStream random(1, Stream::mesh);
+    std::size_t split_near_root = 0;
+    std::size_t emitters = 0;
+    constexpr std::size_t most_emitters = 8;
+    for (SurfaceId s : scene.emitters()) {
+        if (++emitters > most_emitters) break;
+        const RegionId source_region = scene.surfaces()[s].region;
+        const std::vector<Point> hull = convex_hull(scene.outline(s), scene.surfaces()[s].normal);
+        if (hull.size() < 3 || hull.size() > 64) continue;
+        const SourceOrderings orderings(tree, hull);
+        for (const BspTree::Node& node : tree.nodes()) {
+            if (node.depth > 3) continue;
+            int sides = 0;
+            for (const Point& p : hull) sides |= tree.side(node, p) > 0 ? 1 : tree.side(node, p) < 0 ? 2 : 0;
+            split_near_root += sides == 3;
+        }
+        const Facet source{hull, scene.surfaces()[s].normal, source_region};
+        Shaft shaft;
+        std::vector<PieceId> found;
+        for (std::size_t n = 0; n < tree.nodes().size(); n += step) {
+            const BspTree::Node& node = tree.nodes()[n];
+            bool is_penumbra = false, is_umbra = false;
+            Mean longest;
+            for (const BspTree::Fragment& f : tree.fragments(node)) {
+                const ConvexPiece& piece = occluders.pieces()[f.piece];
+                shaft.set(occluders, {tree.outline(f), piece.plane.n, piece.region}, source);
+                const View view = shaft.classify(found);
+                is_penumbra |= view == View::mixed;
+                // Turned away is none, too, and is no shadow.
+                is_umbra |= view == View::none && !shaft.blocker().is_none();
+                if (view == View::mixed) longest.add(found.size());
+            }
+            if (!is_penumbra && !is_umbra) continue;
+            const std::size_t all = orderings.candidate_pieces(static_cast<std::uint32_t>(n)).size();
+            const std::size_t front = orderings.candidate_pieces(static_cast<std::uint32_t>(n), true).size();
+            const auto ours =
+                static_cast<std::size_t>(longest.count > 0 ? longest.sum / static_cast<double>(longest.count) : 1);
+            Mean of_points;
+            for (const BspTree::Fragment& f : tree.fragments(node))
+                add_points(occluders, tree.outline(f), occluders.pieces()[f.piece], source, random, of_points);
+            points.sum += of_points.sum, points.count += of_points.count;
+            for (int list = is_penumbra ? penumbra : shadowed; list < lists; ++list)
+                bsp[list].add(all), facing[list].add(front), shaft_list[list].add(ours);
+        }
+    }
+    const std::size_t pieces = occluders.pieces().size();
+    for (int list = 0; list < lists; ++list)
+        std::printf("%s,%zu,%zu,%zu,%zu,%zu,%s,%zu,%.4f,%.4f,%.4f,%.4f\n", name, pieces, tree.nodes().size(),
+                    tree.fragments().size(), tree.depth(), split_near_root,
+                    list == penumbra ? "penumbra" : "penumbra+umbra", bsp[list].count, bsp[list].share(pieces),
+                    facing[list].share(pieces), shaft_list[list].share(pieces), points.share(pieces));
+}
+
+// ---------------------------------------------------------------------------------------------- shadow volumes
+
+/// Survivors among all polygons for every pair of a source and a polygon that light may reach.
+void volumes(const char* name, const Scene& scene) {
+    const Occluders occluders(scene);
+    const auto& pieces = occluders.pieces();
+    constexpr std::size_t most_emitters = 4;
+    std::size_t pairs = 0, survivors = 0, of_shafts = 0, tests = 0, umbra = 0, hidden = 0, made = 0;
+    double making = 0, testing = 0, shaft_seconds = 0;
+    for (std::size_t e = 0; e < std::min(most_emitters, scene.emitters().size()); ++e) {
+        const Surface& emitter = scene.surfaces()[scene.emitters()[e]];
+        const std::vector<Point> hull = convex_hull(scene.outline(scene.emitters()[e]), emitter.normal);
+        const Plane plane = scene.regions()[emitter.region].plane;
+        std::vector<std::pair<PieceId, ShadowVolume>> all;
+        double begin = cpu_seconds();
+        for (PieceId p : pieces.ids()) {
+            if (occluders.is_own(pieces[p].region, emitter.region)) continue;
+            ShadowVolume volume(hull, plane, occluders.corners(p), pieces[p].plane, occluders.rounding());
+            if (!volume.is_empty()) all.emplace_back(p, std::move(volume));
+        }
+        making += cpu_seconds() - begin, made += all.size();
+        Shaft shaft;
+        std::vector<PieceId> found;
+        for (PieceId r : pieces.ids()) {
+            if (occluders.is_own(pieces[r].region, emitter.region)) continue;
+            const Facet receiver{occluders.corners(r), pieces[r].plane.n, pieces[r].region};
+            begin = cpu_seconds();
+            shaft.set(occluders, receiver, {hull, emitter.normal, emitter.region});
+            const View view = shaft.classify(found);
+            shaft_seconds += cpu_seconds() - begin;
+            if (view == View::none && shaft.blocker().is_none()) continue;  // turned away
+            ++pairs;
+            of_shafts += view == View::mixed ? found.size() : view == View::none ? 1 : 0;
+            hidden += view == View::none;
+            begin = cpu_seconds();
+            bool is_umbra = false;
+            for (const auto& [p, volume] : all) {
+                if (pieces[p].region == pieces[r].region) continue;
+                if (volume.in_penumbra(receiver.corners, tests) == ShadowVolume::Place::outside) continue;
+                ++survivors;
+                is_umbra |= volume.in_umbra(receiver.corners, tests) == ShadowVolume::Place::inside;
+            }
+            testing += cpu_seconds() - begin;
+            umbra += is_umbra;
+        }
+    }
+    const double each = pairs > 0 ? 1.0 / static_cast<double>(pairs) : 0;
+    std::printf("%s,%zu,%zu,%zu,%.2f,%.2f,%.1f,%zu,%zu,%.2f,%.2f,%.2f\n", name, pieces.size(), pairs, made,
+                each * static_cast<double>(survivors), each * static_cast<double>(of_shafts),
+                each * static_cast<double>(tests), umbra, hidden,
+                1e6 * making / static_cast<double>(std::max<std::size_t>(1, made)), 1e6 * each * testing,
+                1e6 * each * shaft_seconds);
+}
+
+// ------------------------------------------------------------------------------------------------------- rays
+
+void rays(const char* name, const Scene& scene) {
+    constexpr std::size_t count = 1'000'000;
+    const Occluders occluders(scene);
+    double begin = cpu_seconds();
+    const BspTree tree(occluders);
+    const double built = cpu_seconds() - begin;
+    const RayTracer tracer(scene);
+    RandomStream random(1, Stream::mesh);
+    const Vec3 size = scene.box().size();
+    std::vector<Point> origins(count);
+    std::vector<Vec3> directions(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        origins[i] =
+            scene.box().lo + Vec3{random.uniform() * size.x, random.uniform() * size.y, random.uniform() * size.z};
+        const double z = 2 * random.uniform() - 1, turn = 2 * pi * random.uniform(), r = std::sqrt(1 - z * z);
+        directions[i] = {r * std::cos(turn), r * std::sin(turn), z};
+    }
+    std::vector<RayHit> expected(count);
+    begin = cpu_seconds();
+    tracer.nearest(origins, directions, RegionId(), expected);
+    const double embree = cpu_seconds() - begin;
+    std::vector<BspTree::Hit> hits(count);
+    begin = cpu_seconds();
+    for (std::size_t i = 0; i < count; ++i) hits[i] = tree.nearest(origins[i], directions[i]);
+    const double bsp = cpu_seconds() - begin;
+    std::size_t same = 0, same_distance = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool none = hits[i].piece.is_none() && expected[i].surface.is_none();
+        const bool near = none || std::abs(hits[i].distance - expected[i].distance) < 1e-5 * scene.size();
+        same_distance += near;
+        same += none ||
+                (near && !hits[i].piece.is_none() && occluders.pieces()[hits[i].piece].region == expected[i].region);
+    }
+    std::printf("%s,%zu,%zu,%zu,%.3f,%.3g,%.3g,%zu,%zu\n", name, occluders.pieces().size(), tree.fragments().size(),
+                tree.memory_bytes(), built, static_cast<double>(count) / bsp, static_cast<double>(count) / embree,
+                count - same, count - same_distance);
+}
+
+struct Study {
+    const char* name;
+    const char* header;
+    void (*run)(const char*, const Scene&);
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const Study studies[] = {
+        {"candidates",
+         "scene,polygons,nodes,fragments,depth,source_splits_to_depth_3,lists,count,bsp_share,bsp_facing_share,shaft_"
+         "share",
+         candidates},
+        {"volumes",
+         "scene,polygons,pairs,volumes,volume_survivors,shaft_survivors,plane_tests,umbra_by_volume,hidden_by_shaft,"
+         "us_a_volume,us_testing,us_a_shaft",
+         volumes},
+        {"rays",
+         "scene,polygons,fragments,bytes,build_seconds,bsp_rays_per_second,embree_rays_per_second,other_hits,other_"
+         "distances",
+         rays},
+    };
+    for (const Study& study : studies) {
+        if (argc < 3 || std::strcmp(argv[1], study.name) != 0) continue;
+        std::printf("%s\n", study.header);
+        for (int i = 2; i < argc; ++i) {
+            const CheckedScene checked = load_scene({argv[i]}, {});
+            if (!checked.scene) return std::fprintf(stderr, "%s\n", checked.scene.error().message.c_str()), 3;
+            const std::string path = argv[i];
+            const std::string name = path.substr(path.rfind('/') + 1, path.rfind('.') - path.rfind('/') - 1);
+            study.run(name.c_str(), *checked.scene);
+            std::fflush(stdout);
+        }
+        return 0;
+    }
+    return std::fprintf(stderr, "usage: %s candidates|volumes|rays SCENE.obj...\n", argv[0]), 2;
+}
