@@ -10,7 +10,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t least_units = 8, usual_least = 256, usual_most = 2048;
-constexpr std::size_t pool_size = 1 << 15;
+constexpr std::size_t least_pool = 1 << 15, points_a_unit = 64;  ///< Of the pool that samples come from.
 
 /// Light of the cells on the leaves of the projection: linear and bilinear, for all that reads elements.
 void put_on_elements(const Stage& stage, const CellFunction& E, GlobalLight& light) {
@@ -87,7 +87,7 @@ GlobalLight solve_growing_cells(const MethodInput& input) {
     light.direct = classic ? std::vector<Spectrum>(rho.size()) : leaf_means(input.direct, light.numbering);
     light.on_projection = !classic;
     light.holds_direct = classic;
-    const SurfacePool pool(input.stage, pool_size, input.options.seed);
+    const SurfacePool pool(input.stage, std::max(least_pool, points_a_unit * units_of(input)), input.options.seed);
     LearnedLight learned = classic ? learn_flow(input, pool) : learn_visibility(input, pool);
     light.cells = std::move(learned.light);
     const CellFunction E(light.cells);

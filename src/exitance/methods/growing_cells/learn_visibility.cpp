@@ -11,11 +11,11 @@
 namespace exitance {
 namespace {
 
-constexpr double near = 3;                ///< Cells nearer than so many of their sizes are summed point by point.
-constexpr std::size_t rays_a_pair = 4;    ///< Where the network is not sure what is seen.
-constexpr std::size_t nodes_a_cell = 16;  ///< Places that a cell sends light from, about.
-constexpr double turn_by_size = 0.2;      ///< Length that a turn counts as, by the scene's size.
-constexpr double slope_ridge = 0.02;      ///< Of slopes, by the spread of a cell's neighbours.
+constexpr double near = 3;               ///< Cells nearer than so many of their sizes are summed point by point.
+constexpr std::size_t rays_a_pair = 4;   ///< Where the network is not sure what is seen.
+constexpr std::size_t nodes_a_cell = 4;  ///< Places that a cell sends light from, about.
+constexpr double turn_by_size = 0.2;     ///< Length that a turn counts as, by the scene's size.
+constexpr double slope_ridge = 0.02;     ///< Of slopes, by the spread of a cell's neighbours.
 constexpr std::size_t most_reflections = 200;
 constexpr double direct_accuracy = 0.01;  ///< Of direct light at places, where emitters are many.
 
