@@ -131,6 +131,29 @@ void solve_outputs(const std::vector<double>& G, const std::vector<Spectrum>& rh
     }
 }
 
+/// The shading network, by a share from the ends of rays as these were drawn, the rest being even.
+ShadingNetwork grow_at_ends(const MethodInput& input, const SurfacePool& pool, const std::vector<std::uint32_t>& ends,
+                            std::size_t units) {
+    constexpr double by_ends = 0.25;
+    const auto draw = [&](double u, double v) {
+        const bool end = v < by_ends && !ends.empty();
+        const auto i = static_cast<std::uint32_t>(u * static_cast<double>(end ? ends.size() : pool.size()));
+        return end ? ends[i] : i;
+    };
+    return grow_shading_network(pool, draw, units, true, input.stage.scene.size(), input.options.seed, input.stop);
+}
+
+/// rho E at every point of the pool, W/m^2.
+std::vector<Spectrum> reflected_radiosity(const Stage& stage, const SurfacePool& pool, const CellLight& light) {
+    const CellFunction E(light);
+    std::vector<Spectrum> out(pool.size());
+    parallel_for(pool.size(), 64, [&](std::size_t i) {
+        const Spectrum& rho = stage.scene.material(pool[i].region).reflectance;
+        if (max(rho) > 0) out[i] = rho * E.at(pool[i].at, pool[i].n);
+    });
+    return out;
+}
+
 }  // namespace
 
 /// 1. A kernel network learns G V M from rays that begin on emitters, by the delta rule while it grows and by least
@@ -158,15 +181,7 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     out.light.normalised = false;
     input.progress.phase("grow");
     const bool has_light = emitted.grow(units / 2, input.stop, &input.progress);
-    const std::vector<std::uint32_t> ends = emitted.receivers_drawn();
-    constexpr double by_ends = 0.25;  // of the shading network's samples, the rest being even
-    const auto draw = [&](double u, double v) {
-        const bool end = v < by_ends && !ends.empty();
-        const auto i = static_cast<std::uint32_t>(u * static_cast<double>(end ? ends.size() : pool.size()));
-        return end ? ends[i] : i;
-    };
-    ShadingNetwork network =
-        grow_shading_network(pool, draw, units, true, stage.scene.size(), input.options.seed, input.stop);
+    ShadingNetwork network = grow_at_ends(input, pool, emitted.receivers_drawn(), units);
     out.light.cells = network.cells;
     out.light.triangles = network.triangles;
     if (!has_light) return out;
@@ -179,12 +194,7 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     const std::size_t most_rounds = std::min(most_reflections, input.knobs.max_iterations);
     std::vector<Spectrum> B(pool.size());
     for (std::size_t round = 0; round < most_rounds && !input.stop.requested(); ++round) {
-        const CellFunction E(out.light);
-        std::vector<Spectrum> next(pool.size());
-        parallel_for(pool.size(), 64, [&](std::size_t i) {
-            const Spectrum& rho = stage.scene.material(pool[i].region).reflectance;
-            if (max(rho) > 0) next[i] = rho * E.at(pool[i].at, pool[i].n);
-        });
+        std::vector<Spectrum> next = reflected_radiosity(stage, pool, out.light);
         double change = 0, all = 0;
         for (std::size_t i = 0; i < pool.size(); ++i) change += mean(next[i] - B[i]), all += mean(next[i] + M[i]);
         B = std::move(next);
