@@ -30,6 +30,14 @@ TEST(ProgramUsage, HelpListsEveryVerb) {
     for (const std::string& verb : verbs) EXPECT_NE(help.out.find("\n  " + verb + " "), std::string::npos) << verb;
 }
 
+TEST(ProgramUsage, OptionsOfGrowingCellsAreErrorsWithOtherMethods) {
+    for (const auto& [option, value] : {std::pair{"--gcs", "classic"}, {"--max-units", "64"}}) {
+        const Finished run = run_program({"solve", "room.obj", "--method", "matrix", option, value, "-o", "s.h5"});
+        EXPECT_EQ(run.status, 2) << option;
+        EXPECT_NE(run.err.find("growing-cells"), std::string::npos) << run.err;
+    }
+}
+
 TEST(ProgramUsage, SolvingIntoAMeshOrAPictureNamesTheVerbThatMakesIt) {
     for (const auto& [name, verb] : {std::pair{"s.vtu", "export"}, {"s.glb", "export"}, {"s.png", "render"}}) {
         const Finished run = run_program({"solve", "room.obj", "-o", name});

@@ -309,6 +309,10 @@ void declare_method(CLI::App& app, SolveArguments& arguments) {
         ->group("Method");
     add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
         ->group("Method");
+    add_choice(app, "--gcs", cells_names, o.gcs,
+               "Growing cells as published, all light through the networks, or improved (default)")
+        ->group("Method");
+    add_count(app, "--max-units", o.max_units, 8, "Of each network of growing cells")->group("Method");
     add_count(app, "--hemicube-cells", o.hemicube_cells, 2, "Along an edge of a hemicube's top, even")->group("Method");
     add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");
 }
@@ -342,6 +346,8 @@ void declare(CLI::App& app, SolveArguments& arguments) {
             throw CLI::ValidationError("--basis",
                                        fmt::format("method {} has no basis {}", name_in(method_names, o.method),
                                                    name_in(basis_names, *o.basis)));
+        if ((o.gcs || o.max_units) && o.method != Method::growing_cells)
+            throw CLI::ValidationError(o.gcs ? "--gcs" : "--max-units", "is obeyed by --method growing-cells alone");
     });
     app.add_option_function<std::string>(
            "--bounces", [&o](const std::string& w) { o.bounces = read_bounces(w); },

@@ -146,6 +146,8 @@ std::string options_json(const SolveOptions& o) {
         {"importance", o.importance.empty() ? Json(nullptr) : Json(fingerprint(o.importance))},
         {"form_factors", name_or_null(form_factor_names, o.form_factors)},
         {"oracle", name_in(oracle_names, o.oracle)},
+        {"gcs", name_or_null(cells_names, o.gcs)},
+        {"max_units", value_or_null(o.max_units)},
         {"hemicube_cells", value_or_null(o.hemicube_cells)},
         {"keep_links", o.keep_links},
         {"seed", o.seed},

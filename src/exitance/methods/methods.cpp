@@ -19,6 +19,7 @@ std::span<const MethodEntry> method_table() {
         {Method::monte_carlo, solve_monte_carlo, "constant"},
         // Its own is the direct light; what is reflected comes from the method that suits most scenes.
         {Method::discontinuity, solve_matrix, "quadratic"},
+        {Method::growing_cells, solve_growing_cells, "gaussian"},
     };
     return table;
 }

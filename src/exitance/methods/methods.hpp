@@ -45,5 +45,6 @@ GlobalLight solve_substructuring(const MethodInput& input);
 GlobalLight solve_monte_carlo(const MethodInput& input);
 GlobalLight solve_hierarchical(const MethodInput& input);
 GlobalLight solve_wavelet(const MethodInput& input);
+GlobalLight solve_growing_cells(const MethodInput& input);
 
 }  // namespace exitance

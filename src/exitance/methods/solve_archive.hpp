@@ -30,13 +30,19 @@ void archive(Archive& a, DirectProjection& projection) {
 }
 
 template <class Archive>
+void archive(Archive& a, CellLight& light) {
+    auto& [delivered, normalised, cells, triangles, kernel, kernel_edges] = light;
+    a(delivered, normalised, cells, triangles, kernel, kernel_edges);
+}
+
+template <class Archive>
 void archive(Archive& a, GlobalLight& light) {
     auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection,
            standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links,
-           link_memory_bytes, element_memory_bytes, elements_by_level, kept_links] = light;
+           link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, cells] = light;
     a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection);
     a(standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links);
-    a(link_memory_bytes, element_memory_bytes, elements_by_level, kept_links);
+    a(link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, cells);
 }
 
 template <class Archive>

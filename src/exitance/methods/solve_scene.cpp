@@ -128,7 +128,8 @@ class Solver {
     void archive_state(Archive& a, std::string& phase) {
         a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase,
           becomes_linear_);
-        a(light_in_, solution_.indirect, solution_.direct_share, solution_.direct_in_elements, solution_.statistics);
+        a(light_in_, solution_.indirect, solution_.cells, solution_.direct_share, solution_.direct_in_elements,
+          solution_.statistics);
         bool has_local_pass = local_pass_.has_value();
         a(has_local_pass);
         if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
@@ -343,6 +344,8 @@ class Solver {
             return false;
         }
         solution_.indirect = std::move(indirect);
+        solution_.cells = light_->cells;
+        solution_.cells.delivered = !gathers() && !solution_.cells.cells.empty();
         solution_.direct_share = share_;
         solution_.direct_in_elements = light_->holds_direct;
         record_method(stage_, *light_, has_links_, statistics());

@@ -19,6 +19,7 @@ RadiosityFunction::RadiosityFunction(const Solution& solution)
       locator_(solution.scene),
       indirect_locator_(solution.indirect.tree, solution.scene.regions().size()),
       interpolant_locator_(solution.interpolant.tree, solution.scene.regions().size()),
+      cells_(solution.cells),
       triangles_(solution.discontinuity, solution.scene),
       stage_(std::make_unique<Stage>(solution.scene)),
       accuracy_(point_accuracy(solution.statistics.relative_error_estimate.value_or(1))) {}

@@ -5,6 +5,7 @@
 
 #include "exitance/direct/clustered_light.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/mesh/growing_cells/cell_function.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/scene/locator.hpp"
 
@@ -47,6 +48,7 @@ class RadiosityFunction {
 
     /// E(x) = elements(x) + exact_share() E_dir(x) on a region: what the elements hold there,
     Spectrum elements(RegionId region, const Point& x) const {
+        if (solution_.cells.delivered) return cells_.at(x, solution_.scene.regions()[region].plane.n);
         return solution_.indirect.at(indirect_locator_.find(region, x));
     }
     /// and how much of exact direct light comes on top of it.
@@ -69,6 +71,7 @@ class RadiosityFunction {
     const Solution& solution_;
     Locator locator_;
     ElementLocator indirect_locator_, interpolant_locator_;
+    CellFunction cells_;        ///< Where growing cells hold the light.
     SixNodeLocator triangles_;  ///< Of the discontinuity mesh, where there is one.
     std::unique_ptr<Stage> stage_;
     LightAccuracy accuracy_;  ///< Of direct light where emitters are many and small.

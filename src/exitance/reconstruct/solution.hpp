@@ -8,6 +8,7 @@
 
 #include "exitance/links/kept_link.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
+#include "exitance/mesh/growing_cells/cell_light.hpp"
 
 namespace exitance {
 
@@ -103,6 +104,9 @@ struct Solution {
     /// E_dir + E_ind once more, where the method made such a mesh: then it is what `export` writes, and `interpolant`
     /// follows it by linear triangles, for what needs these.
     SixNodeMesh discontinuity = {};
+    /// What growing cells learned. Where they are `delivered`, they are evaluated in place of `indirect`, which is
+    /// their projection on elements then.
+    CellLight cells = {};
 };
 
 }  // namespace exitance

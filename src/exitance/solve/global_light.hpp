@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "exitance/links/kept_link.hpp"
+#include "exitance/mesh/growing_cells/cell_light.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
 #include "exitance/solve/relaxation.hpp"
 
@@ -51,6 +52,9 @@ struct GlobalLight {
 
     /// Of a hierarchy, where they are asked for: links by receiver, then by source.
     std::vector<KeptLink> kept_links = {};
+
+    /// Of growing cells: the light as the shading network holds it.
+    CellLight cells = {};
 
     /// Mean over all bands and a surface of `surface_area`, which is all that reflects, W/m^2.
     double mean_reflected(double surface_area) const;

@@ -15,7 +15,17 @@
 
 namespace exitance {
 
-enum class Method { automatic, matrix, progressive, substructuring, hierarchical, wavelet, monte_carlo, discontinuity };
+enum class Method {
+    automatic,
+    matrix,
+    progressive,
+    substructuring,
+    hierarchical,
+    wavelet,
+    monte_carlo,
+    discontinuity,
+    growing_cells
+};
 enum class BasisKind {
     constant,
     linear,
@@ -30,9 +40,11 @@ enum class BasisKind {
 };
 enum class VisibilityKind { automatic, fractional, quadrature, exact };
 enum class FormFactorKind { analytic, ray_cast, hemicube };
+/// Growing cells as published, all light through the networks, or with direct light apart and analytic kernels.
+enum class CellsKind { classic, improved };
 
 /// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
-inline constexpr std::array<std::pair<Method, std::string_view>, 8> method_names{{
+inline constexpr std::array<std::pair<Method, std::string_view>, 9> method_names{{
     {Method::automatic, "auto"},
     {Method::matrix, "matrix"},
     {Method::progressive, "progressive"},
@@ -41,6 +53,7 @@ inline constexpr std::array<std::pair<Method, std::string_view>, 8> method_names
     {Method::wavelet, "wavelet"},
     {Method::monte_carlo, "monte-carlo"},
     {Method::discontinuity, "discontinuity"},
+    {Method::growing_cells, "growing-cells"},
 }};
 inline constexpr std::array<std::pair<BasisKind, std::string_view>, 10> basis_names{{
     {BasisKind::constant, "constant"},
@@ -79,6 +92,11 @@ inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 3> form
     {FormFactorKind::hemicube, "hemicube"},
 }};
 
+inline constexpr std::array<std::pair<CellsKind, std::string_view>, 2> cells_names{{
+    {CellsKind::classic, "classic"},
+    {CellsKind::improved, "improved"},
+}};
+
 /// Constants to quadratic functions on leaves that are linked pair by pair, without a hierarchy.
 constexpr bool is_galerkin(BasisKind basis) {
     return basis == BasisKind::galerkin1 || basis == BasisKind::galerkin2 || basis == BasisKind::galerkin3;
@@ -89,6 +107,7 @@ constexpr bool fits(BasisKind basis, Method method) {
     const bool of_matrix = basis == BasisKind::constant || basis == BasisKind::linear || is_galerkin(basis);
     if (method == Method::automatic || method == Method::matrix) return of_matrix;
     if (method == Method::wavelet) return !of_matrix;
+    if (method == Method::growing_cells) return false;  // Gaussians, without a choice
     return basis == (method == Method::hierarchical ? BasisKind::haar : BasisKind::constant);
 }
 
@@ -137,6 +156,8 @@ struct SolveOptions {
     std::optional<bool> clusters = {};  ///< Links between clusters of pieces, too; empty: where pieces are many.
     std::optional<FormFactorKind> form_factors = {};
     std::optional<std::size_t> hemicube_cells = {};  ///< Along an edge of a hemicube's top.
+    std::optional<CellsKind> gcs = {};               ///< Of growing cells; empty: improved.
+    std::optional<std::size_t> max_units = {};       ///< Of each network of growing cells.
     /// Deliver what the method's elements hold in place of gathering it: smoothed (true) or as it is. Empty: whatever
     /// is best.
     std::optional<bool> smoothing = {};
@@ -151,7 +172,8 @@ struct SolveOptions {
 
     /// Has any of the knobs been set that the error asked for would otherwise decide?
     bool has_knobs() const {
-        return epsilon || mesh_size || residual || max_iterations || min_area || visibility_samples || hemicube_cells;
+        return epsilon || mesh_size || residual || max_iterations || min_area || visibility_samples || hemicube_cells ||
+               max_units;
     }
     /// The error to be reached: as asked for; `default_error` when nothing was said; none when knobs were set by hand.
     /// Where points are looked at, it is the error there.

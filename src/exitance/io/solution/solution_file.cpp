@@ -27,6 +27,7 @@ Result<void> write_solution(const std::string& path, const Solution& solution) {
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
     write_function(file, "exitance/interpolant", solution.interpolant);
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
+    if (!solution.cells.cells.empty()) write_cells(file, "exitance/growing_cells", solution.cells);
     if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
     write_statistics(file, "exitance/statistics", solution.statistics);
     return file.write_file(path);
@@ -63,6 +64,7 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed) {
     solution.interpolant = read_function(file, "exitance/interpolant", regions);
     if (file.has("exitance/discontinuity"))
         solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions);
+    if (file.has("exitance/growing_cells")) solution.cells = read_cells(file, "exitance/growing_cells");
     if (file.has("exitance/links")) solution.links = read_links(file, "exitance/links", regions);
     solution.statistics = read_statistics(file, "exitance/statistics");
     if (file.failed()) return file.error();

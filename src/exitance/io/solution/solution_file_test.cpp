@@ -154,6 +154,35 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
     EXPECT_FALSE(load_solution(path("bad.h5")));
 }
 
+TEST_F(SolutionFiles, HoldGrownCellsAndRefuseThoseThatMakeNoSense) {
+    Solution solution = sample_solution();
+    solution.cells.delivered = true, solution.cells.normalised = false;
+    for (int i = 0; i < 3; ++i)
+        solution.cells.cells.push_back({{0.1 * i, 0.2, 0.3}, {0, 0, 1}, 0.5 + i, Spectrum(i), {Spectrum(1), {}, {}}});
+    solution.cells.triangles = {{0, 1, 2}};
+    solution.cells.kernel = {{{1, 2, 3}, {4, 5, 6}, 0.7, Spectrum(8)}, {{1, 1, 1}, {2, 2, 2}, 0.1, Spectrum(9)}};
+    solution.cells.kernel_edges = {{0, 1}};
+    ASSERT_TRUE(write_solution(path("cells.h5"), solution));
+    const Result<Solution> back = load_solution(path("cells.h5"));
+    ASSERT_TRUE(back) << back.error().message;
+    const CellLight& cells = back->cells;
+    EXPECT_TRUE(cells.delivered && !cells.normalised);
+    ASSERT_EQ(cells.cells.size(), 3u);
+    EXPECT_EQ(cells.cells[2].at, solution.cells.cells[2].at);
+    EXPECT_EQ(cells.cells[2].value, Spectrum(2));
+    EXPECT_EQ(cells.cells[1].slope[0], Spectrum(1));
+    EXPECT_EQ(cells.triangles, solution.cells.triangles);
+    EXPECT_EQ(cells.kernel[1].y, solution.cells.kernel[1].y);
+    EXPECT_EQ(cells.kernel_edges, solution.cells.kernel_edges);
+
+    solution.cells.triangles = {{0, 1, 3}};
+    ASSERT_TRUE(write_solution(path("lost.h5"), solution));
+    EXPECT_FALSE(load_solution(path("lost.h5")));
+    solution.cells.triangles.clear(), solution.cells.cells[0].width = 0;
+    ASSERT_TRUE(write_solution(path("flat.h5"), solution));
+    EXPECT_FALSE(load_solution(path("flat.h5")));
+}
+
 TEST_F(SolutionFiles, OfEqualSolutionsAreEqual) {
     ASSERT_TRUE(write_solution(path("a.h5"), sample_solution()));
     set_threads(1);

@@ -38,6 +38,10 @@ KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t reg
 void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNodeMesh& mesh);
 SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
+/// The networks of growing cells.
+void write_cells(Hdf5Writer& file, const std::string& group, const CellLight& light);
+CellLight read_cells(Hdf5Reader& file, const std::string& group);
+
 /// Everything that may differ from run to run.
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics);
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);
