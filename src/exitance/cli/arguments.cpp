@@ -349,6 +349,12 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     declare_work(app, arguments, o.threads);
     add_choice(app, "--quantity", quantity_kinds, arguments.photometric,
                "Is light given in watts or in lumens? Default by the file: photometric where glTF has lights");
+    app.add_option("--sky", arguments.sky,
+                   "Light from outside, such as 'perez,lat=47.4,lon=8.5,time=06-21T12:00,dni=700,dhi=120'; uniform, "
+                   "overcast, clear, cie1 to cie15 and perez, see docs/daylight.md")
+        ->type_name("SKY");
+    app.add_option("--epw", arguments.epw, "Weather file: place and irradiances of the sky that --sky names")
+        ->type_name("FILE");
     add_choice(app, "--schedule", schedule_names, o.schedule,
                "How work comes to threads; default stealing. The result does not depend on it");
     app.add_option("--trace", arguments.trace, "Write every task's time, thread and data (Chrome trace format, .json)")

@@ -45,6 +45,7 @@ struct SolveArguments : CommonArguments {
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
     std::optional<bool> photometric;  ///< None: as the file has it.
+    std::string sky, epw;             ///< A sky in words, and a weather file for it; empty: none.
 };
 
 struct ProbeArguments : CommonArguments {

@@ -71,7 +71,7 @@ class DirectLight {
                  Workspace& scratch) const;
 
     /// The irradiance at a point of the polygon that `light` was made for: as above, up to rounding. What comes from
-    /// parallel light is added to `parallel`, if given.
+    /// outside, by parallel light and from the sky, is added to `parallel`, if given.
     Spectrum irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
                         Spectrum* parallel = nullptr) const;
 
@@ -88,12 +88,16 @@ class DirectLight {
         RelativeRadiance radiance = {};
     };
     const std::vector<Emitter>& emitters() const { return emitters_; }
+    /// Those of the sky come last; they are no regions.
+    bool is_distant(std::size_t emitter) const { return emitter >= first_distant_; }
+    static bool is_own(const Emitter& emitter, RegionId own) { return !own.is_none() && emitter.region == own; }
     const Occluders& occluders() const { return *occluders_; }
 
     /// Form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.
     double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
 
   private:
+    void add_distant_emitters(const Scene& scene);
     Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
                  Workspace& scratch) const;
@@ -105,6 +109,7 @@ class DirectLight {
 
     const Occluders* occluders_;
     std::vector<Emitter> emitters_;
+    std::size_t first_distant_ = 0;
     Beams beams_;
 };
 

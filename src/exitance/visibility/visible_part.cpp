@@ -6,6 +6,7 @@
 #include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/edge_sum.hpp"
+#include "exitance/visibility/glazed_part.hpp"
 
 namespace exitance {
 namespace {
@@ -51,7 +52,8 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     const ConvexPiece& piece = occluders.pieces()[source];
     const std::span<const Point> corners = occluders.corners(source);
     if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
-    for (const Point& p : corners) scratch.source.push_back(p - at.x);
+    const Point& from = occluders.is_distant(source) ? occluders.middle() : at.x;
+    for (const Point& p : corners) scratch.source.push_back(p - from);
     clip_in_place(scratch.source, at.n, 0, scratch);
 }
 
@@ -206,21 +208,19 @@ double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLi
     return cut_lit(cut, scratch) ? scratch.lit.form_factor(n) : 0;
 }
 
-void begin(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
-    look_at_source(occluders, at, source, scratch);
+void clear_shadows(Workspace& scratch) {
     scratch.planes.clear();
     scratch.shadows.clear();
     scratch.outlines.clear();
     scratch.uncovering.clear();
 }
 
-}  // namespace
-
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
-                           const PartLight& light) {
-    begin(occluders, at, source, scratch);
+/// Of what is in scratch.source, among all occluders.
+double part_among_all(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
+                      const PartLight& light) {
+    clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    const bool in_scene = !at.own.is_none();  // what lies on the scene's hull stands between none of its points
+    const bool in_scene = !at.own.is_none() && !occluders.is_distant(source);  // what lies on the scene's hull stands between none of its points
     if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
@@ -248,9 +248,9 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
     return finish(at.n, large > 1 ? large : 0, scratch, light);
 }
 
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
-                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch, const PartLight& light) {
-    begin(occluders, at, source, scratch);
+double part_among(const Occluders& occluders, const Receiver& at, PieceId source, std::span<const PieceId> candidates,
+                  VisibilityWorkspace& scratch, const PartLight& light) {
+    clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
     if (candidates.empty()) return finish(at.n, 0, scratch, light);
     make_pyramid(scratch);
@@ -258,6 +258,34 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
     for (PieceId p : candidates)
         if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
     return finish(at.n, 0, scratch, light);
+}
+
+}  // namespace
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
+                           const PartLight& light) {
+    look_at_source(occluders, at, source, scratch);
+    return part_among_all(occluders, at, source, scratch, light);
+}
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch, const PartLight& light) {
+    look_at_source(occluders, at, source, scratch);
+    return part_among(occluders, at, source, candidates, scratch, light);
+}
+
+double visible_form_factor_of_part(const Occluders& occluders, const Receiver& at, PieceId source,
+                                   std::span<const Vec3> part, std::optional<std::span<const PieceId>> candidates,
+                                   VisibilityWorkspace& scratch, const PartLight& light) {
+    scratch.source.assign(part.begin(), part.end());
+    return candidates ? part_among(occluders, at, source, *candidates, scratch, light)
+                      : part_among_all(occluders, at, source, scratch, light);
+}
+
+std::vector<Vec3> source_above_horizon(const Occluders& occluders, const Receiver& at, PieceId source,
+                                       VisibilityWorkspace& scratch) {
+    look_at_source(occluders, at, source, scratch);
+    return scratch.source;
 }
 
 }  // namespace exitance

@@ -15,6 +15,7 @@
 #include "exitance/io/scenes/rad_command.hpp"
 #include "exitance/io/scenes/rad_emission.hpp"
 #include "exitance/io/scenes/rad_shapes.hpp"
+#include "exitance/io/scenes/rad_sky.hpp"
 #include "exitance/io/scenes/xform.hpp"
 
 namespace exitance {
@@ -117,6 +118,13 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
             face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
             d.points.push_back(call.to_world.point(corner));
         }
+        if (meaning->kind == RadMeaning::Kind::glass) {
+            Pane pane = materials_.glass[meaning->material];
+            for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
+            pane.line = face.line;
+            d.panes.push_back(std::move(pane));
+            continue;
+        }
         if (turned) std::reverse(face.corners.begin(), face.corners.end());
         if (emits) {
             const std::optional<std::uint32_t> material =
@@ -132,7 +140,7 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
     }
 }
 
-/// A light infinitely far away: parallel, if it is small.
+/// A light infinitely far away: the sun's disc, a sky, the glow of the ground.
 void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
     const RadPlace at{*call.name, p.line};
     const RadMeaning* meaning = materials_.meaning_of(p, at.file);
@@ -141,21 +149,26 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
         return findings_.error(at, fmt::format("source '{}' has {} numbers", p.name, p.numbers.size()));
     const Vec3 towards = call.to_world.vector({p.numbers[0], p.numbers[1], p.numbers[2]});
     const double length = norm(towards), angle = p.numbers[3] * pi / 180;
-    constexpr double small = 0.2;  // radians: the sun has 0.0093
     if (!(length > 0) || !(angle > 0))
         return findings_.error(at, fmt::format("source '{}' has no direction or size", p.name));
-    if (meaning->kind != RadMeaning::Kind::emits || angle > small)
-        return findings_.note("skies and other wide sources", at);
-    if (meaning->pattern_count > 0)
-        return findings_.error(at,
-                               fmt::format("the light of source '{}' has a pattern, which is not read", shown(p.name)));
-    PunctualLight light;
-    light.name = call.prefix + shown(p.name), light.kind = PunctualLight::Kind::directional;
-    light.direction = -towards / length;
-    light.intensity =
-        (2 * pi * (1 - std::cos(0.5 * angle))) * radiance_of_exitance(materials_.materials[meaning->material].exitance);
-    findings_.note("the size of a distant source, whose light is parallel", at);
-    out_.description.lights.push_back(std::move(light));
+    if (meaning->kind != RadMeaning::Kind::emits) return findings_.note("sources that do not shine", at);
+    std::optional<SkyModel> pattern;
+    if (meaning->pattern_count > 0) {
+        const Result<SkyModel> sky = meaning->pattern_count == 1
+                                         ? sky_of_pattern(materials_.patterns[meaning->pattern])
+                                         : Error{ErrorCode::bad_input, "it lies on another pattern", "", ""};
+        if (!sky)
+            return findings_.error(at,
+                                   fmt::format("the light of source '{}' has a pattern, which is not read: {}",
+                                               shown(p.name), sky.error().message),
+                                   sky.error().hint);
+        pattern = *sky;
+    }
+    const Spectrum radiance = radiance_of_exitance(materials_.materials[meaning->material].exitance);
+    const std::optional<DistantLight> light =
+        light_of_source(towards / length, angle, radiance, pattern ? &*pattern : nullptr);
+    if (!light) return findings_.note("wide sources that are neither half of the sky nor all of it", at);
+    out_.description.distant.append(*light);
 }
 
 void RadianceReader::take(RadPrimitive p, const Call& call) {
