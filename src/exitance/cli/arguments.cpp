@@ -516,6 +516,35 @@ void declare(CLI::App& app, ReportArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146"}, {2, "577"}, {4, "2305"}}};
+
+void declare(CLI::App& app, DaylightArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of the scene; its own light does not count")->required();
+    app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus)")->type_name("FILE")->required();
+    app.add_option("--points", arguments.points, "Sensors: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", arguments.output, "Folder for illuminance.csv, metrics.csv, matrix.csv, summary.csv")
+        ->type_name("FOLDER")
+        ->required();
+    add_choice(app, "--sky-patches", patch_counts, arguments.division, "Patches of the sky; default 146");
+    app.add_option_function<std::string>(
+           "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },
+           "Degrees clockwise from y to north, seen from above; default 0")
+        ->type_name("DEGREES");
+    app.add_option_function<std::string>(
+           "--ground",
+           [&arguments](const std::string& w) {
+               arguments.ground = read_number("--ground", w);
+               if (!(arguments.ground >= 0 && arguments.ground <= 1))
+                   throw CLI::ValidationError("--ground", fmt::format("must be from 0 to 1, not {}", w));
+           },
+           "Reflectance of the ground beneath the scene; default 0.2")
+        ->type_name("R");
+    declare_json(app, arguments);
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, CheckArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("--picture", arguments.picture, "Picture of the scene that marks what was found (.png)")
@@ -616,6 +645,8 @@ const std::vector<Verb>& verbs() {
          "exitance bake room.h5 -o lightmaps", parse_verb<BakeArguments>},
         {"report", "Writes a page with pictures, tables, measuring planes, energy balance and error.",
          "exitance report room.h5 -o room.html", parse_verb<ReportArguments>},
+        {"daylight", "Writes the daylight of a year at sensors: illuminances, autonomy, daylight factors.",
+         "exitance daylight room.h5 --epw city.epw --points desks.pts -o year", parse_verb<DaylightArguments>},
         {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
          parse_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",

@@ -109,6 +109,13 @@ struct ReportArguments : CommonArguments {
     int threads = 0;
 };
 
+struct DaylightArguments : CommonArguments {
+    std::string solution, epw, points, output;
+    int division = 1;  ///< Of Tregenza's patches, in either direction.
+    double north = 0, ground = 0.2;
+    int threads = 0;
+};
+
 struct CheckArguments : CommonArguments {
     SceneArguments scene;
     std::string picture;
@@ -133,7 +140,8 @@ struct ViewFactorArguments : CommonArguments {
 /// What the program is to do.
 using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
-                 BakeArguments, ReportArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
+                 BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
+                 ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

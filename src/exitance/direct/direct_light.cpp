@@ -70,21 +70,32 @@ Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) co
     return {x - (plane.signed_distance(x) - occluders_->lift(own)) * plane.n, n, own};
 }
 
+/// Of one emitter, through panes too.
+Spectrum DirectLight::light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const {
+    if (occluders_->scene().panes().empty()) {
+        const double f = form_factor(at, emitter, scratch);
+        return f > 0 ? f * emitter.exitance : Spectrum();
+    }
+    Spectrum sum;
+    if (is_own(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return sum;
+    for (PieceId piece : emitter.pieces)
+        sum += emitter.exitance * glazed_form_factor(*occluders_, at, piece, {}, scratch, emitter.radiance);
+    return sum;
+}
+
 Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
     const Receiver at = receiver(x, n, own);
     Spectrum sum;
-    const bool glazed = !occluders_->scene().panes().empty();
-    for (const Emitter& emitter : emitters_) {
-        if (glazed) {
-            if (is_own(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) continue;
-            for (PieceId piece : emitter.pieces)
-                sum += emitter.exitance * glazed_form_factor(*occluders_, at, piece, {}, scratch, emitter.radiance);
-            continue;
-        }
-        const double f = form_factor(at, emitter, scratch);
-        if (f > 0) sum += f * emitter.exitance;
-    }
+    for (const Emitter& emitter : emitters_) sum += light_of(emitter, at, scratch);
     return beams_.empty() ? sum : sum + beams_.irradiance(at);
+}
+
+std::vector<Spectrum> DirectLight::distant_light(const Point& x, const Normal& n, RegionId own,
+                                                 Workspace& scratch) const {
+    const Receiver at = receiver(x, n, own);
+    std::vector<Spectrum> out;
+    for (std::size_t i = first_distant_; i < emitters_.size(); ++i) out.push_back(light_of(emitters_[i], at, scratch));
+    return out;
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,

@@ -51,6 +51,9 @@ class DirectLight {
     /// caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
+    /// The same of each of the sky's facets by itself, in the order of `distant_facets`.
+    std::vector<Spectrum> distant_light(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
+
     /// A convex piece of an emitter.
     struct SourceName {
         std::uint32_t emitter = 0;
@@ -98,6 +101,7 @@ class DirectLight {
 
   private:
     void add_distant_emitters(const Scene& scene);
+    Spectrum light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const;
     Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
                  Workspace& scratch) const;

@@ -154,6 +154,8 @@ class Scene {
     const std::vector<Pane>& panes() const { return panes_; }
     /// Skies and suns.
     const DistantLight& distant() const { return distant_; }
+    /// As users say who want another light from outside.
+    void put_under(DistantLight light) { distant_ = std::move(light); }
     bool has_light() const { return !emitters_.empty() || has_light_apart(); }
     /// Is there light that no surface sends, so that rays from surface to surface do not find it?
     bool has_light_apart() const { return !lights_.empty() || !distant_.empty(); }
