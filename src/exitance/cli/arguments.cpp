@@ -519,7 +519,8 @@ void declare(CLI::App& app, ReportArguments& arguments) {
 constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146"}, {2, "577"}, {4, "2305"}}};
 
 void declare(CLI::App& app, DaylightArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of the scene; its own light does not count")->required();
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of the scene; its own light does not count")
+        ->required();
     app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus)")->type_name("FILE")->required();
     app.add_option("--points", arguments.points, "Sensors: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz")
         ->type_name("FILE")

@@ -138,10 +138,9 @@ struct ViewFactorArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command =
-    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
-                 BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
-                 ViewFactorArguments>;
+using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
+                             RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments,
+                             GenerateArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

@@ -46,8 +46,7 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     if (!solution) return terminal.fail(solution.error());
 
     DaylightResults results;
-    for (std::size_t i = 0; i < points->size(); ++i)
-        results.sensors.push_back({points->points[i], points->normals[i]});
+    for (std::size_t i = 0; i < points->size(); ++i) results.sensors.push_back({points->points[i], points->normals[i]});
     results.hours = hours_of(*weather);
     const DaylightSite site{.place = weather->place,
                             .north = arguments.north,

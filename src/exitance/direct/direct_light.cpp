@@ -49,8 +49,7 @@ void DirectLight::add_distant_emitters(const Scene& scene) {
         if (facet.sky) emitter.radiance = RelativeRadiance(*facet.sky, facet.smooth_width, facet.n);
         const std::span<const Point> corners = occluders_->corners(p);
         emitter.centre = centroid(corners);
-        for (const Point& corner : corners)
-            emitter.radius = std::max(emitter.radius, norm(corner - emitter.centre));
+        for (const Point& corner : corners) emitter.radius = std::max(emitter.radius, norm(corner - emitter.centre));
         emitters_.push_back(emitter);
     }
 }
@@ -149,8 +148,9 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
             continue;
         }
         const Emitter& emitter = emitters_[source.emitter];
-        scratch.shaft.set(*occluders_, {receiver, whole.n, whole.own},
-                          {occluders_->corners(source.piece), emitter.plane.n, emitter.region, is_distant(source.emitter)});
+        scratch.shaft.set(
+            *occluders_, {receiver, whole.n, whole.own},
+            {occluders_->corners(source.piece), emitter.plane.n, emitter.region, is_distant(source.emitter)});
         const auto from = std::span(whole.candidates).subspan(source.first, source.count);
         add_source(source.emitter, source.piece, scratch.shaft.classify(from, scratch.candidates), light, scratch);
     }
@@ -200,8 +200,9 @@ Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Wor
         const Emitter& emitter = emitters_[source.emitter];
         const Spectrum light_there =
             emitter.exitance *
-            (glazed ? glazed_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)
-                    : Spectrum(visible_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)));
+            (glazed
+                 ? glazed_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)
+                 : Spectrum(visible_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)));
         sum += light_there;
         if (parallel && is_distant(source.emitter)) *parallel += light_there;
     }

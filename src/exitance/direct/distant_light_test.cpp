@@ -57,7 +57,9 @@ const RegionId first(0);
 TEST(DistantLight, OpenGroundHasTheIrradianceOfEverySky) {
     const Normal sun = sky_direction(35, 200);
     for (int type = 0; type <= 16; ++type) {
-        const SkyModel sky = type == 0 ? overcast_sky() : type == 16 ? perez_sky({90, 700, 100}, sun) : cie_sky(type, sun);
+        const SkyModel sky = type == 0    ? overcast_sky()
+                             : type == 16 ? perez_sky({90, 700, 100}, sun)
+                                          : cie_sky(type, sun);
         const Scene scene = under({{{sky, Spectrum(100.0)}}, {}, {}}, {ground});
         const Stage stage(scene);
         EXPECT_NEAR(light_at(stage, {1, 2, 0}, {0, 0, 1}, first), 100, 0.1) << type;
@@ -93,13 +95,16 @@ TEST(DistantLight, ThroughAnOpeningItIsThatOfTheReference) {
         Normal n;
         double E;
     };
-    for (const Known& k : {Known{1, {2, 0, 2.25}, {0, 1, 0}, 164.376254578}, {1, {2, 1.75, 0}, {0, 0, 1}, 429.385904561},
-                           {12, {2, 0, 2.25}, {0, 1, 0}, 375.695655703}, {12, {2, 0, 1.25}, {0, 1, 0}, 460.939166455}}) {
+    for (const Known& k : {Known{1, {2, 0, 2.25}, {0, 1, 0}, 164.376254578},
+                           {1, {2, 1.75, 0}, {0, 0, 1}, 429.385904561},
+                           {12, {2, 0, 2.25}, {0, 1, 0}, 375.695655703},
+                           {12, {2, 0, 1.25}, {0, 1, 0}, 460.939166455}}) {
         const Scene scene = under({{{cie_sky(k.type, sun), Spectrum(10000.0)}}, {}, {}}, room);
         const Stage stage(scene);
         RegionId own;
         for (const RegionId r : scene.regions().ids())
-            if (norm(scene.regions()[r].plane.n - k.n) < 1e-9 && std::abs(scene.regions()[r].plane.signed_distance(k.x)) < 1e-9)
+            if (norm(scene.regions()[r].plane.n - k.n) < 1e-9 &&
+                std::abs(scene.regions()[r].plane.signed_distance(k.x)) < 1e-9)
                 own = r;
         EXPECT_NEAR(light_at(stage, k.x, k.n, own), k.E, 1e-3 * k.E) << k.type;
     }

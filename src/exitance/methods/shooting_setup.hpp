@@ -19,7 +19,8 @@ class ShootingSetup {
     GlobalLight finish(const SolveReport& report);
 
     /// Is the emitters' own light shot too (`--visibility fractional`), or exact and apart? Lights without extent and
-    /// skies have no patch to shoot from, and patches shoot diffusely: with any of them, or of directed emitters, it is apart.
+    /// skies have no patch to shoot from, and patches shoot diffusely: with any of them, or of directed emitters, it is
+    /// apart.
     bool shoots_direct_light() const {
         return input_.options.visibility == VisibilityKind::fractional && !input_.stage.scene.has_light_apart() &&
                !input_.stage.scene.has_directed_emission();

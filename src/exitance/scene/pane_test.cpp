@@ -12,7 +12,8 @@ TEST(Pane, TransmitsAsFresnelSays) {
     const double r = std::pow(0.52 / 2.52, 2);
     EXPECT_NEAR(clear.transmission(1)[0], (1 - r) / (1 + r), 1e-12);  // all reflections between two faces
     // At Brewster's angle one polarisation passes whole: T = (1 + T_s) / 2.
-    const double brewster = std::atan(1.52), c = std::cos(brewster), inside = std::sqrt(1 - std::pow(std::sin(brewster) / 1.52, 2));
+    const double brewster = std::atan(1.52), c = std::cos(brewster),
+                 inside = std::sqrt(1 - std::pow(std::sin(brewster) / 1.52, 2));
     const double rs = std::pow((c - 1.52 * inside) / (c + 1.52 * inside), 2);
     EXPECT_NEAR(clear.transmission(c)[0], 0.5 * (1 + (1 - rs) / (1 + rs)), 1e-12);
     EXPECT_LT(clear.transmission(1e-6)[0], 1e-4);

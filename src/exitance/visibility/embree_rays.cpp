@@ -69,8 +69,8 @@ void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& d
 /// Which one that is follows from the ray and the pane alone.
 struct Glass {
     static constexpr std::size_t steps = 256;
-    std::vector<std::uint32_t> pane_of;                  ///< Of every triangle.
-    std::vector<Normal> normal;                          ///< Of every pane;
+    std::vector<std::uint32_t> pane_of;                 ///< Of every triangle.
+    std::vector<Normal> normal;                         ///< Of every pane;
     std::vector<std::array<float, steps + 1>> through;  ///< mean over bands, by the cosine.
 
     bool stops(const Float3& origin, const Float3& d, std::uint32_t triangle) const {

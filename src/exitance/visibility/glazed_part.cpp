@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/form_factors/directed_form_factor.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+
 namespace exitance {
 namespace {
 
@@ -87,23 +90,35 @@ Vec3 middle_of(std::span<const Vec3> corners) {
     return sum / static_cast<double>(corners.size());
 }
 
+/// Is there nothing of it but rounding?
+bool is_sliver(std::span<const Vec3> corners) {
+    constexpr double rounding = 1e-14;
+    Vec3 area;
+    double reach = 0;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        area += cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    for (const Vec3& r : corners) reach = std::max(reach, squared_norm(r));
+    return !(norm(area) > rounding * reach);
+}
+
+/// T p F of parts of a source.
 class GlazedSum {
   public:
-    GlazedSum(const Occluders& occluders, const Receiver& at, PieceId source,
-              std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch, const PartLight& light)
-        : occluders_(occluders), at_(at), source_(source), candidates_(candidates), scratch_(scratch), light_(light) {}
+    GlazedSum(const Normal& n, const RelativeRadiance& radiance) : n_(n), radiance_(radiance) {}
 
     Spectrum of(std::span<const Vec3> corners, std::span<const Pane* const> panes, int depth = 0) const {
         constexpr int deepest = 7;
         constexpr double even = 0.04;
-        const Spectrum T = transmission_towards(middle_of(corners), panes);
+        if (is_sliver(corners)) return {};
+        if (panes.empty()) return Spectrum(form_factor(corners));
+        const Vec3 middle = middle_of(corners);
+        const Spectrum T = transmission_towards(middle, panes);
         double least = mean(T), most = least;
         for (const Vec3& r : corners) {
-            const double t = panes.empty() ? 1 : mean(transmission_towards(r, panes));
+            const double t = mean(transmission_towards(r, panes));
             least = std::min(least, t), most = std::max(most, t);
         }
-        if (most - least <= even || depth == deepest)
-            return visible_form_factor_of_part(occluders_, at_, source_, corners, candidates_, scratch_, light_) * T;
+        if (most - least <= even || depth == deepest) return form_factor(corners) * T;
         Vec3 along;
         double widest = -1;
         const std::size_t m = corners.size();
@@ -111,7 +126,8 @@ class GlazedSum {
             const Vec3 &a = corners[i], &b = corners[(i + 1) % m];
             if (const double l = squared_norm(b - a); l > widest) widest = l, along = b - a;
         }
-        const double half = dot(along, middle_of(corners));
+        along = along / std::sqrt(widest);
+        const double half = dot(along, middle);
         Spectrum sum;
         for (const double side : {1.0, -1.0})
             if (const std::vector<Vec3> part = cut_above(corners, side * along, side * half); !part.empty())
@@ -120,31 +136,41 @@ class GlazedSum {
     }
 
   private:
-    const Occluders& occluders_;
-    const Receiver& at_;
-    PieceId source_;
-    std::optional<std::span<const PieceId>> candidates_;
-    VisibilityWorkspace& scratch_;
-    const PartLight& light_;
+    double form_factor(std::span<const Vec3> corners) const {
+        return radiance_.is_directed() ? directed_form_factor(n_, corners, radiance_)
+                                       : std::max(0.0, contour_sum(n_, corners));
+    }
+
+    const Normal& n_;
+    const RelativeRadiance& radiance_;
 };
 
 }  // namespace
 
+Spectrum transmitted_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                                 std::span<const Vec3> visible, const RelativeRadiance& radiance) {
+    if (visible.size() < 3 || is_sliver(visible)) return {};
+    std::vector<Part> parts{{{visible.begin(), visible.end()}, {}}};
+    const Normal& n = occluders.pieces()[source].plane.n;
+    const double slack = occluders.rounding(), height = dot(n, visible[0]) + slack;
+    for (const Pane& pane : occluders.scene().panes()) {
+        const std::vector<Vec3> pyramid = pyramid_over(pane, at, n, height, slack);
+        if (!pyramid.empty()) put_before(pane, pyramid, parts);
+    }
+    const GlazedSum sum(at.n, radiance);
+    Spectrum out;
+    for (const Part& part : parts) out += sum.of(part.corners, part.panes);
+    return out;
+}
+
 Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
                             std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
                             const PartLight& light) {
-    std::vector<Part> parts(1);
-    parts[0].corners = source_above_horizon(occluders, at, source, scratch);
-    if (parts[0].corners.size() < 3) return {};
-    const Normal& n = occluders.pieces()[source].plane.n;
-    const double height = dot(n, parts[0].corners[0]), slack = occluders.rounding();
-    for (const Pane& pane : occluders.scene().panes()) {
-        const std::vector<Vec3> pyramid = pyramid_over(pane, at, n, height + slack, slack);
-        if (!pyramid.empty()) put_before(pane, pyramid, parts);
-    }
-    const GlazedSum sum(occluders, at, source, candidates, scratch, light);
+    Fragments fragments;
+    visible_fragments(occluders, at, source, candidates, scratch, fragments);
     Spectrum out;
-    for (const Part& part : parts) out += sum.of(part.corners, part.panes);
+    for (const std::vector<Vec3>& fragment : fragments)
+        out += transmitted_form_factor(occluders, at, source, fragment, light.radiance);
     return out;
 }
 

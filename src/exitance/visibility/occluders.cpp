@@ -64,8 +64,12 @@ void Occluders::add_distant_pieces() {
     for (const DistantFacet& facet : distant_facets(scene_->distant())) {
         const auto at = static_cast<std::uint32_t>(corners_.size());
         for (const Vec3& towards : facet.corners) corners_.push_back(middle_ + (far * scene_->size()) * towards);
-        pieces_.add({at, static_cast<std::uint32_t>(facet.corners.size()), RegionId(), SurfaceId(),
-                     {facet.n, dot(facet.n, corners_[at])}, rounding_});
+        pieces_.add({at,
+                     static_cast<std::uint32_t>(facet.corners.size()),
+                     RegionId(),
+                     SurfaceId(),
+                     {facet.n, dot(facet.n, corners_[at])},
+                     rounding_});
     }
     distant_ = {first, pieces_.size()};
 }

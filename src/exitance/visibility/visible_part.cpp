@@ -193,8 +193,17 @@ bool cut_lit(std::size_t first, Workspace& scratch) {
     return true;
 }
 
-/// The form factor to what the shadows leave, the first `cut` of which have cut the source already.
-double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLight& light) {
+/// The form factor to what the shadows leave, the first `cut` of which have cut the source already. With `fragments`
+/// given these are taken, and nothing is summed.
+double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLight& light, Fragments* fragments) {
+    if (fragments) {
+        if (scratch.shadows.empty()) {
+            fragments->push_back(scratch.source);
+        } else if (cut_lit(cut, scratch)) {
+            for (std::size_t i = 0; i < scratch.lit.size(); ++i) scratch.lit.corners(i, fragments->emplace_back());
+        }
+        return 0;
+    }
     if (light.radiance.is_directed()) {
         if (scratch.shadows.empty()) return directed_form_factor(n, scratch.source, light.radiance);
         return cut_lit(cut, scratch) ? scratch.lit.form_factor(n, light.radiance, scratch.clipped) : 0;
@@ -217,11 +226,13 @@ void clear_shadows(Workspace& scratch) {
 
 /// Of what is in scratch.source, among all occluders.
 double part_among_all(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
-                      const PartLight& light) {
+                      const PartLight& light, Fragments* fragments = nullptr) {
     clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    const bool in_scene = !at.own.is_none() && !occluders.is_distant(source);  // what lies on the scene's hull stands between none of its points
-    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light);
+    const bool in_scene =
+        !at.own.is_none() &&
+        !occluders.is_distant(source);  // what lies on the scene's hull stands between none of its points
+    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     PieceId& likely = scratch.last_blocker(occluders, source);
@@ -245,19 +256,19 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     const std::size_t large = scratch.shadows.size();
     if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
     if (visit(Occluders::Size::small)) return 0;
-    return finish(at.n, large > 1 ? large : 0, scratch, light);
+    return finish(at.n, large > 1 ? large : 0, scratch, light, fragments);
 }
 
 double part_among(const Occluders& occluders, const Receiver& at, PieceId source, std::span<const PieceId> candidates,
-                  VisibilityWorkspace& scratch, const PartLight& light) {
+                  VisibilityWorkspace& scratch, const PartLight& light, Fragments* fragments = nullptr) {
     clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    if (candidates.empty()) return finish(at.n, 0, scratch, light);
+    if (candidates.empty()) return finish(at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     for (PieceId p : candidates)
         if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
-    return finish(at.n, 0, scratch, light);
+    return finish(at.n, 0, scratch, light, fragments);
 }
 
 }  // namespace
@@ -274,18 +285,15 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
     return part_among(occluders, at, source, candidates, scratch, light);
 }
 
-double visible_form_factor_of_part(const Occluders& occluders, const Receiver& at, PieceId source,
-                                   std::span<const Vec3> part, std::optional<std::span<const PieceId>> candidates,
-                                   VisibilityWorkspace& scratch, const PartLight& light) {
-    scratch.source.assign(part.begin(), part.end());
-    return candidates ? part_among(occluders, at, source, *candidates, scratch, light)
-                      : part_among_all(occluders, at, source, scratch, light);
-}
-
-std::vector<Vec3> source_above_horizon(const Occluders& occluders, const Receiver& at, PieceId source,
-                                       VisibilityWorkspace& scratch) {
+void visible_fragments(const Occluders& occluders, const Receiver& at, PieceId source,
+                       std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
+                       Fragments& out) {
+    out.clear();
     look_at_source(occluders, at, source, scratch);
-    return scratch.source;
+    if (candidates)
+        part_among(occluders, at, source, *candidates, scratch, {}, &out);
+    else
+        part_among_all(occluders, at, source, scratch, {}, &out);
 }
 
 }  // namespace exitance

@@ -51,7 +51,8 @@ Result<WeatherHour> read_hour(const LineReader& lines, std::string_view line) {
     constexpr double missing = 9999;
     const std::vector<std::string_view> fields = fields_of(line);
     if (fields.size() <= diffuse_field)
-        return lines.error(fmt::format("an hour has {} fields, at least {} are needed", fields.size(), diffuse_field + 1));
+        return lines.error(
+            fmt::format("an hour has {} fields, at least {} are needed", fields.size(), diffuse_field + 1));
     std::array<int, 4> date{};
     for (std::size_t i = 0; i < 4; ++i) {
         const auto value = number_within(fields[i], 0, 9999);

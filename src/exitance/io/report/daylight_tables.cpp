@@ -40,9 +40,10 @@ Result<void> write_metrics(const std::string& path, const DaylightResults& resul
     for (std::size_t i = 0; i < results.sensors.size(); ++i) {
         const auto& [x, n] = results.sensors[i];
         const DaylightMetrics& m = results.metrics[i];
-        text += fmt::format("{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n",
-                            x.x, x.y, x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1],
-                            m.useful[2], m.useful[3], m.sunny_hours);
+        text += fmt::format(
+            "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", x.x, x.y,
+            x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2], m.useful[3],
+            m.sunny_hours);
     }
     return write_file(path, text);
 }
@@ -73,8 +74,7 @@ std::vector<std::pair<std::string, double>> summary_values(const DaylightResults
 Result<void> write_daylight(const std::string& folder, const DaylightResults& results) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
-    if (failure)
-        return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
     const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
     std::string summary = "name,value\n";
     for (const auto& [name, value] : summary_values(results)) summary += fmt::format("{},{:.6g}\n", name, value);

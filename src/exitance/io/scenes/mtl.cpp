@@ -74,7 +74,8 @@ class MtlReader {
             if (count++ == 0) line = at, name = material;
         }
         std::string names() const {
-            return fmt::format("material '{}'{}", shown(name), count > 1 ? fmt::format(" (and {} more)", count - 1) : "");
+            return fmt::format("material '{}'{}", shown(name),
+                               count > 1 ? fmt::format(" (and {} more)", count - 1) : "");
         }
     } glazed_, opaque_, textured_;
 };

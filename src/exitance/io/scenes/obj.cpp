@@ -57,7 +57,7 @@ class ObjReader {
     std::uint32_t use_ = 0, group_ = 0;
     bool has_use_ = false, has_group_ = false, library_missing_ = false;
     std::map<std::string, Spectrum> glass_;  ///< By material, transmissivities.
-    std::vector<std::uint32_t> broken_;  ///< Points that could not be read, ascending.
+    std::vector<std::uint32_t> broken_;      ///< Points that could not be read, ascending.
 };
 
 ReadScene ObjReader::read() {

@@ -56,16 +56,19 @@ void RadMaterials::add_glass(const RadPrimitive& p, const std::string& file) {
     const RadPlace at{file, p.line};
     Pane pane;
     if (p.numbers.size() != 3 && p.numbers.size() != 4)
-        return findings_.error(at, fmt::format("'{}' has {} numbers, glass has 3 or 4", shown(p.name), p.numbers.size()));
+        return findings_.error(at,
+                               fmt::format("'{}' has {} numbers, glass has 3 or 4", shown(p.name), p.numbers.size()));
     for (std::size_t i = 0; i < 3; ++i)
         if (!(p.numbers[i] >= 0 && p.numbers[i] <= whitest_reflectance))
-            return findings_.error(at, fmt::format("glass '{}' has a transmissivity of {:g}", shown(p.name), p.numbers[i]),
+            return findings_.error(at,
+                                   fmt::format("glass '{}' has a transmissivity of {:g}", shown(p.name), p.numbers[i]),
                                    "transmissivities lie in [0, 1]");
     pane.transmissivity = spread(p.numbers, 1);
     for (double& v : pane.transmissivity.value) v = std::min(v, 1.0);
     if (p.numbers.size() == 4) pane.index = p.numbers[3];
     if (!(pane.index >= 1 && pane.index <= 4))
-        return findings_.error(at, fmt::format("glass '{}' has an index of refraction of {:g}", shown(p.name), pane.index));
+        return findings_.error(at,
+                               fmt::format("glass '{}' has an index of refraction of {:g}", shown(p.name), pane.index));
     if (meanings_[p.name].pattern_count > 0) findings_.note("patterns and textures", at);
     meanings_[p.name].kind = RadMeaning::Kind::glass;
     meanings_[p.name].material = static_cast<std::uint32_t>(glass.size());

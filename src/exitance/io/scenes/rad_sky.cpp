@@ -78,12 +78,10 @@ Result<SkyModel> sky_of_pattern(const RadPattern& pattern) {
         return no_sky(fmt::format("{} '{}' is none", pattern.primitive.type, shown(pattern.primitive.name)));
     for (const double v : pattern.primitive.numbers)
         if (!std::isfinite(v)) return no_sky("it has a number that is not finite");
-    Result<SkyModel> sky = words[0] == "skybr" && words[1].ends_with("skybright.cal")      ? gensky(pattern)
-                           : words[0] == "skybright" && words[1].ends_with("perezlum.cal") ? gendaylit(pattern)
-                                                                                           : no_sky(fmt::format(
-                                                                                                 "its function is '{}' of '{}'",
-                                                                                                 shown(words[0]),
-                                                                                                 shown(words[1])));
+    Result<SkyModel> sky = words[0] == "skybr" && words[1].ends_with("skybright.cal") ? gensky(pattern)
+                           : words[0] == "skybright" && words[1].ends_with("perezlum.cal")
+                               ? gendaylit(pattern)
+                               : no_sky(fmt::format("its function is '{}' of '{}'", shown(words[0]), shown(words[1])));
     if (sky && !sky->is_sane()) return no_sky("it has numbers that no sky has");
     return sky;
 }
@@ -91,7 +89,7 @@ Result<SkyModel> sky_of_pattern(const RadPattern& pattern) {
 std::optional<DistantLight> light_of_source(const Vec3& towards, double angle, const Spectrum& radiance,
                                             const SkyModel* pattern) {
     constexpr double slack = 1e-4;
-    const bool is_half = std::abs(angle - pi) < slack, is_all = angle > 2 * pi - slack;
+    const bool is_half = std::abs(angle - pi)<slack, is_all = angle> 2 * pi - slack;
     const bool is_upright = std::abs(towards.z) > 1 - slack;
     DistantLight out;
     if (is_all || (is_half && is_upright)) {

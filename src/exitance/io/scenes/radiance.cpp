@@ -168,7 +168,8 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
                                          ? sky_of_pattern(materials_.patterns[meaning->pattern])
                                          : Error{ErrorCode::bad_input, "it lies on another pattern", "", ""};
         constexpr double wide = 0.2;  // radians: more than any sun
-        if (!sky && angle > wide) return findings_.note("skies with patterns that gensky and gendaylit do not print", at);
+        if (!sky && angle > wide)
+            return findings_.note("skies with patterns that gensky and gendaylit do not print", at);
         if (!sky)
             return findings_.error(at,
                                    fmt::format("the light of source '{}' has a pattern, which is not read: {}",
@@ -308,8 +309,8 @@ void RadianceReader::read_text(std::string_view text, const Call& call) {
     open_.pop_back();
 }
 
-/// A ball that shines evenly on everything within it brings the light of a uniform sky, above and below, to every point,
-/// however large it is: it becomes one, and what is lost on it is lost to the sky.
+/// A ball that shines evenly on everything within it brings the light of a uniform sky, above and below, to every
+/// point, however large it is: it becomes one, and what is lost on it is lost to the sky.
 void RadianceReader::open_up() {
     SceneDescription& d = out_.description;
     if (bubbles_.size() != 1) return;
@@ -354,7 +355,8 @@ ReadScene RadianceReader::read() {
     out_.findings = findings_.take();
     if (opened_)
         out_.findings.push_back({Finding::Kind::warning, paths_.front(), 0,
-                                 "a shining ball about everything else counts as a uniform sky infinitely far away", ""});
+                                 "a shining ball about everything else counts as a uniform sky infinitely far away",
+                                 ""});
     return std::move(out_);
 }
 

@@ -225,14 +225,18 @@ TEST_F(RadianceFiles, SkiesOfGenskyAndGendaylitAreReadInClosedForm) {
         EXPECT_TRUE(s.distant().domes[1].model.below);
         return dome.model.relative(w) * dome.irradiance[0] / pi;
     };
-    const double clear = 50 * (0.91 + 10 * std::exp(-3 * gamma) + 0.45 * cosine * cosine) * (1 - std::exp(-0.32 / w.z)) / 2;
+    const double clear =
+        50 * (0.91 + 10 * std::exp(-3 * gamma) + 0.45 * cosine * cosine) * (1 - std::exp(-0.32 / w.z)) / 2;
     EXPECT_NEAR(radiance("void brightfunc skyfunc 2 skybr skybright.cal 0 7 1 50 8 2 0.3 -0.4 0.866025403784\n"),
                 0.9 * blended(clear, 8), 1e-6 * clear);
     EXPECT_NEAR(radiance("void brightfunc skyfunc 2 skybr skybright.cal 0 3 2 50 8\n"),
                 0.9 * blended(50 * (1 + 2 * w.z) / 3, 8), 1e-4);
-    const double perez = 3 * (1 - 0.9 * std::exp(-0.4 / w.z)) * (1 + 8 * std::exp(-2.5 * gamma) + 0.3 * cosine * cosine);
-    EXPECT_NEAR(radiance("void brightfunc skyfunc 2 skybright perezlum.cal 0 10 3 8 -.9 -.4 8 -2.5 .3 0.3 -0.4 0.866025403784\n"),
-                0.9 * blended(perez, 8), 1e-6 * perez);
+    const double perez =
+        3 * (1 - 0.9 * std::exp(-0.4 / w.z)) * (1 + 8 * std::exp(-2.5 * gamma) + 0.3 * cosine * cosine);
+    EXPECT_NEAR(
+        radiance(
+            "void brightfunc skyfunc 2 skybright perezlum.cal 0 10 3 8 -.9 -.4 8 -2.5 .3 0.3 -0.4 0.866025403784\n"),
+        0.9 * blended(perez, 8), 1e-6 * perez);
 }
 
 TEST_F(RadianceFiles, AShiningBallAboutEverythingIsAUniformSky) {

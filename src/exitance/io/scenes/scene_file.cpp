@@ -85,7 +85,8 @@ void append(SceneDescription& all, SceneDescription more) {
             material.emission.profile = ProfileId(material.emission.profile.value + profiles);
     append(all.points, more.points), append(all.materials, more.materials);
     append(all.profiles, more.profiles), append(all.groups, more.groups), append(all.faces, more.faces);
-    append(all.lights, more.lights), all.distant.append(more.distant), append(all.panes, more.panes), append(all.cameras, more.cameras);
+    append(all.lights, more.lights), all.distant.append(more.distant), append(all.panes, more.panes),
+        append(all.cameras, more.cameras);
 }
 
 int last_line(const SceneDescription& description) {

@@ -87,12 +87,14 @@ bool read_time(std::string_view word, Words& out) {
 Result<void> read_pair(const std::string& word, Words& out) {
     const std::size_t equals = word.find('=');
     if (equals == word.npos)
-        return wrong(fmt::format("'{}' is not name=value", shown(word)), "the kind of sky comes first, then lat=47.4, ...");
+        return wrong(fmt::format("'{}' is not name=value", shown(word)),
+                     "the kind of sky comes first, then lat=47.4, ...");
     const std::string name = word.substr(0, equals), value = word.substr(equals + 1);
     if (out.number.count(name) || (name == "time" && out.time)) return wrong(fmt::format("'{}' is given twice", name));
     if (name == "time") {
         if (read_time(value, out)) return {};
-        return wrong(fmt::format("time '{}' is no moment", shown(value)), "such as time=06-21T12:00 or 2024-06-21T12:00:30");
+        return wrong(fmt::format("time '{}' is no moment", shown(value)),
+                     "such as time=06-21T12:00 or 2024-06-21T12:00:30");
     }
     const auto known = std::find_if(numbers.begin(), numbers.end(), [&](const Named& n) { return name == n.name; });
     if (known == numbers.end()) return wrong(fmt::format("'{}' is not known", shown(name)), sky_help());

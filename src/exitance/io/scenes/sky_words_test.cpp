@@ -60,7 +60,8 @@ TEST(SkyWords, SayWhatIsWrong) {
     EXPECT_EQ(fault("perez,dhi=100,altitude=30,azimuth=0"),
               "dni, the irradiance by the sun of a plane that faces it, is missing");
     EXPECT_EQ(fault("perez,dhi=100,dni=0"), "where the sun stands is missing for perez");
-    EXPECT_EQ(fault("clear,dhi=100,altitude=20"), "the sun is given by altitude and azimuth together, or by time and place");
+    EXPECT_EQ(fault("clear,dhi=100,altitude=20"),
+              "the sun is given by altitude and azimuth together, or by time and place");
     EXPECT_EQ(fault("clear,dhi=100,time=06-21T12:00"), "a time needs a place: lat and lon are missing");
     EXPECT_EQ(fault("clear,dhi=100,lat=1,lon=2,time=02-30T12:00"), "time '02-30T12:00' is no moment");
     EXPECT_EQ(fault("clear,dhi=100,lat=1,lon=2,time=noon"), "time 'noon' is no moment");
@@ -70,7 +71,8 @@ TEST(SkyWords, SayWhatIsWrong) {
 TEST(WeatherFile, TellsPlaceAndIrradiances) {
     const TemporaryFolder folder;
     const std::string path = folder / "w.epw";
-    ASSERT_TRUE(write_file(path, weather_text(hour_text(6, 21, 12, "650", "130") + hour_text(6, 21, 13, "9999", "130"))));
+    ASSERT_TRUE(
+        write_file(path, weather_text(hour_text(6, 21, 12, "650", "130") + hour_text(6, 21, 13, "9999", "130"))));
     const Result<Weather> weather = load_epw(path);
     ASSERT_TRUE(weather) << weather.error().message;
     EXPECT_EQ(weather->place.latitude, 47.4);

@@ -19,15 +19,17 @@ void write_sky(Hdf5Writer& file, const std::string& group, const DistantLight& l
             values.insert(values.end(), {m.a, m.b, m.g, m.f0, m.c, m.d, m.e, m.ground, m.scale});
         }
         file.write(in("sky_model"), values, numbers,
-                   {"1", "a, b, g, f0, c, d, e of a sky, what the ground's is where both blend, and a factor: pi L / E "
-                         "= factor (1 + a exp(b / cos Z) + g cos Z) (f0 + c exp(d gamma) + e cos^2 gamma)"});
-        file.write(in("sky_kind"), column<std::uint8_t>(light.domes,
-                                                        [](const DistantLight::Dome& d) {
-                                                            return (d.model.intermediate ? intermediate : 0) +
-                                                                   (d.model.blends_ground ? blends_ground : 0) +
-                                                                   (d.model.below ? below : 0);
-                                                        }),
-                   1, {"1", "1: the intermediate sky; 2: sky and ground blend; 4: below the horizon; or sums of these"});
+                   {"1",
+                    "a, b, g, f0, c, d, e of a sky, what the ground's is where both blend, and a factor: pi L / E "
+                    "= factor (1 + a exp(b / cos Z) + g cos Z) (f0 + c exp(d gamma) + e cos^2 gamma)"});
+        file.write(
+            in("sky_kind"),
+            column<std::uint8_t>(light.domes,
+                                 [](const DistantLight::Dome& d) {
+                                     return (d.model.intermediate ? intermediate : 0) +
+                                            (d.model.blends_ground ? blends_ground : 0) + (d.model.below ? below : 0);
+                                 }),
+            1, {"1", "1: the intermediate sky; 2: sky and ground blend; 4: below the horizon; or sums of these"});
         file.write(in("sky_sun"),
                    flat(column<Vec3>(light.domes, [](const DistantLight::Dome& d) { return d.model.sun; })), 3,
                    {"1", "towards the sun that a sky goes by"});
@@ -38,8 +40,9 @@ void write_sky(Hdf5Writer& file, const std::string& group, const DistantLight& l
     file.write(in("sun_direction"),
                flat(column<Vec3>(light.discs, [](const DistantLight::Disc& d) { return d.towards; })), 3,
                {"1", "towards a distant disc"});
-    file.write(in("sun_half_angle"), column<double>(light.discs, [](const DistantLight::Disc& d) { return d.half_angle; }),
-               1, {"rad", "half the angle that a distant disc is seen under"});
+    file.write(in("sun_half_angle"),
+               column<double>(light.discs, [](const DistantLight::Disc& d) { return d.half_angle; }), 1,
+               {"rad", "half the angle that a distant disc is seen under"});
     file.write(in("sun_irradiance"), spectra(light.discs, [](const DistantLight::Disc& d) { return d.irradiance; }),
                bands, {"W/m^2", "irradiance of a plane that faces a distant disc"});
 }
@@ -80,8 +83,7 @@ void write_panes(Hdf5Writer& file, const std::string& group, const std::vector<P
     std::vector<Point> corners;
     for (const Pane& pane : panes) corners.insert(corners.end(), pane.corners.begin(), pane.corners.end());
     file.write(in("pane_corner"), flat(corners), 3, {"m", "corners of the panes of glass, one pane after the other"});
-    file.write(in("pane_corner_count"),
-               column<std::uint32_t>(panes, [](const Pane& p) { return p.corners.size(); }), 1,
+    file.write(in("pane_corner_count"), column<std::uint32_t>(panes, [](const Pane& p) { return p.corners.size(); }), 1,
                {"1", "corners of a pane"});
     file.write(in("pane_normal"), flat(column<Vec3>(panes, [](const Pane& p) { return p.n; })), 3,
                {"1", "unit normal of a pane"});

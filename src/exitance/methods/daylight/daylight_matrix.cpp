@@ -8,6 +8,7 @@
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/scene/locator.hpp"
 #include "exitance/transport/ray_rows.hpp"
+#include "exitance/visibility/glazed_part.hpp"
 
 namespace exitance {
 namespace {
@@ -26,8 +27,8 @@ class MatrixMaker {
         : stage_(stage),
           patches_(patches),
           options_(options),
-          tree_(stage.make_elements({.edge = edge_for_elements(
-                                         stage.pieces, static_cast<std::size_t>(options.elements))})),
+          tree_(stage.make_elements(
+              {.edge = edge_for_elements(stage.pieces, static_cast<std::size_t>(options.elements))})),
           numbering_(tree_),
           locator_(tree_, stage.scene.regions().size()) {}
 
@@ -154,14 +155,85 @@ class MatrixMaker {
     std::vector<float> reflected_;  ///< rho E, a row a leaf.
 };
 
-/// The exact visible part of every patch at a sensor.
-void see_patches(const Stage& stage, const SkyPatches& patches, const ProbePoint& sensor, RegionId own,
-                 const Spectrum& weights, DirectLight::Workspace& scratch, std::span<float> out) {
-    std::fill(out.begin(), out.end(), 0.0f);
-    const std::vector<Spectrum> light = stage.direct.distant_light(sensor.x, sensor.n, own, scratch);
-    for (std::size_t i = 0; i < light.size(); ++i)
-        for (std::size_t b = 0; b < bands; ++b)
-            out[patches.patch_of_facet()[i]] += static_cast<float>(weights[b] * light[i][b]);
+/// The directions of a patch's facet: within planes through the sensor.
+struct Cone {
+    std::vector<Vec3> inward;
+    std::uint32_t patch = 0;
+    bool below = false;
+};
+
+std::vector<Cone> cones_of(const SkyPatches& patches) {
+    std::vector<Cone> out;
+    for (std::size_t i = 0; i < patches.facets().size(); ++i) {
+        const std::vector<Vec3>& corners = patches.facets()[i].corners;
+        Cone cone{{}, patches.patch_of_facet()[i], patches.patch_of_facet()[i] == 0};
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            cone.inward.push_back(normalized(cross(corners[k + 1 == corners.size() ? 0 : k + 1], corners[k])));
+        out.push_back(std::move(cone));
+    }
+    return out;
+}
+
+/// The part of a convex polygon within a cone, in place; empty where there is none.
+void clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& room) {
+    for (const Vec3& n : cone.inward)
+        if (std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& r) { return dot(n, r) <= 0; }))
+            return polygon.clear();
+    for (const Vec3& n : cone.inward) {
+        room.clear();
+        for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+            const Vec3 &p = polygon[i], &q = polygon[i + 1 == m ? 0 : i + 1];
+            const double a = dot(n, p), b = dot(n, q);
+            if (a >= 0) room.push_back(p);
+            if ((a > 0 && b < 0) || (a < 0 && b > 0)) room.push_back(p + (a / (a - b)) * (q - p));
+        }
+        polygon.swap(room);
+        if (polygon.size() < 3) return polygon.clear();
+    }
+}
+
+/// The exact visible part of every patch at a sensor: that of the sky's two halves, cut along the patches.
+class PatchView {
+  public:
+    PatchView(const Stage& stage, const std::vector<Cone>& cones) : stage_(stage), cones_(cones) {}
+
+    void see(const Receiver& at, const Spectrum& weights, std::span<float> out) {
+        std::fill(out.begin(), out.end(), 0.0f);
+        const Occluders& occluders = stage_.occluders;
+        for (const PieceId piece : occluders.distant_pieces()) {
+            visible_fragments(occluders, at, piece, {}, scratch_, fragments_);
+            for (const std::vector<Vec3>& fragment : fragments_) {
+                double lowest = 0;
+                for (const Vec3& r : fragment) lowest = std::min(lowest, r.z / norm(r));
+                constexpr double rounding = 1e-9;
+                for (const Cone& cone : cones_) {
+                    if (cone.below != (lowest < -rounding)) continue;
+                    part_ = fragment;
+                    clip_to(cone, part_, room_);
+                    if (part_.empty()) continue;
+                    const Spectrum F = transmitted_form_factor(occluders, at, piece, part_, {});
+                    for (std::size_t b = 0; b < bands; ++b)
+                        out[cone.patch] += static_cast<float>(pi * weights[b] * F[b]);
+                }
+            }
+        }
+    }
+
+  private:
+    const Stage& stage_;
+    const std::vector<Cone>& cones_;
+    VisibilityWorkspace scratch_;
+    Fragments fragments_;
+    std::vector<Vec3> part_, room_;
+};
+
+/// Where a sensor receives light: on the surface that it lies on, or in free space.
+Receiver receiver_of(const Stage& stage, const Locator& locator, const ProbePoint& sensor) {
+    const SurfaceId s = locator.find(sensor.x, sensor.n);
+    if (s.is_none()) return {sensor.x, sensor.n, RegionId()};
+    const RegionId own = stage.scene.surfaces()[s].region;
+    const double off = stage.scene.regions()[own].plane.signed_distance(sensor.x) - stage.occluders.lift(own);
+    return {sensor.x - off * sensor.n, sensor.n, own};
 }
 
 }  // namespace
@@ -177,7 +249,9 @@ Spectrum luminous_weights() {
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
                                     const DaylightOptions& options, Progress& progress) {
     DistantLight light;
-    light.facets = patches.facets();
+    SkyModel below = uniform_sky();
+    below.below = true;
+    light.domes = {{uniform_sky(), Spectrum(pi)}, {below, Spectrum(pi)}};
     scene.put_under(std::move(light));
     progress.phase("rays");
     Stage stage(scene);
@@ -193,13 +267,13 @@ DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sen
     out.direct.resize(sensors.size() * m), out.reflected.resize(sensors.size() * m);
     const Locator locator(scene);
     const Spectrum weights = luminous_weights();
+    const std::vector<Cone> cones = cones_of(patches);
     parallel_ranges(sensors.size(), 4, [&](std::size_t begin, std::size_t end) {
-        DirectLight::Workspace scratch;
+        PatchView view(stage, cones);
         for (std::size_t i = begin; i < end; ++i) {
-            const SurfaceId s = locator.find(sensors[i].x, sensors[i].n);
-            const RegionId own = s.is_none() ? RegionId() : scene.surfaces()[s].region;
-            see_patches(stage, patches, sensors[i], own, weights, scratch, std::span(&out.direct[i * m], m));
-            maker.gather(sensors[i], own, i, std::span(&out.reflected[i * m], m));
+            const Receiver at = receiver_of(stage, locator, sensors[i]);
+            view.see(at, weights, std::span(&out.direct[i * m], m));
+            maker.gather(sensors[i], at.own, i, std::span(&out.reflected[i * m], m));
         }
     });
     return out;

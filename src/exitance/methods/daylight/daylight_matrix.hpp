@@ -10,8 +10,8 @@ namespace exitance {
 
 /// How a daylight matrix is made.
 struct DaylightOptions {
-    double elements = 6000;       ///< About how many, that interreflection goes between.
-    double rays_an_element = 256;  ///< On average.
+    double elements = 6000;         ///< About how many, that interreflection goes between.
+    double rays_an_element = 256;   ///< On average.
     unsigned rays_a_sensor = 2048;  ///< For reflected light; a power of two.
     std::uint64_t seed = 1;
 };

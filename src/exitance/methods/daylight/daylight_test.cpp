@@ -53,8 +53,8 @@ TEST(Daylight, InTheOpenItIsThatOfTheWeather) {
     const SkyPatches patches(1);
     const std::vector<ProbePoint> sensors{{{1, 1, 0}, {0, 0, 1}}, {{1, 1, 1}, {0, 0, 1}}};
     Progress progress;
-    const DaylightMatrix matrix =
-        make_daylight_matrix(open, sensors, patches, {.elements = 50, .rays_an_element = 64, .rays_a_sensor = 64}, progress);
+    const DaylightMatrix matrix = make_daylight_matrix(
+        open, sensors, patches, {.elements = 50, .rays_an_element = 64, .rays_a_sensor = 64}, progress);
     const std::vector<DaylightHour> hours = day();
     const DaylightSite site{.place = {47.4, 8.5, 400}};
     const DaylightYear year = daylight_year(open, sensors, patches, matrix, hours, site);
@@ -78,11 +78,13 @@ TEST(Daylight, OfARoomItIsThatOfASolveUnderTheSameSky) {
     below.below = true;
     const Scene lit = scene(true, {{{overcast_sky(), Spectrum(100.0)}, {below, Spectrum(20.0)}}, {}, {}});
     const Solution solution = solved(lit, {.error = 0.03});
-    const std::vector<ProbePoint> sensors{{{1.5, 1, 0.8}, {0, 0, 1}}, {{1.5, 3, 0.8}, {0, 0, 1}}, {{0.7, 2, 0}, {0, 0, 1}}};
+    const std::vector<ProbePoint> sensors{
+        {{1.5, 1, 0.8}, {0, 0, 1}}, {{1.5, 3, 0.8}, {0, 0, 1}}, {{0.7, 2, 0}, {0, 0, 1}}};
     const std::vector<Light> light = RadiosityFunction(solution).at(sensors);
     const SkyPatches patches(1);
     Progress progress;
-    const DaylightMatrix matrix = make_daylight_matrix(scene(true), sensors, patches, {.elements = 800, .rays_an_element = 128}, progress);
+    const DaylightMatrix matrix =
+        make_daylight_matrix(scene(true), sensors, patches, {.elements = 800, .rays_an_element = 128}, progress);
     const DaylightSite site{.place = {}, .ground = 0.2};
     const auto metrics = daylight_metrics({sensors.size(), {}, {}}, patches, matrix, {}, site);
     for (std::size_t i = 0; i < sensors.size(); ++i)

@@ -22,7 +22,8 @@ std::vector<double> luminances(const SkyModel& sky, const SkyPatches& patches, d
 
 /// The sun's light as luminances of the four patches nearest to it, by how near they are: what is reflected does not
 /// tell the two apart.
-std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, const SkyPatches& patches, double normal) {
+std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, const SkyPatches& patches,
+                                                           double normal) {
     constexpr std::size_t count = 4;
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t p = 1; p < patches.size(); ++p) near.push_back({-dot(patches.middle(p), sun), p});
@@ -42,7 +43,7 @@ std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, co
 
 /// What one hour's sky and sun are.
 struct HourLight {
-    std::vector<double> patches;                          ///< cd/m^2
+    std::vector<double> patches;                         ///< cd/m^2
     std::vector<std::pair<std::size_t, double>> of_sun;  ///< cd/m^2, for reflected light alone.
     Normal sun;
     double direct = 0;  ///< lx
@@ -102,7 +103,10 @@ DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> senso
             float sum = 0;
             for (std::size_t p = 0; p < m; ++p) sum += row[p] * luminance[p];
             double straight = 0, reflected = 0;
-            if (light.direct > 0 && dot(light.sun, at[i].n) > 0) {
+            // Of patches that a sensor sees nothing of it sees no sun.
+            const auto is_seen = [&](const auto& part) { return matrix.direct[i * m + part.first] > 0; };
+            if (light.direct > 0 && dot(light.sun, at[i].n) > 0 &&
+                std::any_of(light.of_sun.begin(), light.of_sun.end(), is_seen)) {
                 const Spectrum E = beams.irradiance(at[i]);
                 for (std::size_t b = 0; b < bands; ++b) straight += weights[b] * E[b];
             }

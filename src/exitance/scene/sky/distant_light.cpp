@@ -11,7 +11,7 @@ namespace {
 constexpr int disc_sides = 48;
 
 /// Facets along an edge of the cube where light depends on direction: small enough for shadows to be cut quickly.
-constexpr int across = 4;
+constexpr int across = 2;
 
 /// Adds a part of a face of the cube: from `corner` along u and v, which turn counter-clockwise seen from within.
 void add_face(const DistantLight::Dome& dome, const Vec3& corner, const Vec3& u, const Vec3& v, int nu, int nv,
@@ -46,10 +46,10 @@ void add_dome(const DistantLight::Dome& dome, std::vector<DistantFacet>& out) {
         add_face(dome, {-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, n, n, out);
     const double z = dome.model.below ? -1 : 0;
     const Vec3 up{0, 0, 1};
-    add_face(dome, {1, 1, z}, {0, -2, 0}, up, n, half, out);    // x = 1, seen from within
-    add_face(dome, {-1, -1, z}, {0, 2, 0}, up, n, half, out);   // x = -1
-    add_face(dome, {-1, 1, z}, {2, 0, 0}, up, n, half, out);    // y = 1
-    add_face(dome, {1, -1, z}, {-2, 0, 0}, up, n, half, out);   // y = -1
+    add_face(dome, {1, 1, z}, {0, -2, 0}, up, n, half, out);   // x = 1, seen from within
+    add_face(dome, {-1, -1, z}, {0, 2, 0}, up, n, half, out);  // x = -1
+    add_face(dome, {-1, 1, z}, {2, 0, 0}, up, n, half, out);   // y = 1
+    add_face(dome, {1, -1, z}, {-2, 0, 0}, up, n, half, out);  // y = -1
 }
 
 DistantFacet facet_of(const DistantLight::Disc& disc) {

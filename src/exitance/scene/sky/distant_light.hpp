@@ -27,7 +27,7 @@ struct DistantLight {
     };
     /// Uniform within half_angle (at most `widest_disc`) of a direction.
     struct Disc {
-        Normal towards;        ///< Of length 1.
+        Normal towards;         ///< Of length 1.
         double half_angle = 0;  ///< Radians.
         Spectrum irradiance;    ///< Of a plane that faces it, W/m^2 (lx).
     };

@@ -24,10 +24,11 @@ SkyPatches::SkyPatches(int m) {
     for (std::size_t row = 0; row < tregenza.size() * division; ++row) {
         const std::size_t count = tregenza[row / division] * division;
         first_.push_back(middle_.size()), in_row_.push_back(count);
-        const double omega = 2 * pi / static_cast<double>(count) * (std::sin(altitude(row + 1)) - std::sin(altitude(row)));
+        const double omega =
+            2 * pi / static_cast<double>(count) * (std::sin(altitude(row + 1)) - std::sin(altitude(row)));
         for (std::size_t k = 0; k < count; ++k) {
-            middle_.push_back(direction(altitude(row) + 0.5 * height_,
-                                        2 * pi * static_cast<double>(k) / static_cast<double>(count)));
+            middle_.push_back(
+                direction(altitude(row) + 0.5 * height_, 2 * pi * static_cast<double>(k) / static_cast<double>(count)));
             solid_angle_.push_back(omega);
             horizontal_.push_back(pi / static_cast<double>(count) *
                                   (squared(std::sin(altitude(row + 1))) - squared(std::sin(altitude(row)))));
@@ -94,7 +95,8 @@ std::vector<double> SkyPatches::mean_values(const SkyModel& sky) const {
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j) {
                     const double h = altitude(row) + (i + 0.5) / 3 * height_, w = std::cos(h);
-                    const double a = 2 * pi * (static_cast<double>(k) + (j - 1) / 3.0) / static_cast<double>(in_row_[row]);
+                    const double a =
+                        2 * pi * (static_cast<double>(k) + (j - 1) / 3.0) / static_cast<double>(in_row_[row]);
                     sum += w * sky.value(direction(h, a)), weight += w;
                 }
             out[first_[row] + k] = sum / weight;

@@ -32,9 +32,9 @@ class SkyPatches {
     void make_facets();
     double altitude(std::size_t row) const { return static_cast<double>(row) * height_; }  ///< Of a row's lower border.
 
-    double height_;                       ///< Of a row, radians.
-    std::vector<std::size_t> first_;      ///< Of every row, its first patch; at the end the zenith's.
-    std::vector<std::size_t> in_row_;     ///< Patches of a row.
+    double height_;                    ///< Of a row, radians.
+    std::vector<std::size_t> first_;   ///< Of every row, its first patch; at the end the zenith's.
+    std::vector<std::size_t> in_row_;  ///< Patches of a row.
     std::vector<Normal> middle_;
     std::vector<double> solid_angle_, horizontal_;
     std::vector<DistantFacet> facets_;

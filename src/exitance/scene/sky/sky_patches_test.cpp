@@ -49,8 +49,7 @@ TEST(SkyPatches, MeansOfASkyBringItsIrradiance) {
     const SkyModel sky = cie_sky(12, Normal{0.6, 0, 0.8});
     const std::vector<double> means = patches.mean_values(sky);
     double horizontal = 0;
-    for (std::size_t p = 1; p < patches.size(); ++p)
-        horizontal += means[p] * patches.horizontal(p);
+    for (std::size_t p = 1; p < patches.size(); ++p) horizontal += means[p] * patches.horizontal(p);
     EXPECT_NEAR(horizontal * sky.scale / pi, 1, 2e-3);  // the cosine does not vary with the sky within a patch
 }
 

@@ -20,35 +20,22 @@ double series(std::span<const Term> terms, double t) {
 }
 
 // Terms of VSOP87 for the Earth, 1e-8 rad and 1e-8 AU [Reda04].
-constexpr Term longitude_0[] = {{175347046, 0, 0},
-                                {3341656, 4.6692568, 6283.07585},
-                                {34894, 4.6261, 12566.1517},
-                                {3497, 2.7441, 5753.3849},
-                                {3418, 2.8289, 3.5231},
-                                {3136, 3.6277, 77713.7715},
-                                {2676, 4.4181, 7860.4194},
-                                {2343, 6.1352, 3930.2097},
-                                {1324, 0.7425, 11506.7698},
-                                {1273, 2.0371, 529.691},
-                                {1199, 1.1096, 1577.3435},
-                                {990, 5.233, 5884.927},
-                                {902, 2.045, 26.298},
-                                {857, 3.508, 398.149},
-                                {780, 1.179, 5223.694},
-                                {753, 2.533, 5507.553},
-                                {505, 4.583, 18849.228},
-                                {492, 4.205, 775.523},
-                                {357, 2.92, 0.067},
-                                {317, 5.849, 11790.629}};
+constexpr Term longitude_0[] = {{175347046, 0, 0},           {3341656, 4.6692568, 6283.07585},
+                                {34894, 4.6261, 12566.1517}, {3497, 2.7441, 5753.3849},
+                                {3418, 2.8289, 3.5231},      {3136, 3.6277, 77713.7715},
+                                {2676, 4.4181, 7860.4194},   {2343, 6.1352, 3930.2097},
+                                {1324, 0.7425, 11506.7698},  {1273, 2.0371, 529.691},
+                                {1199, 1.1096, 1577.3435},   {990, 5.233, 5884.927},
+                                {902, 2.045, 26.298},        {857, 3.508, 398.149},
+                                {780, 1.179, 5223.694},      {753, 2.533, 5507.553},
+                                {505, 4.583, 18849.228},     {492, 4.205, 775.523},
+                                {357, 2.92, 0.067},          {317, 5.849, 11790.629}};
 constexpr Term longitude_1[] = {
     {628331966747, 0, 0}, {206059, 2.678235, 6283.07585}, {4303, 2.6351, 12566.1517}, {425, 1.59, 3.523}};
 constexpr Term longitude_2[] = {{52919, 0, 0}, {8720, 1.0721, 6283.0758}, {309, 0.867, 12566.152}};
-constexpr Term distance_0[] = {{100013989, 0, 0},
-                               {1670700, 3.0984635, 6283.07585},
-                               {13956, 3.05525, 12566.1517},
-                               {3084, 5.1985, 77713.7715},
-                               {1628, 1.1739, 5753.3849},
-                               {1576, 2.8469, 7860.4194}};
+constexpr Term distance_0[] = {
+    {100013989, 0, 0},          {1670700, 3.0984635, 6283.07585}, {13956, 3.05525, 12566.1517},
+    {3084, 5.1985, 77713.7715}, {1628, 1.1739, 5753.3849},        {1576, 2.8469, 7860.4194}};
 constexpr Term distance_1[] = {{103019, 1.10749, 6283.07585}};
 
 }  // namespace
@@ -84,8 +71,8 @@ SunPosition sun_position(const LocalTime& time, const Place& place) {
     // Nutation by its four largest terms, seconds of arc.
     const double node = (125.04452 - 1934.136261 * century) * degree, sun = (280.4665 + 36000.7698 * century) * degree,
                  moon = (218.3165 + 481267.8813 * century) * degree;
-    const double in_longitude = -17.20 * std::sin(node) - 1.32 * std::sin(2 * sun) - 0.23 * std::sin(2 * moon) +
-                                0.21 * std::sin(2 * node);
+    const double in_longitude =
+        -17.20 * std::sin(node) - 1.32 * std::sin(2 * sun) - 0.23 * std::sin(2 * moon) + 0.21 * std::sin(2 * node);
     const double in_obliquity =
         9.20 * std::cos(node) + 0.57 * std::cos(2 * sun) + 0.10 * std::cos(2 * moon) - 0.09 * std::cos(2 * node);
     const double obliquity = (23.4392911 - 0.0130042 * century + in_obliquity / 3600) * degree;
@@ -102,8 +89,8 @@ SunPosition sun_position(const LocalTime& time, const Place& place) {
     const double phi = place.latitude * degree;
     const double sine =
         std::sin(phi) * std::sin(declination) + std::cos(phi) * std::cos(declination) * std::cos(hour_angle);
-    const double azimuth = std::atan2(std::sin(hour_angle),
-                                      std::cos(hour_angle) * std::sin(phi) - std::tan(declination) * std::cos(phi));
+    const double azimuth =
+        std::atan2(std::sin(hour_angle), std::cos(hour_angle) * std::sin(phi) - std::tan(declination) * std::cos(phi));
     double altitude = std::asin(std::fmin(1.0, std::fmax(-1.0, sine)));
     altitude -= 8.794 / 3600 * degree / distance * std::cos(altitude);  // parallax
     double shown = altitude / degree;
