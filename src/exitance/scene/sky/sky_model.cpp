@@ -17,49 +17,56 @@ double intermediate_value(double cos_z, double gamma, double cos_sun) {
            std::exp(gamma * -0.563 * ((2.629 - eta) * (1.562 - zt) + 0.812));
 }
 
-/// Mean over a half of the directions by the cosine, in u = cos^2 Z and the azimuth's share v, where cells of equal
-/// size weigh alike: adaptive, by Gauss' rule of three points.
+/// Mean over a half of the directions by the cosine, in Z and the azimuth's share v: adaptive, by Gauss' rule of three
+/// points.
 class CosineMean {
   public:
     explicit CosineMean(const SkyModel& sky) : sky_(sky), azimuth_(std::atan2(sky.sun.y, sky.sun.x)) {}
-    double operator()() const {
-        constexpr int rows = 8, columns = 16;
-        double sum = 0;
-        for (int i = 0; i < rows; ++i)
-            for (int k = 0; k < columns; ++k) {
-                const double u = double(i) / rows, v = double(k) / columns;
-                sum += part(u, v, 1.0 / rows, 1.0 / columns, rule(u, v, 1.0 / rows, 1.0 / columns), 0);
-            }
+    double operator()() {
+        constexpr int rows = 6, columns = 8;
+        std::array<double, rows * columns> whole{};
+        const auto cell = [](int i) { return Cell{i / columns * high, (i % columns) * wide, high, wide}; };
+        double sum = 0, all = 0;
+        for (int i = 0; i < rows * columns; ++i) all += std::abs(whole[static_cast<std::size_t>(i)] = rule(cell(i)));
+        allowed_ = accepted * all;
+        for (int i = 0; i < rows * columns; ++i) sum += part(cell(i), whole[static_cast<std::size_t>(i)], 0);
         return sum;
     }
 
   private:
-    double at(double u, double v) const {
-        const double z = std::sqrt(u), s = std::sqrt(1 - u), phi = azimuth_ + 2 * pi * v;
-        return sky_.value({s * std::cos(phi), s * std::sin(phi), sky_.below ? -z : z});
+    static constexpr double high = 0.5 * pi / 6, wide = 1.0 / 8;
+    static constexpr double accepted = 1e-6;  ///< Of a cell by its quarters, whose error is far less.
+    struct Cell {
+        double z, v, dz, dv;
+    };
+    double at(double zenith, double v) const {
+        const double s = std::sin(zenith), z = std::cos(zenith), phi = azimuth_ + 2 * pi * v;
+        return 2 * s * z * sky_.value({s * std::cos(phi), s * std::sin(phi), sky_.below ? -z : z});
     }
-    double rule(double u, double v, double du, double dv) const {
+    double rule(const Cell& c) const {
         static const double g = 0.5 * std::sqrt(0.6);
         const std::array<double, 3> x{0.5 - g, 0.5, 0.5 + g}, w{5.0 / 18, 8.0 / 18, 5.0 / 18};
         double sum = 0;
         for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t k = 0; k < 3; ++k) sum += w[i] * w[k] * at(u + x[i] * du, v + x[k] * dv);
-        return sum * du * dv;
+            for (std::size_t k = 0; k < 3; ++k) sum += w[i] * w[k] * at(c.z + x[i] * c.dz, c.v + x[k] * c.dv);
+        return sum * c.dz * c.dv;
     }
-    double part(double u, double v, double du, double dv, double whole, int depth) const {
-        constexpr int deepest = 9;
-        constexpr double accepted = 1e-5;  // of what four quarters say otherwise, which is far more than their error
-        const double hu = 0.5 * du, hv = 0.5 * dv;
-        const std::array<double, 4> q{rule(u, v, hu, hv), rule(u + hu, v, hu, hv), rule(u, v + hv, hu, hv),
-                                      rule(u + hu, v + hv, hu, hv)};
-        const double sum = q[0] + q[1] + q[2] + q[3];
-        if (depth == deepest || std::abs(sum - whole) <= accepted * std::max(std::abs(sum), du * dv)) return sum;
-        return part(u, v, hu, hv, q[0], depth + 1) + part(u + hu, v, hu, hv, q[1], depth + 1) +
-               part(u, v + hv, hu, hv, q[2], depth + 1) + part(u + hu, v + hv, hu, hv, q[3], depth + 1);
+    double part(const Cell& c, double whole, int depth) const {
+        constexpr int deepest = 8;
+        const double hz = 0.5 * c.dz, hv = 0.5 * c.dv;
+        const std::array<Cell, 4> cells{Cell{c.z, c.v, hz, hv}, Cell{c.z + hz, c.v, hz, hv},
+                                        Cell{c.z, c.v + hv, hz, hv}, Cell{c.z + hz, c.v + hv, hz, hv}};
+        std::array<double, 4> quarter{};
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) sum += quarter[i] = rule(cells[i]);
+        if (depth == deepest || std::abs(sum - whole) <= allowed_) return sum;
+        double out = 0;
+        for (std::size_t i = 0; i < 4; ++i) out += part(cells[i], quarter[i], depth + 1);
+        return out;
     }
 
     const SkyModel& sky_;
-    double azimuth_;
+    double azimuth_, allowed_ = 0;
 };
 
 /// x1 to x4 of a, b, c, d, e in each bin of clearness [Perez93].
