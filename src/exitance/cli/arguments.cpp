@@ -360,6 +360,12 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     declare_work(app, arguments, o.threads);
     add_choice(app, "--quantity", quantity_kinds, arguments.photometric,
                "Is light given in watts or in lumens? Default by the file: photometric where glTF has lights");
+    app.add_option("--sky", arguments.sky,
+                   "Light from outside, such as 'perez,lat=47.4,lon=8.5,time=06-21T12:00,dni=700,dhi=120'; uniform, "
+                   "overcast, clear, cie1 to cie15 and perez, see docs/daylight.md")
+        ->type_name("SKY");
+    app.add_option("--epw", arguments.epw, "Weather file: place and irradiances of the sky that --sky names")
+        ->type_name("FILE");
     add_choice(app, "--schedule", schedule_names, o.schedule,
                "How work comes to threads; default stealing. The result does not depend on it");
     app.add_option("--trace", arguments.trace, "Write every task's time, thread and data (Chrome trace format, .json)")
@@ -525,6 +531,36 @@ void declare(CLI::App& app, ReportArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146"}, {2, "577"}, {4, "2305"}}};
+
+void declare(CLI::App& app, DaylightArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of the scene; its own light does not count")
+        ->required();
+    app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus)")->type_name("FILE")->required();
+    app.add_option("--points", arguments.points, "Sensors: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", arguments.output, "Folder for illuminance.csv, metrics.csv, matrix.csv, summary.csv")
+        ->type_name("FOLDER")
+        ->required();
+    add_choice(app, "--sky-patches", patch_counts, arguments.division, "Patches of the sky; default 146");
+    app.add_option_function<std::string>(
+           "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },
+           "Degrees clockwise from y to north, seen from above; default 0")
+        ->type_name("DEGREES");
+    app.add_option_function<std::string>(
+           "--ground",
+           [&arguments](const std::string& w) {
+               arguments.ground = read_number("--ground", w);
+               if (!(arguments.ground >= 0 && arguments.ground <= 1))
+                   throw CLI::ValidationError("--ground", fmt::format("must be from 0 to 1, not {}", w));
+           },
+           "Reflectance of the ground beneath the scene; default 0.2")
+        ->type_name("R");
+    declare_json(app, arguments);
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, CheckArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("--picture", arguments.picture, "Picture of the scene that marks what was found (.png)")
@@ -625,6 +661,8 @@ const std::vector<Verb>& verbs() {
          "exitance bake room.h5 -o lightmaps", parse_verb<BakeArguments>},
         {"report", "Writes a page with pictures, tables, measuring planes, energy balance and error.",
          "exitance report room.h5 -o room.html", parse_verb<ReportArguments>},
+        {"daylight", "Writes the daylight of a year at sensors: illuminances, autonomy, daylight factors.",
+         "exitance daylight room.h5 --epw city.epw --points desks.pts -o year", parse_verb<DaylightArguments>},
         {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
          parse_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",

@@ -45,6 +45,7 @@ struct SolveArguments : CommonArguments {
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
     std::optional<bool> photometric;  ///< None: as the file has it.
+    std::string sky, epw;             ///< A sky in words, and a weather file for it; empty: none.
 };
 
 struct ProbeArguments : CommonArguments {
@@ -109,6 +110,13 @@ struct ReportArguments : CommonArguments {
     int threads = 0;
 };
 
+struct DaylightArguments : CommonArguments {
+    std::string solution, epw, points, output;
+    int division = 1;  ///< Of Tregenza's patches, in either direction.
+    double north = 0, ground = 0.2;
+    int threads = 0;
+};
+
 struct CheckArguments : CommonArguments {
     SceneArguments scene;
     std::string picture;
@@ -131,9 +139,9 @@ struct ViewFactorArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command =
-    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
-                 BakeArguments, ReportArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
+using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
+                             RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments,
+                             GenerateArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

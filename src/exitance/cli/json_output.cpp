@@ -213,6 +213,12 @@ std::string view_factors_json(const ViewFactorFacts& facts) {
     return dump(json, 2);
 }
 
+std::string values_json(const std::vector<std::pair<std::string, double>>& values) {
+    Json json;
+    for (const auto& [name, value] : values) json[name] = value;
+    return dump(json, 2);
+}
+
 std::string progress_json(std::string_view phase, double fraction, std::string_view detail, double elapsed,
                           std::optional<double> remaining) {
     const Json json{{"phase", phase},

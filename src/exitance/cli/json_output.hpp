@@ -48,6 +48,9 @@ struct ViewFactorFacts {
 /// `viewfactors --json`.
 std::string view_factors_json(const ViewFactorFacts& facts);
 
+/// Named numbers, such as `daylight --json` prints.
+std::string values_json(const std::vector<std::pair<std::string, double>>& values);
+
 /// One line of `--progress json`; times in seconds.
 std::string progress_json(std::string_view phase, double fraction, std::string_view detail, double elapsed,
                           std::optional<double> remaining);

@@ -15,6 +15,7 @@
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/files/trace_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
@@ -118,6 +119,25 @@ Result<void> read_importance(SolveArguments& arguments) {
     return {};
 }
 
+/// The sky that is asked for becomes a part of the scene that is read.
+Result<void> read_sky(SolveArguments& arguments) {
+    if (arguments.sky.empty() && arguments.epw.empty()) return {};
+    if (arguments.sky.empty())
+        return Error{ErrorCode::usage, "a weather file needs a kind of sky and a time", "--epw",
+                     "--sky perez,time=06-21T12:00"};
+    std::optional<Weather> weather;
+    if (!arguments.epw.empty()) {
+        Result<Weather> read = load_epw(arguments.epw);
+        if (!read) return read.error();
+        weather = std::move(*read);
+    }
+    Result<ChosenSky> sky = parse_sky(arguments.sky, weather ? &*weather : nullptr);
+    if (!sky) return sky.error();
+    if (arguments.photometric) sky->photometric = arguments.photometric;
+    arguments.scene.load.sky = std::move(*sky);
+    return {};
+}
+
 /// What a solution depends on.
 CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     CheckpointFacts facts{{"bands", std::to_string(bands)}, {"the scene", scene_fingerprint(scene)}};
@@ -161,6 +181,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     SolveArguments arguments = given;
     if (const Result<void> engine = check_task_engine(given); !engine) return terminal.fail(engine.error());
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
+    if (const Result<void> sky = read_sky(arguments); !sky) return terminal.fail(sky.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
     if (const Result<void> ending = check_ending(arguments.output); !ending) return terminal.fail(ending.error());

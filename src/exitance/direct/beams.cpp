@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/visibility/glazed_part.hpp"
+
 namespace exitance {
 
 /// A place towards parallel light that is beyond the whole scene.
@@ -53,8 +55,10 @@ bool Beams::is_blocked(const Receiver& at, const Point& from) const {
 Spectrum Beams::irradiance(const Receiver& at, Spectrum* parallel) const {
     Spectrum sum;
     for (const PunctualLight& light : *lights_) {
-        const Arrival arriving = arrival(light, at);
+        Arrival arriving = arrival(light, at);
         if (!(max(arriving.E) > 0) || is_blocked(at, arriving.from)) continue;
+        if (!occluders_->scene().panes().empty())
+            arriving.E *= transmission_between(occluders_->scene().panes(), at.x, arriving.from);
         sum += arriving.E;
         if (parallel && light.is_directional()) *parallel += arriving.E;
     }
@@ -66,11 +70,13 @@ Spectrum Beams::irradiance(const Receiver& at, std::span<const Beam> beams, std:
     Spectrum sum;
     for (const Beam& beam : beams) {
         const PunctualLight& light = (*lights_)[beam.light];
-        const Arrival arriving = arrival(light, at);
+        Arrival arriving = arrival(light, at);
         if (!(max(arriving.E) > 0)) continue;
         const auto between = candidates.subspan(beam.first, beam.count);
         if (std::any_of(between.begin(), between.end(), [&](PieceId p) { return blocks(p, at, arriving.from); }))
             continue;
+        if (!occluders_->scene().panes().empty())
+            arriving.E *= transmission_between(occluders_->scene().panes(), at.x, arriving.from);
         sum += arriving.E;
         if (parallel && light.is_directional()) *parallel += arriving.E;
     }

@@ -40,10 +40,11 @@ unsigned power_of_two(double rays, unsigned least, unsigned most) {
 
 ClusteredLight::ClusteredLight(const DirectLight& direct, const RayTracer& tracer)
     : direct_(&direct), tracer_(&tracer), tree_(direct) {
-    const Scene& scene = direct.occluders().scene();
-    possible_ = tree_.sources().size() > too_many_for_exactness;
+    // Of the sky, few large faces are looked at exactly.
+    possible_ = tree_.sources().size() > too_many_for_exactness && direct.occluders().scene().distant().empty() &&
+                direct.occluders().scene().panes().empty();
     for (const DirectLight::Emitter& emitter : direct.emitters())
-        possible_ = possible_ && !scene.material(emitter.region).is_directed();
+        possible_ = possible_ && !emitter.radiance.is_directed();
 }
 
 Receiver ClusteredLight::receiver(const Point& x, const Normal& n, RegionId own) const {

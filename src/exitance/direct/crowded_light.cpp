@@ -25,8 +25,12 @@ double CrowdedLight::unblocked(const Receiver& at, const ReceiverLight::Source& 
 
 std::vector<ReceiverLight::Source> CrowdedLight::take_crowded(ReceiverLight& light, const Point& middle, double allowed,
                                                               DirectLight::Workspace& scratch, unsigned& rays) const {
-    const auto is_crowded = [](const ReceiverLight::Source& s) { return s.count > least_crowd; };
+    // Not of the sky, whose light varies over a source, nor through panes.
+    const auto is_crowded = [&](const ReceiverLight::Source& s) {
+        return s.count > least_crowd && !direct_->is_distant(s.emitter);
+    };
     std::vector<ReceiverLight::Source> out;
+    if (!direct_->occluders().scene().panes().empty()) return out;
     if (allowed <= 0 || std::none_of(light.sources.begin(), light.sources.end(), is_crowded)) return out;
     const Receiver at = direct_->receiver(middle, light.n, light.own);
     // A ray comes or does not: the variance of n is F^2 / (4 n) at most.
@@ -40,7 +44,7 @@ std::vector<ReceiverLight::Source> CrowdedLight::take_crowded(ReceiverLight& lig
     if (wanted > most_rays) return out;
     rays = std::bit_ceil(static_cast<unsigned>(wanted));
     std::erase_if(light.sources, [&](const ReceiverLight::Source& s) {
-        if (s.count * rays_a_blocker <= rays) return false;
+        if (!is_crowded(s) || s.count * rays_a_blocker <= rays) return false;
         out.push_back(s);
         return true;
     });

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "exitance/geometry/polygon.hpp"
+#include "exitance/visibility/glazed_part.hpp"
 
 namespace exitance {
 namespace {
@@ -35,10 +36,26 @@ DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
                 emitter.radius = std::max(emitter.radius, norm(corner - emitter.centre));
         emitters_.push_back(emitter);
     }
+    add_distant_emitters(scene);
+}
+
+void DirectLight::add_distant_emitters(const Scene& scene) {
+    first_distant_ = emitters_.size();
+    const std::vector<DistantFacet> facets = distant_facets(scene.distant());
+    std::size_t next = 0;
+    for (const PieceId p : occluders_->distant_pieces()) {
+        const DistantFacet& facet = facets[next++];
+        Emitter emitter{RegionId(), facet.exitance, occluders_->pieces()[p].plane, {}, 0, {p.value, p.value + 1}};
+        if (facet.sky) emitter.radiance = RelativeRadiance(*facet.sky, facet.smooth_width, facet.n);
+        const std::span<const Point> corners = occluders_->corners(p);
+        emitter.centre = centroid(corners);
+        for (const Point& corner : corners) emitter.radius = std::max(emitter.radius, norm(corner - emitter.centre));
+        emitters_.push_back(emitter);
+    }
 }
 
 double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const {
-    if (emitter.region == at.own || !may_see(at, emitter, occluders_->rounding())) return 0;
+    if (is_own(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return 0;
     double sum = 0;
     for (PieceId piece : emitter.pieces) sum += visible_form_factor(*occluders_, at, piece, scratch, emitter.radiance);
     return sum;
@@ -52,14 +69,32 @@ Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) co
     return {x - (plane.signed_distance(x) - occluders_->lift(own)) * plane.n, n, own};
 }
 
+/// Of one emitter, through panes too.
+Spectrum DirectLight::light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const {
+    if (occluders_->scene().panes().empty()) {
+        const double f = form_factor(at, emitter, scratch);
+        return f > 0 ? f * emitter.exitance : Spectrum();
+    }
+    Spectrum sum;
+    if (is_own(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return sum;
+    for (PieceId piece : emitter.pieces)
+        sum += emitter.exitance * glazed_form_factor(*occluders_, at, piece, {}, scratch, emitter.radiance);
+    return sum;
+}
+
 Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
     const Receiver at = receiver(x, n, own);
     Spectrum sum;
-    for (const Emitter& emitter : emitters_) {
-        const double f = form_factor(at, emitter, scratch);
-        if (f > 0) sum += f * emitter.exitance;
-    }
+    for (const Emitter& emitter : emitters_) sum += light_of(emitter, at, scratch);
     return beams_.empty() ? sum : sum + beams_.irradiance(at);
+}
+
+std::vector<Spectrum> DirectLight::distant_light(const Point& x, const Normal& n, RegionId own,
+                                                 Workspace& scratch) const {
+    const Receiver at = receiver(x, n, own);
+    std::vector<Spectrum> out;
+    for (std::size_t i = first_distant_; i < emitters_.size(); ++i) out.push_back(light_of(emitters_[i], at, scratch));
+    return out;
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
@@ -71,7 +106,7 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
     for (const Point& p : receiver) radius = std::max(radius, norm(p - middle));
     for (std::uint32_t e = 0; e < emitters_.size(); ++e) {
         const Emitter& emitter = emitters_[e];
-        if (emitter.region == own || emitter.plane.signed_distance(middle) <= -radius ||
+        if (is_own(emitter, own) || emitter.plane.signed_distance(middle) <= -radius ||
             dot(n, emitter.centre - middle) <= -emitter.radius)
             continue;
         for (PieceId piece : emitter.pieces) look_at({e, piece}, receiver, light, scratch);
@@ -90,13 +125,13 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
                           Workspace& scratch) const {
     const auto& [e, piece] = source;
     const Emitter& emitter = emitters_[e];
-    if (occluders_->has_nothing_inside()) {
+    if (occluders_->has_nothing_inside() && !is_distant(e)) {
         if (face_each_other({light.n, dot(light.n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
             add_open(e, piece, light);
         return;
     }
     scratch.shaft.set(*occluders_, {receiver, light.n, light.own},
-                      {occluders_->corners(piece), emitter.plane.n, emitter.region});
+                      {occluders_->corners(piece), emitter.plane.n, emitter.region, is_distant(e)});
     PieceId& likely = scratch.last_blocker(*occluders_, piece);
     if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) return;
     add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
@@ -113,8 +148,9 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
             continue;
         }
         const Emitter& emitter = emitters_[source.emitter];
-        scratch.shaft.set(*occluders_, {receiver, whole.n, whole.own},
-                          {occluders_->corners(source.piece), emitter.plane.n, emitter.region});
+        scratch.shaft.set(
+            *occluders_, {receiver, whole.n, whole.own},
+            {occluders_->corners(source.piece), emitter.plane.n, emitter.region, is_distant(source.emitter)});
         const auto from = std::span(whole.candidates).subspan(source.first, source.count);
         add_source(source.emitter, source.piece, scratch.shaft.classify(from, scratch.candidates), light, scratch);
     }
@@ -142,7 +178,8 @@ void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, Re
 
 void DirectLight::add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const {
     const std::span<const Point> corners = occluders_->corners(piece);
-    const bool in_batch = corners.size() <= 4 && !emitters_[emitter].radiance.is_directed();
+    const bool in_batch = corners.size() <= 4 && !emitters_[emitter].radiance.is_directed() && !is_distant(emitter) &&
+                          occluders_->scene().panes().empty();
     light.sources.push_back({emitter, piece, 0, 0, in_batch});
     if (!in_batch) return;
     light.open.add({corners[0], corners[1], corners[2], corners[corners.size() - 1]});
@@ -156,12 +193,18 @@ Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Wor
     scratch.factors.resize(light.open.size());
     point_to_quads(at.x, light.n, light.open, scratch.factors);
     for (std::size_t i = 0; i < scratch.factors.size(); ++i) sum += scratch.factors[i] * light.open_light[i];
+    const bool glazed = !occluders_->scene().panes().empty();
     for (const ReceiverLight::Source& source : light.sources) {
         if (source.in_batch) continue;
         const auto candidates = std::span(light.candidates).subspan(source.first, source.count);
         const Emitter& emitter = emitters_[source.emitter];
-        const double f = visible_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance);
-        if (f > 0) sum += f * emitter.exitance;
+        const Spectrum light_there =
+            emitter.exitance *
+            (glazed
+                 ? glazed_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)
+                 : Spectrum(visible_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)));
+        sum += light_there;
+        if (parallel && is_distant(source.emitter)) *parallel += light_there;
     }
     return light.beams.empty() ? sum : sum + beams_.irradiance(at, light.beams, light.candidates, parallel);
 }

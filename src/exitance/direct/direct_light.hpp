@@ -51,6 +51,9 @@ class DirectLight {
     /// caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
+    /// The same of each of the sky's facets by itself, in the order of `distant_facets`.
+    std::vector<Spectrum> distant_light(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
+
     /// A convex piece of an emitter.
     struct SourceName {
         std::uint32_t emitter = 0;
@@ -71,7 +74,7 @@ class DirectLight {
                  Workspace& scratch) const;
 
     /// The irradiance at a point of the polygon that `light` was made for: as above, up to rounding. What comes from
-    /// parallel light is added to `parallel`, if given.
+    /// outside, by parallel light and from the sky, is added to `parallel`, if given.
     Spectrum irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
                         Spectrum* parallel = nullptr) const;
 
@@ -88,6 +91,9 @@ class DirectLight {
         RelativeRadiance radiance = {};
     };
     const std::vector<Emitter>& emitters() const { return emitters_; }
+    /// Those of the sky come last; they are no regions.
+    bool is_distant(std::size_t emitter) const { return emitter >= first_distant_; }
+    static bool is_own(const Emitter& emitter, RegionId own) { return !own.is_none() && emitter.region == own; }
     const Occluders& occluders() const { return *occluders_; }
 
     /// Form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.
@@ -97,6 +103,8 @@ class DirectLight {
     Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
 
   private:
+    void add_distant_emitters(const Scene& scene);
+    Spectrum light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const;
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
                  Workspace& scratch) const;
     void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch) const;
@@ -107,6 +115,7 @@ class DirectLight {
 
     const Occluders* occluders_;
     std::vector<Emitter> emitters_;
+    std::size_t first_distant_ = 0;
     Beams beams_;
 };
 

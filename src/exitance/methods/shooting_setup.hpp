@@ -18,10 +18,11 @@ class ShootingSetup {
     /// Hands over what was found. The setup is empty afterwards.
     GlobalLight finish(const SolveReport& report);
 
-    /// Is the emitters' own light shot too (`--visibility fractional`), or exact and apart? Lights without extent have
-    /// no patch to shoot from, and patches shoot diffusely: with any of them, or of directed emitters, it is apart.
+    /// Is the emitters' own light shot too (`--visibility fractional`), or exact and apart? Lights without extent and
+    /// skies have no patch to shoot from, and patches shoot diffusely: with any of them, or of directed emitters, it is
+    /// apart.
     bool shoots_direct_light() const {
-        return input_.options.visibility == VisibilityKind::fractional && input_.stage.scene.lights().empty() &&
+        return input_.options.visibility == VisibilityKind::fractional && !input_.stage.scene.has_light_apart() &&
                !input_.stage.scene.has_directed_emission();
     }
 

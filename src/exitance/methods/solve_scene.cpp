@@ -94,7 +94,7 @@ class Solver {
             resume();
             solve_indirect_light();
         } else {
-            if (!makes_discontinuity_mesh() || has_parallel_light()) project_direct();
+            if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
             statistics().elements = direct_.tree.size();
             statistics().leaf_elements = direct_.tree.leaves().size();
             tell_exact();
@@ -469,10 +469,6 @@ class Solver {
 
     bool makes_discontinuity_mesh() const {
         return options_.method == Method::discontinuity && !solution_.direct_in_elements;
-    }
-    bool has_parallel_light() const {
-        return std::any_of(solution_.scene.lights().begin(), solution_.scene.lights().end(),
-                           [](const PunctualLight& light) { return light.is_directional(); });
     }
 
     /// Direct light on triangles that follow its shadows, with what is reflected on top of it.

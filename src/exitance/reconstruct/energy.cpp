@@ -40,7 +40,7 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
     for (const Region& region : scene.regions())
         out.emitted += region.area * sum(scene.materials()[region.material].exitance);
     for (const PunctualLight& light : scene.lights()) out.emitted += sum(light.power());
-    // Parallel light comes from outside: what meets a surface counts as emitted.
+    // Parallel light and that of the sky come from outside: what meets a surface counts as emitted.
     for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * sum(direct.fit[e].parallel);
     const auto arrive = [&](RegionId region, const Point& centre, double area, const Spectrum& E) {
         const Spectrum& rho = scene.material(region).reflectance;

@@ -6,6 +6,7 @@
 
 #include "exitance/core/ids.hpp"
 #include "exitance/geometry/vec.hpp"
+#include "exitance/scene/sky/sky_model.hpp"
 
 namespace exitance {
 
@@ -82,20 +83,26 @@ class RelativeRadiance {
     /// All must outlive it.
     RelativeRadiance(const EmissionProfile& profile, const DirectedEmission& emission, const Normal& n)
         : profile_(&profile), emission_(&emission), n_(n) {}
+    /// Of a far face of the sky; it must outlive it. `smooth_width`: of this face.
+    RelativeRadiance(const SkyModel& sky, double smooth_width, const Normal& n)
+        : sky_(&sky), sky_width_(smooth_width), n_(n) {}
 
-    bool is_directed() const { return profile_ != nullptr; }
+    bool is_directed() const { return profile_ != nullptr || sky_ != nullptr; }
     /// Towards w, of length 1, in front of the face.
     double operator()(const Vec3& w) const {
-        return profile_ ? emission_->scale * profile_->radiance(emission_->in_lamp(w), dot(n_, w)) : 1;
+        if (profile_) return emission_->scale * profile_->radiance(emission_->in_lamp(w), dot(n_, w));
+        return sky_ ? sky_->relative(-w) : 1;
     }
     /// Towards the point x from the point y of the face.
-    double towards(const Point& x, const Point& y) const { return profile_ ? (*this)(normalized(x - y)) : 1; }
-    double smooth_width() const { return profile_->smooth_width; }
+    double towards(const Point& x, const Point& y) const { return is_directed() ? (*this)(normalized(x - y)) : 1; }
+    double smooth_width() const { return sky_ ? sky_width_ : profile_->smooth_width; }
     const Normal& normal() const { return n_; }
 
   private:
     const EmissionProfile* profile_ = nullptr;
     const DirectedEmission* emission_ = nullptr;
+    const SkyModel* sky_ = nullptr;
+    double sky_width_ = 0;  ///< Radians.
     Normal n_;
 };
 

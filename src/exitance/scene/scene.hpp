@@ -10,8 +10,10 @@
 #include "exitance/core/spectrum.hpp"
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/scene/emission_profile.hpp"
+#include "exitance/scene/pane.hpp"
 #include "exitance/scene/point_light.hpp"
 #include "exitance/scene/scene_camera.hpp"
+#include "exitance/scene/sky/distant_light.hpp"
 
 namespace exitance {
 
@@ -107,6 +109,8 @@ struct SceneDescription {
     std::vector<std::string> groups;
     std::vector<Face> faces;
     std::vector<PunctualLight> lights;
+    DistantLight distant;
+    std::vector<Pane> panes;
     std::vector<SceneCamera> cameras;
     bool photometric = false;  ///< Its light is given in lumens rather than watts.
 };
@@ -146,7 +150,20 @@ class Scene {
     const std::vector<SurfaceId>& emitters() const { return emitters_; }
     /// Sources without extent, in the order of the file.
     const std::vector<PunctualLight>& lights() const { return lights_; }
-    bool has_light() const { return !emitters_.empty() || !lights_.empty(); }
+    /// Clear glass, cut to convex polygons.
+    const std::vector<Pane>& panes() const { return panes_; }
+    /// Skies and suns.
+    const DistantLight& distant() const { return distant_; }
+    /// As users say who want another light from outside.
+    void put_under(DistantLight light) { distant_ = std::move(light); }
+    bool has_light() const { return !emitters_.empty() || has_light_apart(); }
+    /// Is there light that no surface sends, so that rays from surface to surface do not find it?
+    bool has_light_apart() const { return !lights_.empty() || !distant_.empty(); }
+    /// Is there light that comes from outside, so that what is emitted is what arrives?
+    bool has_light_from_outside() const {
+        return !distant_.empty() || std::any_of(lights_.begin(), lights_.end(),
+                                                [](const PunctualLight& light) { return light.is_directional(); });
+    }
 
     /// Is light measured in lumens rather than watts? Nothing is converted: E is in lx, then, and M in lm/m^2.
     bool is_photometric() const { return photometric_; }
@@ -168,6 +185,8 @@ class Scene {
     std::vector<Point> corners_;
     std::vector<SurfaceId> emitters_;
     std::vector<PunctualLight> lights_;
+    DistantLight distant_;
+    std::vector<Pane> panes_;
     std::vector<SceneCamera> cameras_;
     bool photometric_ = false;
     Box box_;

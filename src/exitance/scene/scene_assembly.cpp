@@ -75,6 +75,8 @@ Scene SceneBuilder::make() {
     for (const std::string& g : in_.groups) scene.groups_.add(g);
     for (PunctualLight& light : in_.lights)
         if (max(light.intensity) > 0) scene.lights_.push_back(std::move(light));
+    scene.distant_ = std::move(in_.distant);
+    scene.panes_ = convex_panes(in_.panes);
     scene.cameras_ = std::move(in_.cameras);
     scene.photometric_ = in_.photometric;
     return scene;

@@ -98,6 +98,14 @@ void SceneBuilder::check_lights() {
                               light.outer_cone),
                   "the inner one is at least 0 and less than the outer one, that one at most pi / 2");
     }
+    for (Pane& pane : in_.panes) {
+        const Vec3 area = area_vector(pane.corners);
+        if (norm(area) > 0) pane.n = normalized(area);
+        if (!pane.is_sane() || !std::all_of(pane.corners.begin(), pane.corners.end(), is_near))
+            error(pane.line, "a pane of glass is no polygon, or lets more light through than arrives");
+    }
+    if (!in_.distant.is_sane())
+        error(0, "a sky or a sun has no direction, or light that is negative, too much or not finite");
 }
 
 /// Finds the scene's box and the points that stand at one place.
@@ -303,7 +311,10 @@ void SceneBuilder::drop_duplicates() {
 }
 
 void SceneBuilder::check_light() {
+    const auto shines = [](const auto& l) { return max(l.irradiance) > 0; };
     const bool lit =
+        std::any_of(in_.distant.domes.begin(), in_.distant.domes.end(), shines) ||
+        std::any_of(in_.distant.discs.begin(), in_.distant.discs.end(), shines) ||
         std::any_of(in_.lights.begin(), in_.lights.end(), [](const auto& l) { return max(l.intensity) > 0; }) ||
         std::any_of(origin_.begin(), origin_.end(),
                     [&](std::uint32_t f) { return in_.materials[in_.faces[f].material].emits(); });

@@ -17,9 +17,9 @@ struct Moments {
     }
 };
 
-/// Lights without extent are in E_dir, but no ray finds them: with any of them H M is not E_dir.
+/// Lights without extent and skies are in E_dir, but no ray finds them: with any of them H M is not E_dir.
 bool emitters_are_large(const Scene& scene) {
-    if (!scene.lights().empty()) return false;
+    if (scene.has_light_apart()) return false;
     constexpr double least_share = 0.05;
     double all = 0, emitting = 0;
     for (const Region& region : scene.regions()) {

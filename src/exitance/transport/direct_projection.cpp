@@ -256,9 +256,10 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
     constexpr double small = 0.25;  // of all area
     double emitting = 0;
     for (const DirectLight::Emitter& emitter : stage.direct.emitters())
-        emitting += stage.scene.regions()[emitter.region].area;
+        if (!emitter.region.is_none()) emitting += stage.scene.regions()[emitter.region].area;
     const bool many = active.size() > few && stage.direct.emitters().size() > few_emitters &&
-                      (emitting < small * stage.area || stage.clustered.is_possible()) && stage.direct.beams().empty();
+                      (emitting < small * stage.area || stage.clustered.is_possible()) &&
+                      !stage.scene.has_light_apart();
     // The flux of weak sources is known best where rays lie evenly over the surfaces.
     const auto rays_of = [&](ElementId e) {
         const double rays = rays_an_element * out.tree.area(e) / mean_area;

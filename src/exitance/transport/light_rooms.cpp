@@ -33,6 +33,7 @@ struct Flow {
     std::vector<double> area;
     std::vector<double> start;        ///< What differs from room to room as a rule.
     std::vector<std::uint16_t> part;  ///< Of the scene that a leaf is in, so far.
+    bool has_sky = false;             ///< What meets nothing is joined by the sky, as if that were a wall.
 };
 
 /// By place: rooms lie apart from, or within one another; and a little by chance.
@@ -49,16 +50,31 @@ std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering&
     return out;
 }
 
+/// Of what leaves send to the sky.
+double mean_towards_sky(const Flow& flow, const Leaves& leaves, const std::vector<double>& x) {
+    double sum = 0, all = 0;
+    for (std::uint32_t i : leaves) {
+        const auto hits = flow.rows.hits(i);
+        const auto lost = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
+        const double sent = flow.area[i] * lost / static_cast<double>(hits.size());
+        sum += sent * x[i], all += sent;
+    }
+    return all > 0 ? sum / all : 0;
+}
+
 /// What is left of light that differs from place to place after it has gone to and fro within a part.
 std::vector<double> slow_difference(const Flow& flow, const Leaves& leaves, std::uint16_t part) {
     std::vector<double> x = flow.start, next(flow.area.size());
     for (int step = 0; step < steps; ++step) {
+        const double sky = flow.has_sky ? mean_towards_sky(flow, leaves, x) : 0;
         parallel_for(leaves.size(), 256, [&](std::size_t k) {
             const std::uint32_t i = leaves[k];
             double sum = 0;
             std::size_t met = 0;
-            for (std::uint32_t j : flow.rows.hits(i))
+            for (std::uint32_t j : flow.rows.hits(i)) {
                 if (j != RayRows::missed && flow.part[j] == part) sum += x[j], ++met;
+                if (j == RayRows::missed && flow.has_sky) sum += sky, ++met;
+            }
             next[i] = met > 0 ? 0.5 * (x[i] + sum / static_cast<double>(met)) : x[i];
         });
         double mean = 0, area = 0, largest = 0;
@@ -133,9 +149,10 @@ struct Part {
 /// Splits a scene into parts.
 class RoomFinder {
   public:
-    RoomFinder(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed)
+    RoomFinder(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed,
+               bool has_sky)
         : flow_{rows, leaf_areas(tree, numbering), starting_light(tree, numbering, seed),
-                std::vector<std::uint16_t>(numbering.leaves.size())},
+                std::vector<std::uint16_t>(numbering.leaves.size()), has_sky},
           tree_(tree),
           numbering_(numbering) {}
 
@@ -189,9 +206,14 @@ class RoomFinder {
     std::vector<Part> joined_by_light() {
         const std::size_t n = flow_.area.size();
         DisjointSets sets(n);
+        std::uint32_t under_sky = RayRows::missed;
         for (std::uint32_t i = 0; i < n; ++i)
-            for (std::uint32_t j : flow_.rows.hits(i))
+            for (std::uint32_t j : flow_.rows.hits(i)) {
                 if (j != RayRows::missed) sets.unite(i, j);
+                if (j != RayRows::missed || !flow_.has_sky) continue;
+                if (under_sky != RayRows::missed) sets.unite(i, under_sky);
+                under_sky = i;
+            }
         std::vector<Leaves> by_root(n);
         for (std::uint32_t i = 0; i < n; ++i) by_root[sets.root(i)].push_back(i);
         Part outer;
@@ -202,7 +224,10 @@ class RoomFinder {
             part.may_be_room() ? out.push_back(std::move(part)) : outer.add(part);
         }
         std::stable_sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.area < b.area; });
-        if (out.empty()) return {std::move(outer)};
+        if (out.empty()) {
+            if (flow_.has_sky) total_ = outer.area, whole_ = outer.box;  // ground, with or without anything on it
+            return {std::move(outer)};
+        }
         out.back().add(outer);
         for (std::size_t k = 0; k < out.size(); ++k) {
             for (std::uint32_t i : out[k].leaves) flow_.part[i] = static_cast<std::uint16_t>(std::min(k, most_rooms));
@@ -355,7 +380,9 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     auto locator = std::make_shared<const ElementLocator>(*tree, stage.scene.regions().size());
     const LeafNumbering numbering(*tree);
     const RayRows rows(stage, *tree, numbering, *locator, {.average = 24, .least = 16, .most = 256}, seed);
-    const std::vector<Part> parts = RoomFinder(rows, *tree, numbering, seed).find(stop);
+    const DistantLight& outside = stage.scene.distant();
+    const bool has_sky = !outside.domes.empty() || !outside.facets.empty();
+    const std::vector<Part> parts = RoomFinder(rows, *tree, numbering, seed, has_sky).find(stop);
     LightRooms out;
     out.lost_.resize(tree->size());
     const std::vector<double> kept = rows.kept();

@@ -38,6 +38,7 @@ BlockerEdges::BlockerEdges(const Occluders& occluders) : tolerance_(1e-8 * occlu
 void BlockerEdges::find_sheets(const Occluders& occluders) {
     std::vector<Box> boxes;
     for (const PieceId p : occluders.pieces().ids()) {
+        if (occluders.is_distant(p)) continue;
         Box& box = boxes.emplace_back();
         for (const Point& corner : occluders.corners(p)) box.add(corner);
     }

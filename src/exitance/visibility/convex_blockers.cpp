@@ -279,6 +279,7 @@ std::vector<ConvexBlocker> make_convex_blockers(const Occluders& occluders, doub
     for (SurfaceId s : scene.surfaces().ids())
         for (const Point& p : scene.outline(s)) corners.push_back(p);
     for (PieceId p : occluders.pieces().ids()) {
+        if (occluders.is_distant(p)) continue;
         const ConvexPiece& piece = occluders.pieces()[p];
         if (used[piece.region.value]) continue;
         ConvexBlocker sheet = make_sheet(occluders.corners(p), piece.plane);

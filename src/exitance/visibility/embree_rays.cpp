@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <vector>
 
 #include "exitance/core/check.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/scene/other_side.hpp"
 #include "exitance/visibility/rays.hpp"
@@ -63,6 +65,46 @@ void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& d
     rays.time[lane] = 0, rays.mask[lane] = 0xffffffffu, rays.id[lane] = 0, rays.flags[lane] = 0;
 }
 
+/// Panes of glass as rays meet them: one in so many is stopped, as the share of the light that does not pass asks for.
+/// Which one that is follows from the ray and the pane alone.
+struct Glass {
+    static constexpr std::size_t steps = 256;
+    std::vector<std::uint32_t> pane_of;                 ///< Of every triangle.
+    std::vector<Normal> normal;                         ///< Of every pane;
+    std::vector<std::array<float, steps + 1>> through;  ///< mean over bands, by the cosine.
+
+    bool stops(const Float3& origin, const Float3& d, std::uint32_t triangle) const {
+        const std::uint32_t pane = pane_of[triangle];
+        const Vec3 w = normalized(Vec3{d.x, d.y, d.z});
+        const double at = std::min(1.0, std::abs(dot(normal[pane], w))) * steps;
+        const auto k = std::min(static_cast<std::size_t>(at), steps - 1);
+        const double share = at - static_cast<double>(k);
+        const double T = (1 - share) * through[pane][k] + share * through[pane][k + 1];
+        std::uint64_t key = hash(0x676c617373u, pane);
+        for (const float v : {origin.x, origin.y, origin.z, d.x, d.y, d.z})
+            key = hash(key, std::bit_cast<std::uint32_t>(v));
+        return static_cast<double>(key >> 11) * 0x1p-53 >= T;
+    }
+};
+
+void filter_glass(const RTCFilterFunctionNArguments* arguments) {
+    const auto& glass = *static_cast<const Glass*>(arguments->geometryUserPtr);
+    for (unsigned i = 0; i < arguments->N; ++i) {
+        if (arguments->valid[i] != -1) continue;
+        RTCRayN* ray = arguments->ray;
+        const unsigned n = arguments->N;
+        const Float3 origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)};
+        const Float3 d{RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)};
+        if (!glass.stops(origin, d, RTCHitN_primID(arguments->hit, n, i))) arguments->valid[i] = 0;
+    }
+}
+
+/// Triangles of a scene's parts as Embree takes them.
+struct Triangles {
+    std::vector<Float3> corners;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
 }  // namespace
 
 struct RayTracer::Content {
@@ -75,6 +117,7 @@ struct RayTracer::Content {
     std::vector<SurfaceId> surface_of;  ///< Of every triangle.
     Field<SurfaceId, Face> faces;
     Field<SurfaceId, SurfaceId> other_side;  ///< Of sheets; empty where there are none.
+    Glass glass;
 
     explicit Content(const Scene& s)
         : scene(&s),
@@ -85,8 +128,8 @@ struct RayTracer::Content {
           rtc(rtcNewScene(device)),
           faces(s.surfaces().size()),
           other_side(other_sides_of_surfaces(s)) {
-        std::vector<Float3> corners;
-        std::vector<std::array<std::uint32_t, 3>> triangles;
+        Triangles all;
+        auto& [corners, triangles] = all;
         for (SurfaceId id : s.surfaces().ids()) {
             const std::span<const Point> outline = s.outline(id);
             faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
@@ -99,20 +142,49 @@ struct RayTracer::Content {
                 surface_of.push_back(id);
             }
         }
-        const Owned<RTCGeometry, rtcReleaseGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-        void* vertex_buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                      sizeof(Float3), corners.size());
-        void* index_buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                     sizeof(triangles[0]), triangles.size());
-        std::copy(corners.begin(), corners.end(), static_cast<Float3*>(vertex_buffer));
-        std::copy(triangles.begin(), triangles.end(), static_cast<std::array<std::uint32_t, 3>*>(index_buffer));
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(rtc, geometry);
+        attach(all, nullptr);
+        add_glass();
         rtcSetSceneFlags(rtc, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(rtc, RTC_BUILD_QUALITY_MEDIUM);
         // The order of a leaf's triangles, and with it which of two equally near ones is met, follows from how many
         // threads build; one always builds the same.
         run_alone([&] { rtcJoinCommitScene(rtc); });
+    }
+
+    void attach(const Triangles& all, Glass* filter) {
+        const Owned<RTCGeometry, rtcReleaseGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+        void* vertex_buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                      sizeof(Float3), all.corners.size());
+        void* index_buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                     sizeof(all.triangles[0]), all.triangles.size());
+        std::copy(all.corners.begin(), all.corners.end(), static_cast<Float3*>(vertex_buffer));
+        std::copy(all.triangles.begin(), all.triangles.end(), static_cast<std::array<std::uint32_t, 3>*>(index_buffer));
+        if (filter) {
+            rtcSetGeometryUserData(geometry, filter);
+            rtcSetGeometryIntersectFilterFunction(geometry, filter_glass);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter_glass);
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(rtc, geometry);
+    }
+
+    /// The second geometry, where there are panes.
+    void add_glass() {
+        if (scene->panes().empty()) return;
+        Triangles all;
+        for (const Pane& pane : scene->panes()) {
+            const auto first = static_cast<std::uint32_t>(all.corners.size());
+            for (const Point& p : pane.corners) all.corners.push_back(local(p));
+            for (std::uint32_t i = 2; i < pane.corners.size(); ++i) {
+                all.triangles.push_back({first, first + i - 1, first + i});
+                glass.pane_of.push_back(static_cast<std::uint32_t>(glass.normal.size()));
+            }
+            glass.normal.push_back(pane.n);
+            auto& through = glass.through.emplace_back();
+            for (std::size_t k = 0; k < through.size(); ++k)
+                through[k] = static_cast<float>(mean(pane.transmission(static_cast<double>(k) / Glass::steps)));
+        }
+        attach(all, &glass);
     }
 
     Float3 local(const Point& p) const { return to_float(scale * (p - centre)); }
@@ -128,6 +200,11 @@ struct RayTracer::Content {
               RayHit& hit) const {
         hit = RayHit();
         if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return true;
+        if (packet.hit.geomID[lane] != 0) {  // stopped by glass: as good as a back, wherever
+            hit.surface = SurfaceId(0), hit.region = faces[hit.surface].region;
+            hit.distance = packet.ray.tfar[lane];
+            return true;
+        }
         hit.surface = surface_of[packet.hit.primID[lane]];
         // Of a sheet's two sides Embree finds either; a ray meets the one that faces it.
         if (other_side.size() > 0 && !other_side[hit.surface].is_none() &&

@@ -41,6 +41,12 @@ class LitPart {
     double form_factor(const Normal& n, const RelativeRadiance& p, std::vector<Vec3>& corners) const;
 
     std::size_t size() const { return fragments_.size(); }
+    /// Corners of a fragment, relative to x.
+    void corners(std::size_t fragment, std::vector<Vec3>& out) const {
+        const Fragment& f = fragments_[fragment];
+        out.clear();
+        for (std::uint32_t i = 0; i < f.count; ++i) out.push_back(to_space(corners_[f.first + i]));
+    }
 
   private:
     struct Fragment {

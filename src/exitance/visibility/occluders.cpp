@@ -54,6 +54,24 @@ Occluders::Occluders(const Scene& scene) : scene_(&scene), other_side_(other_sid
         of_region_[r] = {first, pieces_.size()};
     }
     make_trees();
+    add_distant_pieces();
+}
+
+void Occluders::add_distant_pieces() {
+    constexpr double far = 1e6;
+    middle_ = scene_->box().centre();
+    const std::size_t first = pieces_.size();
+    for (const DistantFacet& facet : distant_facets(scene_->distant())) {
+        const auto at = static_cast<std::uint32_t>(corners_.size());
+        for (const Vec3& towards : facet.corners) corners_.push_back(middle_ + (far * scene_->size()) * towards);
+        pieces_.add({at,
+                     static_cast<std::uint32_t>(facet.corners.size()),
+                     RegionId(),
+                     SurfaceId(),
+                     {facet.n, dot(facet.n, corners_[at])},
+                     rounding_});
+    }
+    distant_ = {first, pieces_.size()};
 }
 
 /// Which pieces have all of the scene on one side of their planes, up to rounding. Most have some corner of the

@@ -34,6 +34,13 @@ class Occluders {
         return std::span(corners_).subspan(pieces_[p].first_corner, pieces_[p].corner_count);
     }
     IdRange<PieceId> pieces(RegionId r) const { return of_region_[r]; }
+    /// Faces of the sky, which block nothing and are no part of any region: `distant_facets` of the scene, about its
+    /// middle, a million times as far away as it is large. Every point of the scene counts as their middle
+    /// (`middle`).
+    IdRange<PieceId> distant_pieces() const { return distant_; }
+    bool is_distant(PieceId p) const { return pieces_[p].region.is_none(); }
+    /// What is to be taken from a corner of a distant piece in place of the point that it is seen from.
+    const Point& middle() const { return middle_; }
     /// How far a region's pieces stand off its plane because they lie on others in it (Region::level), metres.
     double lift(RegionId r) const;
 
@@ -91,6 +98,7 @@ class Occluders {
 
   private:
     void make_trees();
+    void add_distant_pieces();
     std::vector<std::uint8_t> find_outer() const;
     void add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane);
     bool is_back_of(RegionId a, RegionId b) const;
@@ -112,6 +120,8 @@ class Occluders {
 
     std::array<Tree, 2> trees_;  ///< Indexed by Size; without the outer ones.
     Tree outer_;                 ///< Pieces with all of the scene on one side.
+    IdRange<PieceId> distant_;
+    Point middle_;
     double rounding_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "exitance/visibility/shaft.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace exitance {
 namespace {
@@ -32,7 +33,10 @@ void Shaft::set(const Occluders& occluders, const Facet& receiver, const Facet& 
     source_plane_ = {source.n, dot(source.n, source.corners[0])};
     receiver_.assign(receiver.corners.begin(), receiver.corners.end());
     source_.assign(source.corners.begin(), source.corners.end());
-    const double slack = occluders.rounding();
+    constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
+    slack_ = occluders.rounding();
+    if (source.is_distant) slack_ = std::max(slack_, noise * norm(source.corners[0] - receiver.corners[0]));
+    const double slack = slack_;
     planes_.clear();
     if (highest(receiver_, source_plane_) <= slack || highest(source_, receiver_plane_) <= slack) {
         receiver_.clear();
@@ -53,7 +57,7 @@ void Shaft::set(const Occluders& occluders, const Facet& receiver, const Facet& 
 }
 
 void Shaft::add_supporting_planes(std::span<const Point> edges, std::span<const Point> corners) {
-    const double slack = occluders_->rounding();
+    const double slack = slack_;
     for (std::size_t i = 0, m = edges.size(); i < m; ++i) {
         const Point &a = edges[i], &b = edges[i + 1 == m ? 0 : i + 1];
         for (const Point& c : corners) {
@@ -113,7 +117,7 @@ bool Shaft::blocks_all(PieceId p) {
         return false;
     }
     const std::span<const Point> corners = occluders_->corners(p);
-    const double slack = occluders_->rounding();
+    const double slack = slack_;
     const double side = piece.plane.signed_distance(mean(receiver_)) > 0 ? 1 : -1;
     const auto beyond = [&](const Point& x, const Point& y, double margin) {  // does O hold the crossing of x y?
         const double hx = side * piece.plane.signed_distance(x), hy = side * piece.plane.signed_distance(y);
@@ -134,7 +138,7 @@ bool Shaft::blocks_all(PieceId p) {
 }
 
 bool Shaft::blocks_all(RegionId r) {
-    cover_.begin(occluders_->scene().regions()[r], occluders_->rounding());
+    cover_.begin(occluders_->scene().regions()[r], slack_);
     for (const Point& x : receiver_)
         for (const Point& y : source_)
             if (!cover_.add(x, y)) return false;

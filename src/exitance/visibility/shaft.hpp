@@ -22,7 +22,8 @@ enum class View : std::uint8_t {
 struct Facet {
     std::span<const Point> corners;  ///< Counter-clockwise seen from the front, metres.
     Normal n;
-    RegionId region;  ///< Its plane group, which never blocks; may be none.
+    RegionId region;          ///< Its plane group, which never blocks; may be none.
+    bool is_distant = false;  ///< Of the sky: so far away that rounding counts.
 };
 
 /// Certain answers about all segments between two convex polygons at once, from the convex hull of both (the shaft):
@@ -61,6 +62,7 @@ class Shaft {
     const Occluders* occluders_ = nullptr;
     RegionId receiver_region_, source_region_;
     PieceId blocker_;
+    double slack_ = 0;                                      ///< Metres that rounding may make.
     std::vector<Point> receiver_, source_, buffer_, part_;  ///< The parts that face each other; scratch.
     Plane receiver_plane_, source_plane_;
     std::vector<Plane> planes_;

@@ -6,6 +6,7 @@
 #include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/edge_sum.hpp"
+#include "exitance/visibility/glazed_part.hpp"
 
 namespace exitance {
 namespace {
@@ -51,7 +52,8 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     const ConvexPiece& piece = occluders.pieces()[source];
     const std::span<const Point> corners = occluders.corners(source);
     if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
-    for (const Point& p : corners) scratch.source.push_back(p - at.x);
+    const Point& from = occluders.is_distant(source) ? occluders.middle() : at.x;
+    for (const Point& p : corners) scratch.source.push_back(p - from);
     clip_in_place(scratch.source, at.n, 0, scratch);
 }
 
@@ -191,8 +193,17 @@ bool cut_lit(std::size_t first, Workspace& scratch) {
     return true;
 }
 
-/// The form factor to what the shadows leave, the first `cut` of which have cut the source already.
-double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLight& light) {
+/// The form factor to what the shadows leave, the first `cut` of which have cut the source already. With `fragments`
+/// given these are taken, and nothing is summed.
+double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLight& light, Fragments* fragments) {
+    if (fragments) {
+        if (scratch.shadows.empty()) {
+            fragments->push_back(scratch.source);
+        } else if (cut_lit(cut, scratch)) {
+            for (std::size_t i = 0; i < scratch.lit.size(); ++i) scratch.lit.corners(i, fragments->emplace_back());
+        }
+        return 0;
+    }
     if (light.radiance.is_directed()) {
         if (scratch.shadows.empty()) return directed_form_factor(n, scratch.source, light.radiance);
         return cut_lit(cut, scratch) ? scratch.lit.form_factor(n, light.radiance, scratch.clipped) : 0;
@@ -206,22 +217,22 @@ double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLi
     return cut_lit(cut, scratch) ? scratch.lit.form_factor(n) : 0;
 }
 
-void begin(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
-    look_at_source(occluders, at, source, scratch);
+void clear_shadows(Workspace& scratch) {
     scratch.planes.clear();
     scratch.shadows.clear();
     scratch.outlines.clear();
     scratch.uncovering.clear();
 }
 
-}  // namespace
-
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
-                           const PartLight& light) {
-    begin(occluders, at, source, scratch);
+/// Of what is in scratch.source, among all occluders.
+double part_among_all(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
+                      const PartLight& light, Fragments* fragments = nullptr) {
+    clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    const bool in_scene = !at.own.is_none();  // what lies on the scene's hull stands between none of its points
-    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light);
+    const bool in_scene =
+        !at.own.is_none() &&
+        !occluders.is_distant(source);  // what lies on the scene's hull stands between none of its points
+    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     PieceId& likely = scratch.last_blocker(occluders, source);
@@ -245,19 +256,44 @@ double visible_form_factor(const Occluders& occluders, const Receiver& at, Piece
     const std::size_t large = scratch.shadows.size();
     if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
     if (visit(Occluders::Size::small)) return 0;
-    return finish(at.n, large > 1 ? large : 0, scratch, light);
+    return finish(at.n, large > 1 ? large : 0, scratch, light, fragments);
 }
 
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
-                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch, const PartLight& light) {
-    begin(occluders, at, source, scratch);
+double part_among(const Occluders& occluders, const Receiver& at, PieceId source, std::span<const PieceId> candidates,
+                  VisibilityWorkspace& scratch, const PartLight& light, Fragments* fragments = nullptr) {
+    clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    if (candidates.empty()) return finish(at.n, 0, scratch, light);
+    if (candidates.empty()) return finish(at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     for (PieceId p : candidates)
         if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
-    return finish(at.n, 0, scratch, light);
+    return finish(at.n, 0, scratch, light, fragments);
+}
+
+}  // namespace
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
+                           const PartLight& light) {
+    look_at_source(occluders, at, source, scratch);
+    return part_among_all(occluders, at, source, scratch, light);
+}
+
+double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                           std::span<const PieceId> candidates, VisibilityWorkspace& scratch, const PartLight& light) {
+    look_at_source(occluders, at, source, scratch);
+    return part_among(occluders, at, source, candidates, scratch, light);
+}
+
+void visible_fragments(const Occluders& occluders, const Receiver& at, PieceId source,
+                       std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
+                       Fragments& out) {
+    out.clear();
+    look_at_source(occluders, at, source, scratch);
+    if (candidates)
+        part_among(occluders, at, source, *candidates, scratch, {}, &out);
+    else
+        part_among_all(occluders, at, source, scratch, {}, &out);
 }
 
 }  // namespace exitance

@@ -362,8 +362,8 @@ void GltfReader::read_materials() {
             m.emission = times(m.emission, texture_mean(in.emissiveTexture.index, srgb_curve(), m.name));
         m.double_sided = in.doubleSided;
         if (with_textures_) read_base_texture(pbr.baseColorTexture, m);
-        m.transparent =
-            in.alphaMode == "BLEND" || in.alphaMode == "MASK" || in.extensions.count("KHR_materials_transmission") > 0;
+        m.transmission = number_in(in.extensions, "KHR_materials_transmission", "transmissionFactor", 0);
+        m.transparent = in.alphaMode == "BLEND" || in.alphaMode == "MASK";
         out_.materials.push_back(std::move(m));
     }
 }

@@ -35,6 +35,7 @@ class SceneMaker {
     bool visit_nodes();
     bool add_mesh(const GltfModel::Node& node, const Affine& to_world);
     bool add_primitive(const GltfModel::Primitive& p, const GltfModel::Mesh& mesh, const Affine& to_world);
+    bool add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t material);
     void add_triangle(std::array<std::uint32_t, 3> corners, bool double_sided, std::uint32_t material);
     std::uint32_t corner(const GltfModel::Primitive& p, const Affine& to_world, std::uint32_t index);
     void add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world);
@@ -86,7 +87,10 @@ void SceneMaker::report_materials() {
          "white is the default of glTF; walls reflect 0.5 to 0.85");
     list([&](std::size_t i) { return in_.materials[i].metallic >= 1 && !out_.materials[i].emits(); },
          "is metal: nothing of it reflects diffusely", "set the metallic factor to 0, glTF's default is 1");
-    list([&](std::size_t i) { return in_.materials[i].transparent; }, "lets light through: here it is opaque", "");
+    list([&](std::size_t i) { return in_.materials[i].transparent && in_.materials[i].transmission < 0.5; },
+         "lets light through: here it is opaque", "panes of clear glass have KHR_materials_transmission");
+    list([&](std::size_t i) { return in_.materials[i].transmission >= 0.5; },
+         "lets light through: its faces are panes of clear glass", "");
     for (Material& m : out_.materials)
         for (double& v : m.reflectance.value) v = std::min(v, most_reflectance);
 }
@@ -112,7 +116,21 @@ std::uint32_t SceneMaker::corner(const GltfModel::Primitive& p, const Affine& to
     return point;
 }
 
+/// A triangle of glass. Glass that transmits little is taken for what it reflects.
+bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t material) {
+    constexpr double least = 0.5;
+    if (material >= in_.materials.size() || !(in_.materials[material].transmission >= least)) return false;
+    const GltfModel::Material& m = in_.materials[material];
+    Pane pane;
+    for (const std::uint32_t i : c) pane.corners.push_back(out_.points[i]);
+    pane.transmissivity = transmissivity_of(std::min(1.0, m.transmission) * spread(m.base));
+    out_.panes.push_back(std::move(pane));
+    ++triangles_;
+    return true;
+}
+
 void SceneMaker::add_triangle(std::array<std::uint32_t, 3> c, bool double_sided, std::uint32_t material) {
+    if (add_pane(c, material)) return;
     const auto group = static_cast<std::uint32_t>(out_.groups.size() - 1);
     out_.faces.push_back({{c.begin(), c.end()}, material, group, 0});
     std::swap(c[1], c[2]);

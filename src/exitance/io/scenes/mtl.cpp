@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "exitance/io/files/text_lines.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/texture_mean.hpp"
 
 namespace exitance {
 namespace {
@@ -27,15 +30,20 @@ Spectrum spread(const std::vector<double>& values) {
 class MtlReader {
   public:
     MtlReader(std::string_view text, const std::string& file, std::vector<Material>& materials,
-              std::vector<Finding>& findings)
-        : lines_(text), file_(file), materials_(materials), findings_(findings) {}
+              std::vector<Finding>& findings, std::map<std::string, Spectrum>* glass)
+        : lines_(text), file_(file), materials_(materials), findings_(findings), glass_(glass) {}
     void read();
 
   private:
     void start_material();
     void read_values(const std::string& key, Spectrum Material::*value);
     bool read_number(const std::string& key, std::string_view word, std::vector<double>& out);
+    void read_filter(std::string_view key);
+    void read_texture();
     void end_material();
+    void take_texture();
+    void take_glass();
+    void warn_all();
     void find(Finding::Kind kind, int line, std::string message, std::string hint) {
         findings_.push_back({kind, file_, line, std::move(message), std::move(hint)});
     }
@@ -53,6 +61,23 @@ class MtlReader {
     std::size_t white_materials_ = 0;
     int white_line_ = 0;  ///< Of the first of these,
     std::string white_name_;
+    std::map<std::string, Spectrum>* glass_;
+    double opacity_ = 1;              ///< d
+    std::optional<Spectrum> filter_;  ///< Tf
+    long long illum_ = 0;
+    std::string texture_;  ///< map_Kd
+    struct Told {
+        std::size_t count = 0;
+        int line = 0;
+        std::string name;
+        void add(int at, const std::string& material) {
+            if (count++ == 0) line = at, name = material;
+        }
+        std::string names() const {
+            return fmt::format("material '{}'{}", shown(name),
+                               count > 1 ? fmt::format(" (and {} more)", count - 1) : "");
+        }
+    } glazed_, opaque_, textured_;
 };
 
 void MtlReader::read() {
@@ -62,8 +87,13 @@ void MtlReader::read() {
             start_material();
         else if (key == "Kd" || key == "Ke")
             read_values(std::string(key), key == "Kd" ? &Material::reflectance : &Material::exitance);
+        else if (key == "d" || key == "Tf" || key == "illum")
+            read_filter(key);
+        else if (key == "map_Kd")
+            read_texture();
     }
     end_material();
+    warn_all();
     if (white_materials_ > 0)
         find(Finding::Kind::repair, white_line_,
              fmt::format("material '{}'{} has a reflectance Kd of 1: {} takes its place", shown(white_name_),
@@ -78,7 +108,82 @@ void MtlReader::start_material() {
     material_.name = std::string(lines_.rest());
     if (material_.name.empty()) error("'newmtl' without a name");
     open_ = true, has_reflectance_ = false;
+    opacity_ = 1, filter_.reset(), illum_ = 0, texture_.clear();
     line_ = lines_.number();
+}
+
+/// How much passes. What cannot be read changes nothing: many files have nonsense here.
+void MtlReader::read_filter(std::string_view key) {
+    if (!open_) return;
+    std::vector<double> values;
+    while (!lines_.rest().empty() && values.size() < 3) {
+        double v = 0;
+        const std::string_view word = lines_.word();
+        if (word == "-halo") continue;
+        if (number_of_word(word, v) != NumberKind::finite) return;
+        values.push_back(std::clamp(v, 0.0, key == "illum" ? 99.0 : 1.0));
+    }
+    if (values.empty()) return;
+    if (key == "d")
+        opacity_ = values[0];
+    else if (key == "illum")
+        illum_ = std::llround(values[0]);
+    else
+        filter_ = spread(values.size() == 3 ? values : std::vector<double>(3, values[0]));
+}
+
+/// The name follows options of one or more words each; a name may hold blanks where there are none.
+void MtlReader::read_texture() {
+    if (!open_) return;
+    if (!lines_.rest().starts_with('-')) {
+        texture_ = std::string(lines_.rest());
+        return;
+    }
+    while (!lines_.rest().empty()) texture_ = std::string(lines_.word());
+}
+
+void MtlReader::take_texture() {
+    if (texture_.empty()) return;
+    const Result<std::string> bytes = read_whole_file(beside(file_, texture_));
+    const auto as_bytes = [](const std::string& s) {
+        return std::span(reinterpret_cast<const std::uint8_t*>(s.data()), s.size());
+    };
+    Result<std::array<double, 3>> colour =
+        bytes ? mean_colour(as_bytes(*bytes), srgb_curve()) : Result<std::array<double, 3>>(bytes.error());
+    if (!colour)
+        return find(Finding::Kind::warning, line_,
+                    fmt::format("the texture '{}' of material '{}' {}: Kd stands by itself", shown(texture_),
+                                shown(material_.name), colour.error().message),
+                    "put it beside the material file, as PNG or JPEG");
+    if (!has_reflectance_) material_.reflectance = Spectrum(1.0), has_reflectance_ = true;
+    material_.reflectance *= spread({(*colour)[0], (*colour)[1], (*colour)[2]});
+    mend_reflectance(material_.reflectance);
+    textured_.add(line_, material_.name);
+}
+
+void MtlReader::take_glass() {
+    const bool is_glass = opacity_ < 1 || (filter_ && (illum_ == 4 || illum_ == 6 || illum_ == 7 || illum_ == 9));
+    if (!is_glass || material_.emits()) return;
+    const Spectrum passes = (opacity_ < 1 ? 1 - opacity_ : 1) * filter_.value_or(Spectrum(1.0));
+    // Leaves, curtains and faded surfaces are no glass.
+    constexpr double least = 0.5;
+    if (!glass_ || !(mean(passes) > least)) return opaque_.add(line_, material_.name);
+    glass_->emplace(material_.name, transmissivity_of(passes));
+    glazed_.add(line_, material_.name);
+}
+
+void MtlReader::warn_all() {
+    if (textured_.count > 0)
+        find(Finding::Kind::warning, textured_.line,
+             fmt::format("{} has a texture: all of it reflects like the texture's mean", textured_.names()), "");
+    if (opaque_.count > 0)
+        find(Finding::Kind::warning, opaque_.line,
+             fmt::format("{} lets light through, but no more than half of it: here it is opaque", opaque_.names()), "");
+    if (glazed_.count > 0)
+        find(Finding::Kind::warning, glazed_.line,
+             fmt::format("{} lets light through: its faces are panes of clear glass, which do not reflect diffusely",
+                         glazed_.names()),
+             "'d 1' makes a face opaque");
 }
 
 void MtlReader::end_material() {
@@ -90,6 +195,8 @@ void MtlReader::end_material() {
              "give it another name");
         return;
     }
+    take_texture();
+    take_glass();
     if (!has_reflectance_)
         find(Finding::Kind::warning, line_,
              fmt::format("material '{}' has no Kd: it reflects nothing", shown(material_.name)),
@@ -140,8 +247,8 @@ bool MtlReader::read_number(const std::string& key, std::string_view word, std::
 }  // namespace
 
 void parse_mtl(std::string_view text, const std::string& file, std::vector<Material>& materials,
-               std::vector<Finding>& findings) {
-    MtlReader(text, file, materials, findings).read();
+               std::vector<Finding>& findings, std::map<std::string, Spectrum>* glass) {
+    MtlReader(text, file, materials, findings, glass).read();
 }
 
 }  // namespace exitance

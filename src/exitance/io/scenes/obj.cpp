@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <unordered_map>
 
 #include "exitance/io/files/text_lines.hpp"
@@ -33,6 +34,7 @@ class ObjReader {
     void use_group(std::string_view name);
     void check_indices();
     void resolve_materials();
+    void take_panes();
 
     void find(Finding::Kind kind, int line, std::string message, std::string hint = "") {
         out_.findings.push_back({kind, path_, line, std::move(message), std::move(hint)});
@@ -54,7 +56,8 @@ class ObjReader {
     std::unordered_map<std::string, std::uint32_t> use_of_, group_of_;
     std::uint32_t use_ = 0, group_ = 0;
     bool has_use_ = false, has_group_ = false, library_missing_ = false;
-    std::vector<std::uint32_t> broken_;  ///< Points that could not be read, ascending.
+    std::map<std::string, Spectrum> glass_;  ///< By material, transmissivities.
+    std::vector<std::uint32_t> broken_;      ///< Points that could not be read, ascending.
 };
 
 ReadScene ObjReader::read() {
@@ -134,7 +137,7 @@ void ObjReader::read_libraries() {
 void ObjReader::read_library(std::string_view name) {
     const std::string file = beside(path_, name);
     const Result<std::string> text = read_whole_file(file);
-    if (text) return parse_mtl(*text, file, out_.description.materials, out_.findings);
+    if (text) return parse_mtl(*text, file, out_.description.materials, out_.findings, &glass_);
     library_missing_ = true;
     error(fmt::format("material file '{}' {}", shown(name), text.error().message),
           "put it beside the scene file: without it nothing reflects or emits");
@@ -190,6 +193,22 @@ void ObjReader::resolve_materials() {
         meaning.push_back(known->second);
     }
     for (auto& face : out_.description.faces) face.material = meaning[face.material];
+    take_panes();
+}
+
+/// Faces of glass become panes.
+void ObjReader::take_panes() {
+    if (glass_.empty()) return;
+    SceneDescription& d = out_.description;
+    std::erase_if(d.faces, [&](const SceneDescription::Face& face) {
+        const auto glass = glass_.find(d.materials[face.material].name);
+        if (glass == glass_.end()) return false;
+        Pane pane;
+        for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
+        pane.transmissivity = glass->second, pane.line = face.line;
+        d.panes.push_back(std::move(pane));
+        return true;
+    });
 }
 
 }  // namespace

@@ -154,5 +154,27 @@ TEST_F(ObjFiles, BytesOfAnyKindAreNoDanger) {
     EXPECT_FALSE(load("f\nf 1\nv\nmtllib\nusemtl\nf 1 2 3 \\").scene);
 }
 
+TEST_F(ObjFiles, GlassBecomesPanesAndTexturesTheirMean) {
+    write("g.mtl",
+          "newmtl floor\nKd 0.5 0.4 0.3\nmap_Kd -s 1 1 1 no.png\nnewmtl clear\nKd 1 1 1\nd 0.12\n"
+          "newmtl tinted\nKd 0 0 0\nTf 0.8 0.7 0.6\nillum 4\nnewmtl curtain\nKd 0.5 0.5 0.5\nd 0.6\n");
+    const auto s = load("mtllib g.mtl\n" + points +
+                        "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nusemtl floor\nf 1 2 3 4\nusemtl clear\nf 5 6 7 8\n"
+                        "usemtl tinted\nf 5 6 7\nusemtl curtain\nf 1 2 6 5\n");
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 2u);
+    ASSERT_EQ(s.scene->panes().size(), 2u);
+    EXPECT_NEAR(s.scene->panes()[0].transmission(1)[0], 0.88, 1e-9);
+    EXPECT_NEAR(s.scene->panes()[1].transmission(1)[bands - 1], bands == 3 ? 0.6 : 0.7, 0.1);
+    EXPECT_EQ(s.scene->material(SurfaceId(0)).reflectance[0], 0.5) << "the texture is not there";
+    const auto said = [&](const std::string& what) {
+        return std::count_if(s.findings.begin(), s.findings.end(),
+                             [&](const Finding& f) { return f.message.find(what) != f.message.npos; });
+    };
+    EXPECT_EQ(said("'no.png'"), 1);
+    EXPECT_EQ(said("panes of clear glass"), 1);
+    EXPECT_EQ(said("no more than half"), 1);
+}
+
 }  // namespace
 }  // namespace exitance

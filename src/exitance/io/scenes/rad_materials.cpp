@@ -51,6 +51,30 @@ Spectrum RadMaterials::reflectance_of(const RadPrimitive& p, const std::string& 
     return reflectance;
 }
 
+/// glass mod id 0 0 3 R G B, or 4 with an index of refraction.
+void RadMaterials::add_glass(const RadPrimitive& p, const std::string& file) {
+    const RadPlace at{file, p.line};
+    Pane pane;
+    if (p.numbers.size() != 3 && p.numbers.size() != 4)
+        return findings_.error(at,
+                               fmt::format("'{}' has {} numbers, glass has 3 or 4", shown(p.name), p.numbers.size()));
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!(p.numbers[i] >= 0 && p.numbers[i] <= whitest_reflectance))
+            return findings_.error(at,
+                                   fmt::format("glass '{}' has a transmissivity of {:g}", shown(p.name), p.numbers[i]),
+                                   "transmissivities lie in [0, 1]");
+    pane.transmissivity = spread(p.numbers, 1);
+    for (double& v : pane.transmissivity.value) v = std::min(v, 1.0);
+    if (p.numbers.size() == 4) pane.index = p.numbers[3];
+    if (!(pane.index >= 1 && pane.index <= 4))
+        return findings_.error(at,
+                               fmt::format("glass '{}' has an index of refraction of {:g}", shown(p.name), pane.index));
+    if (meanings_[p.name].pattern_count > 0) findings_.note("patterns and textures", at);
+    meanings_[p.name].kind = RadMeaning::Kind::glass;
+    meanings_[p.name].material = static_cast<std::uint32_t>(glass.size());
+    glass.push_back(std::move(pane));
+}
+
 /// Materials by their diffuse parts; false if the primitive is none.
 bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file) {
     const RadPlace at{file, p.line};
@@ -73,6 +97,8 @@ bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file)
         if (std::any_of(p.numbers.begin(), p.numbers.begin() + 3, [](double v) { return v < 0; }))
             findings_.error(at, fmt::format("'{}' emits less than nothing", shown(p.name)));
         add_material(p, RadMeaning::Kind::emits, {}, spread(p.numbers, 1));
+    } else if (p.type == "glass") {
+        add_glass(p, file);
     } else if (p.type == "mirror") {
         findings_.note("a mirror, which is black", at);
         add_material(p, RadMeaning::Kind::reflects, {}, {});

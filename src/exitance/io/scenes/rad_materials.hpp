@@ -19,9 +19,9 @@ struct RadPattern {
 /// What the name of a modifier stands for: a material, or patterns that have none yet.
 struct RadMeaning {
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    enum class Kind : std::uint8_t { pattern, reflects, emits, left_out };
+    enum class Kind : std::uint8_t { pattern, reflects, emits, glass, left_out };
     Kind kind = Kind::pattern;
-    std::uint32_t material = 0;       ///< Of the scene.
+    std::uint32_t material = 0;       ///< Of the scene; of glass its index in `RadMaterials::glass`.
     std::uint32_t pattern = none;     ///< Of those that change light, the uppermost.
     std::uint32_t pattern_count = 0;  ///< How many lie on one another.
 };
@@ -38,6 +38,7 @@ class RadMaterials {
     const RadMeaning* meaning_of(const RadPrimitive& surface, const std::string& file);
 
     std::vector<Material> materials;
+    std::vector<Pane> glass;  ///< Without corners.
     std::vector<RadPattern> patterns;
 
   private:
@@ -45,6 +46,7 @@ class RadMaterials {
     void take_alias(const RadPrimitive& p, const std::string& file);
     void take_mixture(const RadPrimitive& p, const std::string& file);
     void take_pattern(RadPrimitive p, const std::string& file, const Affine& to_world);
+    void add_glass(const RadPrimitive& p, const std::string& file);
     void add_material(const RadPrimitive& p, RadMeaning::Kind kind, const Spectrum& reflectance,
                       const Spectrum& radiance);
     Spectrum reflectance_of(const RadPrimitive& p, const std::string& file);

@@ -15,6 +15,7 @@
 #include "exitance/io/scenes/rad_command.hpp"
 #include "exitance/io/scenes/rad_emission.hpp"
 #include "exitance/io/scenes/rad_shapes.hpp"
+#include "exitance/io/scenes/rad_sky.hpp"
 #include "exitance/io/scenes/xform.hpp"
 
 namespace exitance {
@@ -67,6 +68,7 @@ class RadianceReader {
     void take_surface(const RadPrimitive& p, const Call& call);
     void take_source(const RadPrimitive& p, const Call& call);
     void note_patterns(const RadMeaning& meaning);
+    void open_up();
 
     std::span<const std::string> paths_;
     const LoadOptions& options_;
@@ -81,6 +83,13 @@ class RadianceReader {
     std::unordered_map<std::string, std::uint32_t> groups_;
     std::vector<const std::string*> open_;  ///< Names of texts being read, which may not call themselves.
     std::size_t copies_ = 0, bytes_ = 0;
+    /// Balls that shine inwards, diffusely, by their faces.
+    struct Bubble {
+        std::size_t first = 0, last = 0;
+        std::uint32_t material = 0;
+    };
+    std::vector<Bubble> bubbles_;
+    bool opened_ = false;
 };
 
 /// Patterns on what reflects.
@@ -108,6 +117,8 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
     const std::string name = call.prefix + shown(p.name);
     const auto [group, is_new] = groups_.try_emplace(name, static_cast<std::uint32_t>(d.groups.size()));
     if (is_new) d.groups.push_back(name);
+    if (emits && shape->is_closed && shape->inwards && meaning->pattern_count == 0)
+        bubbles_.push_back({d.faces.size(), d.faces.size() + shape->facets.size(), meaning->material});
     const bool turned = shape->inwards != (call.to_world.determinant() < 0);
     for (const std::vector<Point>& facet : shape->facets) {
         SceneDescription::Face face;
@@ -116,6 +127,13 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
         for (const Point& corner : facet) {
             face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
             d.points.push_back(call.to_world.point(corner));
+        }
+        if (meaning->kind == RadMeaning::Kind::glass) {
+            Pane pane = materials_.glass[meaning->material];
+            for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
+            pane.line = face.line;
+            d.panes.push_back(std::move(pane));
+            continue;
         }
         if (turned) std::reverse(face.corners.begin(), face.corners.end());
         if (emits) {
@@ -132,7 +150,7 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
     }
 }
 
-/// A light infinitely far away: parallel, if it is small.
+/// A light infinitely far away: the sun's disc, a sky, the glow of the ground.
 void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
     const RadPlace at{*call.name, p.line};
     const RadMeaning* meaning = materials_.meaning_of(p, at.file);
@@ -141,21 +159,29 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
         return findings_.error(at, fmt::format("source '{}' has {} numbers", p.name, p.numbers.size()));
     const Vec3 towards = call.to_world.vector({p.numbers[0], p.numbers[1], p.numbers[2]});
     const double length = norm(towards), angle = p.numbers[3] * pi / 180;
-    constexpr double small = 0.2;  // radians: the sun has 0.0093
     if (!(length > 0) || !(angle > 0))
         return findings_.error(at, fmt::format("source '{}' has no direction or size", p.name));
-    if (meaning->kind != RadMeaning::Kind::emits || angle > small)
-        return findings_.note("skies and other wide sources", at);
-    if (meaning->pattern_count > 0)
-        return findings_.error(at,
-                               fmt::format("the light of source '{}' has a pattern, which is not read", shown(p.name)));
-    PunctualLight light;
-    light.name = call.prefix + shown(p.name), light.kind = PunctualLight::Kind::directional;
-    light.direction = -towards / length;
-    light.intensity =
-        (2 * pi * (1 - std::cos(0.5 * angle))) * radiance_of_exitance(materials_.materials[meaning->material].exitance);
-    findings_.note("the size of a distant source, whose light is parallel", at);
-    out_.description.lights.push_back(std::move(light));
+    if (meaning->kind != RadMeaning::Kind::emits) return findings_.note("sources that do not shine", at);
+    std::optional<SkyModel> pattern;
+    if (meaning->pattern_count > 0) {
+        const Result<SkyModel> sky = meaning->pattern_count == 1
+                                         ? sky_of_pattern(materials_.patterns[meaning->pattern])
+                                         : Error{ErrorCode::bad_input, "it lies on another pattern", "", ""};
+        constexpr double wide = 0.2;  // radians: more than any sun
+        if (!sky && angle > wide)
+            return findings_.note("skies with patterns that gensky and gendaylit do not print", at);
+        if (!sky)
+            return findings_.error(at,
+                                   fmt::format("the light of source '{}' has a pattern, which is not read: {}",
+                                               shown(p.name), sky.error().message),
+                                   sky.error().hint);
+        pattern = *sky;
+    }
+    const Spectrum radiance = radiance_of_exitance(materials_.materials[meaning->material].exitance);
+    const std::optional<DistantLight> light =
+        light_of_source(towards / length, angle, radiance, pattern ? &*pattern : nullptr);
+    if (!light) return findings_.note("wide sources that are neither half of the sky nor all of it", at);
+    out_.description.distant.append(*light);
 }
 
 void RadianceReader::take(RadPrimitive p, const Call& call) {
@@ -283,6 +309,33 @@ void RadianceReader::read_text(std::string_view text, const Call& call) {
     open_.pop_back();
 }
 
+/// A ball that shines evenly on everything within it brings the light of a uniform sky, above and below, to every
+/// point, however large it is: it becomes one, and what is lost on it is lost to the sky.
+void RadianceReader::open_up() {
+    SceneDescription& d = out_.description;
+    if (bubbles_.size() != 1) return;
+    const Bubble& bubble = bubbles_.front();
+    Box box, rest;
+    for (std::size_t i = 0; i < d.faces.size(); ++i)
+        for (const std::uint32_t c : d.faces[i].corners)
+            (i >= bubble.first && i < bubble.last ? box : rest).add(d.points[c]);
+    const Vec3 half = 0.5 * box.size();
+    constexpr double ball = 1e-2, well_within = 0.9;  // the facets lie within the ball by less than that
+    const double radius = half.x;
+    const bool is_ball = std::abs(half.y - radius) < ball * radius && std::abs(half.z - radius) < ball * radius;
+    if (!is_ball || rest.is_empty()) return;
+    for (std::size_t i = 0; i < d.faces.size(); ++i) {
+        if (i >= bubble.first && i < bubble.last) continue;
+        for (const std::uint32_t c : d.faces[i].corners)
+            if (norm(d.points[c] - box.centre()) > well_within * radius) return;
+    }
+    const Spectrum radiance = radiance_of_exitance(materials_.materials[bubble.material].exitance);
+    if (const auto light = light_of_source({0, 0, 1}, 2 * pi, radiance, nullptr)) d.distant.append(*light);
+    d.faces.erase(d.faces.begin() + static_cast<std::ptrdiff_t>(bubble.first),
+                  d.faces.begin() + static_cast<std::ptrdiff_t>(bubble.last));
+    opened_ = true;
+}
+
 ReadScene RadianceReader::read() {
     out_.description.file = paths_.front();
     for (const std::string& path : paths_) {
@@ -296,9 +349,14 @@ ReadScene RadianceReader::read() {
         read_text(*text, {&path, {}, "", first_line(path, *text), 0, 0});
         if (findings_.failed()) break;  // what it defines is missed by those that follow
     }
+    if (!findings_.failed()) open_up();
     out_.description.materials = std::move(materials_.materials);
     out_.description.profiles = std::move(emission_.profiles);
     out_.findings = findings_.take();
+    if (opened_)
+        out_.findings.push_back({Finding::Kind::warning, paths_.front(), 0,
+                                 "a shining ball about everything else counts as a uniform sky infinitely far away",
+                                 ""});
     return std::move(out_);
 }
 

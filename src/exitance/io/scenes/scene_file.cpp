@@ -85,7 +85,8 @@ void append(SceneDescription& all, SceneDescription more) {
             material.emission.profile = ProfileId(material.emission.profile.value + profiles);
     append(all.points, more.points), append(all.materials, more.materials);
     append(all.profiles, more.profiles), append(all.groups, more.groups), append(all.faces, more.faces);
-    append(all.lights, more.lights), append(all.cameras, more.cameras);
+    append(all.lights, more.lights), all.distant.append(more.distant), append(all.panes, more.panes),
+        append(all.cameras, more.cameras);
 }
 
 int last_line(const SceneDescription& description) {
@@ -112,11 +113,24 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
             const int before = all.lines.append(one.lines);
             for (SceneDescription::Face& face : one.description.faces)
                 if (face.line > 0) face.line += before;
+            for (Pane& pane : one.description.panes)
+                if (pane.line > 0) pane.line += before;
             append(all.description, std::move(one.description)), append(all.findings, one.findings);
         }
         is_first = false;
     }
     return all;
+}
+
+/// The sky that is asked for takes the place of what the files have.
+void give_sky(const ChosenSky& sky, ReadScene& read) {
+    SceneDescription& description = read.description;
+    if (!description.distant.empty())
+        read.findings.push_back({Finding::Kind::warning, description.file, 0,
+                                 "the scene has a sky or a sun of its own: that of --sky takes its place",
+                                 "leave out --sky to have the scene's own"});
+    const bool photometric = sky.photometric.value_or(description.photometric);
+    description.distant = photometric ? sky.in_lumens : sky.in_watts;
 }
 
 }  // namespace
@@ -135,6 +149,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");
     }
     ReadScene read = read_files(paths, options);
+    if (options.sky) give_sky(*options.sky, read);
     SceneLines lines = std::move(read.lines);
     LoadedScene scene{checked(std::move(read), lines), {}};
     scene.lines = std::move(lines);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -15,11 +16,18 @@ enum class Faults : std::uint8_t {
     refuse,  ///< They are errors.
 };
 
+/// A sky to be put over a scene.
+struct ChosenSky {
+    DistantLight in_watts, in_lumens;
+    std::optional<bool> photometric = {};  ///< Which of them; none: as the scene has it.
+};
+
 /// How a scene is read.
 struct LoadOptions {
     Faults faults = Faults::repair;
     bool run_commands = false;  ///< Lets installed programs of Radiance's do what lines that begin with '!' say.
     const StopRequest* stop = nullptr;  ///< Ends such programs.
+    std::optional<ChosenSky> sky = {};
 };
 
 /// A scene, and where its faces' lines stand: those of several files are counted on from one to the next.

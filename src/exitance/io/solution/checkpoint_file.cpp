@@ -92,6 +92,18 @@ std::string scene_fingerprint(const Scene& scene) {
         all.add(light.position), all.add(light.direction), all.add(light.intensity);
         all.add(light.inner_cone), all.add(light.outer_cone);
     }
+    for (const Pane& pane : scene.panes()) {
+        for (const Point& p : pane.corners) all.add(p);
+        all.add(pane.transmissivity), all.add(pane.index);
+    }
+    for (const DistantLight::Dome& dome : scene.distant().domes) {
+        const SkyModel& m = dome.model;
+        for (const double v : {m.a, m.b, m.g, m.f0, m.c, m.d, m.e, m.ground, m.scale}) all.add(v);
+        all.add(m.sun), all.add(dome.irradiance);
+        all.add(m.intermediate + 2.0 * m.blends_ground + 4.0 * m.below);
+    }
+    for (const DistantLight::Disc& disc : scene.distant().discs)
+        all.add(disc.towards), all.add(disc.half_angle), all.add(disc.irradiance);
     return fmt::format("{:016x}", all.value());
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/io/solution/sky_group.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "exitance/io/solution/stored_columns.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
@@ -156,6 +157,8 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     file.write(in("box"), flat({scene.box_.lo, scene.box_.hi}), 3, {"m", "lower and upper corner of the scene's box"});
     write_emission(file, group, scene.materials_, scene.profiles_);
     write_lights(file, group, scene.lights_);
+    write_sky(file, group, scene.distant_);
+    write_panes(file, group, scene.panes_);
     write_cameras(file, group, scene.cameras_);
 }
 
@@ -198,6 +201,8 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     scene.profiles_ = read_profiles(file, group);
     const std::vector<DirectedEmission> emission = read_emission(file, group, material_count, scene.profiles_.size());
     scene.lights_ = read_lights(file, group);
+    scene.distant_ = read_sky(file, group);
+    scene.panes_ = read_panes(file, group);
     scene.cameras_ = read_cameras(file, group);
     for (std::size_t i = 0; i < face_count && !file.failed(); ++i)
         if (corner_count[i] < 3 || corner_count[i] > scene.corners_.size() ||

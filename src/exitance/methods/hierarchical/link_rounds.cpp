@@ -174,7 +174,7 @@ LinkTolerance link_tolerance(const Hierarchy& h, double error) {
             .fractional = o.visibility == VisibilityKind::fractional,
             .quadrature = o.visibility == VisibilityKind::quadrature,
             .gives_up = h.input.may_give_up,
-            .triage = o.triage,
+            .triage = o.triage && h.input.stage.scene.panes().empty(),  // rays alone know glass
             .seed = o.seed};
 }
 

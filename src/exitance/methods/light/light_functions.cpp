@@ -136,7 +136,7 @@ bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumberin
 
 Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed) {
     // Whether all light arrives is found by diffuse rays.
-    if (!stage.scene.lights().empty() || stage.scene.has_directed_emission()) return Spectrum(1.0);
+    if (stage.scene.has_light_apart() || stage.scene.has_directed_emission()) return Spectrum(1.0);
     const auto exitance = [&](ElementId e) { return stage.scene.material(direct.tree.region(e)).exitance; };
     if (!all_arrives(stage, direct.tree, LeafNumbering(direct.tree), exitance, seed)) return Spectrum(1.0);
     Spectrum emitted, received;  // W

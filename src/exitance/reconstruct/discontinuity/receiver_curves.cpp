@@ -109,6 +109,7 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         for (const PieceId p : candidates(s)) blockers[s.emitter].push_back(p);
     for (const auto& [number, pieces] : blockers) {
         const DirectLight::Emitter& emitter = stage_->direct.emitters()[number];
+        if (stage_->direct.is_distant(number)) continue;  // bisection follows the shadows of skies and suns
         const double gain = greatest_effect(region, emitter);
         if (gain < options_.least_effect) {
             ++out.left_out;

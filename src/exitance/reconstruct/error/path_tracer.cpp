@@ -24,8 +24,13 @@ Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream&
         sum += throughput * shadow_ray(*y, random);
         const Beams& beams = stage_.direct.beams();
         if (!beams.empty()) sum += throughput * beams.irradiance({y->x, y->n, y->region});
+        const DistantLight& outside = stage_.scene.distant();
+        if (!outside.discs.empty()) sum += throughput * light_of_discs(*y, random);
         const double u = random.uniform(), v = random.uniform();
-        const std::optional<Vertex> next = follow(*y, cosine_direction(Frame(y->n), u, v));
+        const Vec3 on = cosine_direction(Frame(y->n), u, v);
+        bool lost = false;
+        const std::optional<Vertex> next = follow(*y, on, &lost);
+        if (lost && !outside.domes.empty()) sum += throughput * outside.radiosity(normalized(on), false);
         if (next) {
             const Spectrum& exitance = stage_.scene.material(next->region).exitance;
             if (max(exitance) > 0)
@@ -39,12 +44,29 @@ Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream&
 }
 
 /// Where a ray arrives; nothing when it is lost or meets a back.
-std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const Vec3& direction) const {
+std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const Vec3& direction, bool* lost) const {
     RayHit hit;
     stage_.tracer.nearest(std::span(&from.x, 1), std::span(&direction, 1), from.region, std::span(&hit, 1));
+    if (lost) *lost = hit.surface.is_none();
     if (hit.surface.is_none() || !hit.front) return std::nullopt;
     const RegionId region = hit.region;
     return Vertex{from.x + hit.distance * direction, stage_.scene.regions()[region].plane.n, region};
+}
+
+/// Of each distant disc by one ray, uniform in its solid angle.
+Spectrum PathTracer::light_of_discs(const Vertex& y, RandomStream& random) const {
+    Spectrum sum;
+    for (const DistantLight::Disc& disc : stage_.scene.distant().discs) {
+        const double u = random.uniform(), v = random.uniform(), least = std::cos(disc.half_angle);
+        const double z = 1 - u * (1 - least), r = std::sqrt(std::max(0.0, 1 - z * z));
+        const Vec3 w = Frame(disc.towards).to_world(r * std::cos(2 * pi * v), r * std::sin(2 * pi * v), z);
+        const double cosine = dot(y.n, w);
+        bool lost = false;
+        if (cosine > 0) follow(y, w, &lost);
+        // Uniform radiance L: irradiance across it is pi L sin^2, its solid angle 2 pi (1 - cos).
+        if (lost) sum += (2 * cosine / (1 + least)) * disc.irradiance;
+    }
+    return sum;
 }
 
 /// How likely each light is to be chosen at y, in proportion to what it would bring if nothing stood between.

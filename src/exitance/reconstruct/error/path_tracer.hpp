@@ -9,7 +9,8 @@
 namespace exitance {
 
 /// Paths of light, followed from where it arrives [Kajiya86]. At every vertex the direct light is estimated by one
-/// shadow ray, to an emitter chosen by its unoccluded contribution, and by the path's next ray, weighted by the balance
+/// shadow ray, to an emitter chosen by its unoccluded contribution (one more to each
+/// distant disc; skies are what lost rays see), and by the path's next ray, weighted by the balance
 /// heuristic [Veach95]; paths end by Russian roulette with the reflectance as survival. The stage must outlive it.
 class PathTracer {
   public:
@@ -37,7 +38,9 @@ class PathTracer {
         RelativeRadiance radiance;
     };
 
-    std::optional<Vertex> follow(const Vertex& from, const Vec3& direction) const;
+    /// `lost`, if given, is set where a ray meets nothing.
+    std::optional<Vertex> follow(const Vertex& from, const Vec3& direction, bool* lost = nullptr) const;
+    Spectrum light_of_discs(const Vertex& y, RandomStream& random) const;
     double chances(const Vertex& y, std::vector<double>& chance) const;
     double shadow_density(const Vertex& y, const Vertex& target) const;
     double weight_of_shadow_ray(const Vertex& y, const Vertex& target) const;

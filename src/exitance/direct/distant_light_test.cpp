@@ -1,0 +1,137 @@
+// Light of skies and suns at points: against integrals and closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/scene/sky/sun_position.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+struct Corners {
+    std::vector<Point> at;
+};
+
+Scene under(const DistantLight& light, const std::vector<Corners>& faces) {
+    SceneDescription d;
+    d.file = "open.obj";
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.groups = {"all"};
+    for (const Corners& face : faces) {
+        d.faces.push_back({{}, 0, 0, 0});
+        for (const Point& p : face.at) {
+            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+    }
+    d.distant = light;
+    CheckedScene checked = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(checked.scene));
+    return std::move(*checked.scene);
+}
+
+const Corners ground{{{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}}};
+
+double light_at(const Stage& stage, const Point& x, const Normal& n, RegionId own) {
+    DirectLight::Workspace workspace;
+    const double exact = stage.direct.irradiance(x, n, own, workspace)[0];
+    if (own.is_none()) return exact;
+    // The same by what was found out for a part of the surface.
+    ReceiverLight light;
+    const Frame frame(n);
+    const double r = 0.01;
+    const std::vector<Point> part{x - r * frame.u - r * frame.v, x + r * frame.u - r * frame.v,
+                                  x + r * frame.u + r * frame.v, x - r * frame.u + r * frame.v};
+    stage.direct.prepare(part, n, own, light, workspace);
+    Spectrum from_outside;
+    EXPECT_NEAR(stage.direct.irradiance(light, x, workspace, &from_outside)[0], exact, 1e-9 * exact + 1e-12);
+    EXPECT_NEAR(from_outside[0], exact, 1e-9 * exact + 1e-12);
+    return exact;
+}
+
+const RegionId first(0);
+
+}  // namespace
+
+TEST(DistantLight, OpenGroundHasTheIrradianceOfEverySky) {
+    const Normal sun = sky_direction(35, 200);
+    for (int type = 0; type <= 16; ++type) {
+        const SkyModel sky = type == 0    ? overcast_sky()
+                             : type == 16 ? perez_sky({90, 700, 100}, sun)
+                                          : cie_sky(type, sun);
+        const Scene scene = under({{{sky, Spectrum(100.0)}}, {}, {}}, {ground});
+        const Stage stage(scene);
+        EXPECT_NEAR(light_at(stage, {1, 2, 0}, {0, 0, 1}, first), 100, 0.1) << type;
+        EXPECT_NEAR(light_at(stage, {1, 2, 3}, {0, 0, 1}, RegionId()), 100, 0.1) << type;
+    }
+}
+
+TEST(DistantLight, AWallSeesHalfOfAUniformSkyAndTheGroundHidesItsGlow) {
+    SkyModel below = uniform_sky();
+    below.below = true;
+    const Scene scene = under({{{uniform_sky(), Spectrum(100.0)}, {below, Spectrum(30.0)}}, {}, {}}, {ground});
+    const Stage stage(scene);
+    EXPECT_NEAR(light_at(stage, {0, 0, 1}, {0, 0, -1}, RegionId()),
+                30 * (1 - 4 / pi * (5 / std::sqrt(26.0) * std::atan(5 / std::sqrt(26.0)))), 1e-9);
+    EXPECT_NEAR(light_at(stage, {100, 0, 50}, {1, 0, 0}, RegionId()), 50 + 15, 1e-9);  // the ground lies behind
+}
+
+TEST(DistantLight, ThroughAnOpeningItIsThatOfTheReference) {
+    // CIE 171, 5.9: a black room of 4 x 4 x 3 m with an opening of 1 x 1 m in its roof, the sun at 60 degrees in +y.
+    const std::vector<Corners> room{{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}},
+                                    {{{0, 0, 0}, {0, 0, 3}, {4, 0, 3}, {4, 0, 0}}},
+                                    {{{0, 4, 0}, {4, 4, 0}, {4, 4, 3}, {0, 4, 3}}},
+                                    {{{0, 0, 0}, {0, 4, 0}, {0, 4, 3}, {0, 0, 3}}},
+                                    {{{4, 0, 0}, {4, 0, 3}, {4, 4, 3}, {4, 4, 0}}},
+                                    {{{0, 0, 3}, {0, 1.5, 3}, {4, 1.5, 3}, {4, 0, 3}}},
+                                    {{{0, 2.5, 3}, {0, 4, 3}, {4, 4, 3}, {4, 2.5, 3}}},
+                                    {{{0, 1.5, 3}, {0, 2.5, 3}, {1.5, 2.5, 3}, {1.5, 1.5, 3}}},
+                                    {{{2.5, 1.5, 3}, {2.5, 2.5, 3}, {4, 2.5, 3}, {4, 1.5, 3}}}};
+    const Normal sun{0, 0.5, std::sqrt(0.75)};
+    struct Known {
+        int type;
+        Point x;
+        Normal n;
+        double E;
+    };
+    for (const Known& k : {Known{1, {2, 0, 2.25}, {0, 1, 0}, 164.376254578},
+                           {1, {2, 1.75, 0}, {0, 0, 1}, 429.385904561},
+                           {12, {2, 0, 2.25}, {0, 1, 0}, 375.695655703},
+                           {12, {2, 0, 1.25}, {0, 1, 0}, 460.939166455}}) {
+        const Scene scene = under({{{cie_sky(k.type, sun), Spectrum(10000.0)}}, {}, {}}, room);
+        const Stage stage(scene);
+        RegionId own;
+        for (const RegionId r : scene.regions().ids())
+            if (norm(scene.regions()[r].plane.n - k.n) < 1e-9 &&
+                std::abs(scene.regions()[r].plane.signed_distance(k.x)) < 1e-9)
+                own = r;
+        EXPECT_NEAR(light_at(stage, k.x, k.n, own), k.E, 1e-3 * k.E) << k.type;
+    }
+}
+
+TEST(DistantLight, TheSunThrowsUmbraAndPenumbra) {
+    // A half plane, nearly, 4 m above the ground, its edge along y at x = 0; the sun at the zenith.
+    const double E = 800, h = 4, radius = std::tan(sun_half_angle);
+    const Scene scene = under({{}, {{{0, 0, 1}, sun_half_angle, Spectrum(E)}}, {}},
+                              {ground, {{{-4, -5, h}, {0, -5, h}, {0, 5, h}, {-4, 5, h}}}});
+    const Stage stage(scene);
+    EXPECT_EQ(light_at(stage, {-1.01 * radius * h, 0, 0}, {0, 0, 1}, first), 0);
+    EXPECT_NEAR(light_at(stage, {1.01 * radius * h, 0, 0}, {0, 0, 1}, first), E, 1e-6 * E);
+    for (double t = -0.95; t < 1; t += 0.1) {  // t: of the disc's radius that is uncovered
+        const double lit = (std::acos(-t) + t * std::sqrt(1 - t * t)) / pi;
+        EXPECT_NEAR(light_at(stage, {t * radius * h, 0.3, 0}, {0, 0, 1}, first), lit * E, 1e-3 * E) << t;
+    }
+}
+
+TEST(DistantLight, ALowSunIsCutByTheHorizon) {
+    const double E = 500;
+    const Scene scene = under({{}, {{{1, 0, 0}, sun_half_angle, Spectrum(E)}}, {}}, {ground});
+    const Stage stage(scene);
+    // Half of the disc is above: E times the mean of the height, 4 r / (3 pi), times half.
+    EXPECT_NEAR(light_at(stage, {0, 0, 0}, {0, 0, 1}, first), 0.5 * E * 4 * std::sin(sun_half_angle) / (3 * pi),
+                1e-5 * E);
+    EXPECT_NEAR(light_at(stage, {10, 0, 3}, {1, 0, 0}, RegionId()), E, 1e-9 * E);
+}
+
+}  // namespace exitance

@@ -1,0 +1,99 @@
+#include "exitance/io/files/epw_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "exitance/io/files/text_lines.hpp"
+#include "exitance/io/files/text_table.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_hours = 8784 * 12;  ///< Of an hour in twelve parts, in a leap year.
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+    std::vector<std::string_view> out;
+    while (true) {
+        const std::size_t comma = line.find(',');
+        out.push_back(line.substr(0, comma));
+        if (comma == line.npos) return out;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+std::optional<double> number_within(std::string_view word, double least, double most) {
+    const std::optional<double> value = parse_number(word);
+    return value && *value >= least && *value <= most ? value : std::nullopt;
+}
+
+/// LOCATION,city,state,country,source,WMO,latitude,longitude,time zone,elevation
+Result<Weather> read_location(LineReader& lines, std::string_view line) {
+    const std::vector<std::string_view> fields = fields_of(line);
+    if (fields.size() < 10 || fields[0] != "LOCATION")
+        return lines.error("a weather file begins with LOCATION and nine fields", "EnergyPlus' format, .epw");
+    const auto latitude = number_within(fields[6], -90, 90), longitude = number_within(fields[7], -180, 180),
+               zone = number_within(fields[8], -13, 15), elevation = number_within(fields[9], -1000, 9999.9);
+    if (!latitude || !longitude || !zone || !elevation)
+        return lines.error("LOCATION has no latitude, longitude, time zone and elevation");
+    Weather out;
+    out.city = shown(fields[1]);
+    out.place = {*latitude, *longitude, *elevation};
+    out.zone = *zone;
+    return out;
+}
+
+Result<WeatherHour> read_hour(const LineReader& lines, std::string_view line) {
+    constexpr std::size_t direct_field = 14, diffuse_field = 15;  // counted from 0
+    constexpr double missing = 9999;
+    const std::vector<std::string_view> fields = fields_of(line);
+    if (fields.size() <= diffuse_field)
+        return lines.error(
+            fmt::format("an hour has {} fields, at least {} are needed", fields.size(), diffuse_field + 1));
+    std::array<int, 4> date{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto value = number_within(fields[i], 0, 9999);
+        if (!value) return lines.error(fmt::format("'{}' is no part of a date", shown(fields[i])));
+        date[i] = static_cast<int>(*value);
+    }
+    WeatherHour out{date[0], date[1], date[2], date[3]};
+    if (!is_date(out.year, out.month, out.day) || out.hour < 1 || out.hour > 24)
+        return lines.error(fmt::format("{}-{}-{}, hour {}, is no date", out.year, out.month, out.day, out.hour));
+    const auto direct = parse_number(fields[direct_field]), diffuse = parse_number(fields[diffuse_field]);
+    if (!direct || !diffuse) return lines.error("direct or diffuse irradiance is not a number");
+    out.is_missing = !(*direct >= 0 && *direct < missing && *diffuse >= 0 && *diffuse < missing);
+    if (!out.is_missing) out.direct_normal = *direct, out.diffuse_horizontal = *diffuse;
+    return out;
+}
+
+}  // namespace
+
+const WeatherHour* Weather::at(int month, int day, double hour) const {
+    for (const WeatherHour& h : hours)
+        if (h.month == month && h.day == day && hour >= h.hour - 1 && hour < h.hour) return &h;
+    return nullptr;
+}
+
+Result<Weather> load_epw(const std::string& path) {
+    Result<LineReader> lines = LineReader::open(path);
+    if (!lines) return lines.error();
+    constexpr int header_lines = 8;
+    Result<Weather> out = Weather();
+    while (const std::optional<std::string_view> line = lines->next()) {
+        if (lines->line() == 1) out = read_location(*lines, *line);
+        if (!out) return out;
+        if (lines->line() <= header_lines || line->find_first_not_of(" \t,") == line->npos) continue;
+        const Result<WeatherHour> hour = read_hour(*lines, *line);
+        if (!hour) return hour.error();
+        out->hours.push_back(*hour);
+        if (out->hours.size() > most_hours) return lines->error("there are more hours than a year has");
+    }
+    if (lines->failed()) return lines->read_error();
+    if (out && out->hours.empty()) return lines->error("there are no hours in it");
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,89 @@
+#include "exitance/io/report/daylight_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+
+#include "exitance/io/files/atomic_file.hpp"
+
+namespace exitance {
+namespace {
+
+Result<void> write_hours(const std::string& path, const DaylightResults& results, std::span<const float> values) {
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return file.error();
+    const std::size_t n = results.sensors.size();
+    fmt::memory_buffer row;
+    const auto out = [&] { return std::back_inserter(row); };
+    fmt::format_to(out(), "month,day,hour");
+    for (std::size_t i = 0; i < n; ++i) fmt::format_to(out(), ",E_{}", i);
+    for (std::size_t h = 0; h < results.hours.size(); ++h) {
+        const DaylightHour& hour = results.hours[h];
+        fmt::format_to(out(), "\n{},{},{}", hour.time.month, hour.time.day, hour.hour);
+        for (std::size_t i = 0; i < n; ++i) {
+            const float v = values[h * n + i];
+            if (v == 0)
+                fmt::format_to(out(), ",0");
+            else
+                fmt::format_to(out(), ",{:.5g}", v);
+        }
+        file->write(std::string_view(row.data(), row.size()));
+        row.clear();
+    }
+    file->write("\n");
+    return file->commit();
+}
+
+Result<void> write_metrics(const std::string& path, const DaylightResults& results) {
+    std::string text = "x,y,z,nx,ny,nz,DF,DA_300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,sun_hours\n";
+    for (std::size_t i = 0; i < results.sensors.size(); ++i) {
+        const auto& [x, n] = results.sensors[i];
+        const DaylightMetrics& m = results.metrics[i];
+        text += fmt::format(
+            "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", x.x, x.y,
+            x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2], m.useful[3],
+            m.sunny_hours);
+    }
+    return write_file(path, text);
+}
+
+Result<void> write_matrix(const std::string& path, const DaylightMatrix& matrix) {
+    std::string text = "ground";
+    for (std::size_t p = 1; p < matrix.patches; ++p) text += fmt::format(",patch_{}", p);
+    for (std::size_t i = 0; i < matrix.sensors(); ++i) {
+        text += '\n';
+        for (std::size_t p = 0; p < matrix.patches; ++p)
+            text += fmt::format("{}{:.6g}", p > 0 ? "," : "", matrix.total(i, p));
+    }
+    return write_file(path, text + "\n");
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> summary_values(const DaylightResults& results) {
+    const DaylightSummary& s = results.summary;
+    return {{"sensors", static_cast<double>(results.sensors.size())},
+            {"hours", static_cast<double>(results.hours.size())},
+            {"occupied_hours", static_cast<double>(s.occupied_hours)},
+            {"mean_daylight_factor", s.mean_daylight_factor},
+            {"sDA_300_50", s.spatial_autonomy},
+            {"ASE_1000_250", s.sunlight_exposure}};
+}
+
+Result<void> write_daylight(const std::string& folder, const DaylightResults& results) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
+    std::string summary = "name,value\n";
+    for (const auto& [name, value] : summary_values(results)) summary += fmt::format("{},{:.6g}\n", name, value);
+    for (const Result<void>& written :
+         {write_hours(in("illuminance.csv"), results, results.year.illuminance),
+          write_hours(in("sun.csv"), results, results.year.sun), write_metrics(in("metrics.csv"), results),
+          write_matrix(in("matrix.csv"), results.matrix), write_file(in("summary.csv"), summary)})
+        if (!written) return written.error();
+    return {};
+}
+
+}  // namespace exitance

@@ -1,0 +1,41 @@
+#include "exitance/scene/pane.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace exitance {
+
+TEST(Pane, TransmitsAsFresnelSays) {
+    Pane clear;
+    clear.transmissivity = Spectrum(1.0);
+    const double r = std::pow(0.52 / 2.52, 2);
+    EXPECT_NEAR(clear.transmission(1)[0], (1 - r) / (1 + r), 1e-12);  // all reflections between two faces
+    // At Brewster's angle one polarisation passes whole: T = (1 + T_s) / 2.
+    const double brewster = std::atan(1.52), c = std::cos(brewster),
+                 inside = std::sqrt(1 - std::pow(std::sin(brewster) / 1.52, 2));
+    const double rs = std::pow((c - 1.52 * inside) / (c + 1.52 * inside), 2);
+    EXPECT_NEAR(clear.transmission(c)[0], 0.5 * (1 + (1 - rs) / (1 + rs)), 1e-12);
+    EXPECT_LT(clear.transmission(1e-6)[0], 1e-4);
+    EXPECT_EQ(clear.transmission(0)[0], 0);
+}
+
+TEST(Pane, RadiancesArgumentIsTheTransmissivity) {
+    Pane pane;
+    pane.transmissivity = Spectrum(0.96);
+    EXPECT_NEAR(pane.transmission(1)[0], 0.88, 0.002);
+    EXPECT_NEAR(transmissivity_of(pane.transmission(1))[0], 0.96, 1e-9);
+    EXPECT_EQ(transmissivity_of(Spectrum(1.0))[0], 1);
+    EXPECT_EQ(transmissivity_of(Spectrum(0.0))[0], 0);
+}
+
+TEST(Pane, OthersThanConvexOnesAreCut) {
+    Pane bent;
+    bent.transmissivity = Spectrum(0.9);
+    bent.corners = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+    const std::vector<Pane> cut = convex_panes({bent, Pane()});
+    ASSERT_GT(cut.size(), 1u);
+    for (const Pane& pane : cut) EXPECT_EQ(pane.n, (Normal{0, 0, 1}));
+}
+
+}  // namespace exitance

@@ -1,0 +1,193 @@
+#include "exitance/visibility/glazed_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/form_factors/directed_form_factor.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+
+namespace exitance {
+namespace {
+
+/// A part of the source, and which panes stand before it.
+struct Part {
+    std::vector<Vec3> corners;
+    std::vector<const Pane*> panes;
+};
+
+/// The part of a convex polygon with n . r >= offset.
+std::vector<Vec3> cut_above(std::span<const Vec3> polygon, const Vec3& n, double offset = 0) {
+    std::vector<Vec3> out;
+    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+        const Vec3 &p = polygon[i], &q = polygon[i + 1 == m ? 0 : i + 1];
+        const double a = dot(n, p) - offset, b = dot(n, q) - offset;
+        if (a >= 0) out.push_back(p);
+        if ((a > 0 && b < 0) || (a < 0 && b > 0)) out.push_back(p + (a / (a - b)) * (q - p));
+    }
+    if (out.size() < 3) out.clear();
+    return out;
+}
+
+/// Planes through the receiver and the edges of a pane between it and the source, inwards; none where no way crosses
+/// it.
+std::vector<Vec3> pyramid_over(const Pane& pane, const Receiver& at, const Vec3& source_normal, double source_height,
+                               double rounding) {
+    const double facing = dot(pane.n, pane.corners[0] - at.x);
+    if (std::abs(facing) <= rounding) return {};
+    std::vector<Vec3> polygon;
+    for (const Point& p : pane.corners) polygon.push_back(p - at.x);
+    polygon = cut_above(polygon, at.n);
+    if (!polygon.empty()) polygon = cut_above(polygon, source_normal, source_height);
+    std::vector<Vec3> planes;
+    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+        const Vec3 &a = polygon[i], &b = polygon[i + 1 == m ? 0 : i + 1];
+        const Vec3 inward = cross(a, b) * std::copysign(1.0, facing);
+        constexpr double no_width = 1e-13;
+        if (norm(inward) > no_width * norm(a) * norm(b)) planes.push_back(normalized(inward));
+    }
+    if (planes.size() < 3) planes.clear();
+    return planes;
+}
+
+/// Cuts parts along a pane's outline.
+void put_before(const Pane& pane, std::span<const Vec3> pyramid, std::vector<Part>& parts) {
+    constexpr double noise = 1e-12;
+    std::vector<Part> out;
+    for (Part& part : parts) {
+        std::vector<Vec3> inside = part.corners;
+        std::vector<Part> beside;
+        for (const Vec3& plane : pyramid) {
+            const auto is_out = [&](const Vec3& r) { return dot(plane, r) < -noise * norm(r); };
+            if (std::any_of(inside.begin(), inside.end(), is_out)) {
+                std::vector<Vec3> rest = cut_above(inside, -plane);
+                if (!rest.empty()) beside.push_back({std::move(rest), part.panes});
+                inside = cut_above(inside, plane);
+            }
+            if (inside.empty()) break;
+        }
+        if (inside.empty()) {
+            out.push_back(std::move(part));
+            continue;
+        }
+        for (Part& p : beside) out.push_back(std::move(p));
+        part.corners = std::move(inside);
+        part.panes.push_back(&pane);
+        out.push_back(std::move(part));
+    }
+    parts = std::move(out);
+}
+
+Spectrum transmission_towards(const Vec3& r, std::span<const Pane* const> panes) {
+    const Vec3 w = normalized(r);
+    Spectrum out(1.0);
+    for (const Pane* pane : panes) out *= pane->transmission(std::abs(dot(pane->n, w)));
+    return out;
+}
+
+Vec3 middle_of(std::span<const Vec3> corners) {
+    Vec3 sum;
+    for (const Vec3& r : corners) sum += r;
+    return sum / static_cast<double>(corners.size());
+}
+
+/// Is there nothing of it but rounding?
+bool is_sliver(std::span<const Vec3> corners) {
+    constexpr double rounding = 1e-14;
+    Vec3 area;
+    double reach = 0;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        area += cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    for (const Vec3& r : corners) reach = std::max(reach, squared_norm(r));
+    return !(norm(area) > rounding * reach);
+}
+
+/// T p F of parts of a source.
+class GlazedSum {
+  public:
+    GlazedSum(const Normal& n, const RelativeRadiance& radiance) : n_(n), radiance_(radiance) {}
+
+    Spectrum of(std::span<const Vec3> corners, std::span<const Pane* const> panes, int depth = 0) const {
+        constexpr int deepest = 7;
+        constexpr double even = 0.04;
+        if (is_sliver(corners)) return {};
+        if (panes.empty()) return Spectrum(form_factor(corners));
+        const Vec3 middle = middle_of(corners);
+        const Spectrum T = transmission_towards(middle, panes);
+        double least = mean(T), most = least;
+        for (const Vec3& r : corners) {
+            const double t = mean(transmission_towards(r, panes));
+            least = std::min(least, t), most = std::max(most, t);
+        }
+        if (most - least <= even || depth == deepest) return form_factor(corners) * T;
+        Vec3 along;
+        double widest = -1;
+        const std::size_t m = corners.size();
+        for (std::size_t i = 0; i < m; ++i) {
+            const Vec3 &a = corners[i], &b = corners[(i + 1) % m];
+            if (const double l = squared_norm(b - a); l > widest) widest = l, along = b - a;
+        }
+        along = along / std::sqrt(widest);
+        const double half = dot(along, middle);
+        Spectrum sum;
+        for (const double side : {1.0, -1.0})
+            if (const std::vector<Vec3> part = cut_above(corners, side * along, side * half); !part.empty())
+                sum += of(part, panes, depth + 1);
+        return sum;
+    }
+
+  private:
+    double form_factor(std::span<const Vec3> corners) const {
+        return radiance_.is_directed() ? directed_form_factor(n_, corners, radiance_)
+                                       : std::max(0.0, contour_sum(n_, corners));
+    }
+
+    const Normal& n_;
+    const RelativeRadiance& radiance_;
+};
+
+}  // namespace
+
+Spectrum transmitted_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                                 std::span<const Vec3> visible, const RelativeRadiance& radiance) {
+    if (visible.size() < 3 || is_sliver(visible)) return {};
+    std::vector<Part> parts{{{visible.begin(), visible.end()}, {}}};
+    const Normal& n = occluders.pieces()[source].plane.n;
+    const double slack = occluders.rounding(), height = dot(n, visible[0]) + slack;
+    for (const Pane& pane : occluders.scene().panes()) {
+        const std::vector<Vec3> pyramid = pyramid_over(pane, at, n, height, slack);
+        if (!pyramid.empty()) put_before(pane, pyramid, parts);
+    }
+    const GlazedSum sum(at.n, radiance);
+    Spectrum out;
+    for (const Part& part : parts) out += sum.of(part.corners, part.panes);
+    return out;
+}
+
+Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                            std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
+                            const PartLight& light) {
+    Fragments fragments;
+    visible_fragments(occluders, at, source, candidates, scratch, fragments);
+    Spectrum out;
+    for (const std::vector<Vec3>& fragment : fragments)
+        out += transmitted_form_factor(occluders, at, source, fragment, light.radiance);
+    return out;
+}
+
+Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y) {
+    Spectrum out(1.0);
+    const Vec3 d = y - x;
+    for (const Pane& pane : panes) {
+        const double here = dot(pane.n, x - pane.corners[0]), there = dot(pane.n, y - pane.corners[0]);
+        if (here * there >= 0) continue;
+        bool left = false, right = false;
+        for (std::size_t i = 0, m = pane.corners.size(); i < m; ++i) {
+            const double side = dot(d, cross(pane.corners[i] - x, pane.corners[i + 1 == m ? 0 : i + 1] - x));
+            left |= side > 0, right |= side < 0;
+        }
+        if (!(left && right)) out *= pane.transmission(std::abs(here - there) / norm(d));
+    }
+    return out;
+}
+
+}  // namespace exitance

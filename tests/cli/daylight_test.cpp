@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/small_scene.hpp"
+
+namespace exitance::test {
+namespace {
+
+/// A room without a ceiling, with a pane over half of it.
+std::string write_court(const TemporaryFolder& folder) {
+    write_text(folder / "court.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.1\n");
+    write_text(folder / "court.obj",
+               "mtllib court.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2.5\nv 4 0 2.5\nv 4 3 2.5\nv 0 3 2.5\n"
+               "v 2 0 2.5\nv 2 3 2.5\nusemtl grey\nf 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
+               "usemtl glass\nf 5 9 10 8\n");
+    return folder / "court.obj";
+}
+
+std::string weather() {
+    std::string text = "LOCATION,Town,-,CHE,test,0,47.4,8.5,1.0,400\n";
+    for (int i = 0; i < 7; ++i) text += "HEADER\n";
+    for (int hour = 1; hour <= 24; ++hour) {
+        const bool day = hour > 6 && hour < 19;
+        text += "2021,6,21," + std::to_string(hour) + ",0,f,10,5,70,95000,0,1300,300,500," + (day ? "600,120" : "0,0") +
+                ",0,0,0\n";
+    }
+    return text;
+}
+
+std::size_t lines(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+TEST(ProgramSky, ASolutionUnderASkyIsReadBack) {
+    const TemporaryFolder folder;
+    const Finished run = run_program({"solve", write_court(folder), "-o", folder / "s.h5", "--error", "0.1", "-q",
+                                      "--sky", "perez,altitude=50,azimuth=180,dni=600,dhi=120"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::string points = "x,y,z,nx,ny,nz\n3.5,2,0,0,0,1\n1,1.5,3,0,0,1\n";
+    const Finished probe = run_program({"probe", folder / "s.h5", "--points", "-", "-o", "-"}, points);
+    ASSERT_EQ(probe.status, 0) << probe.err;
+    // Above everything there is the whole sky, the sun, and little that is reflected upwards.
+    const std::string last = probe.out.substr(probe.out.rfind("1,1.5,3,"));
+    EXPECT_NEAR(std::stod(last.substr(std::string("1,1.5,3,0,0,1,").size())),
+                120 + 600 * std::sin(50 * 3.14159265 / 180), 2);
+    EXPECT_EQ(run_program({"render", folder / "s.h5", "-o", folder / "s.png", "--size", "32x24"}).status, 0);
+    EXPECT_EQ(run_program({"export", folder / "s.h5", "-o", folder / "s.glb"}).status, 0);
+}
+
+TEST(ProgramSky, WhatIsWrongIsAUsageError) {
+    const TemporaryFolder folder;
+    const std::string scene = write_court(folder), out = folder / "s.h5";
+    const Finished kind = run_program({"solve", scene, "-o", out, "--sky", "grey,dhi=100"});
+    EXPECT_EQ(kind.status, 2);
+    EXPECT_EQ(kind.err.find("error: --sky: 'grey' is no kind of sky\nhint: kinds: uniform, overcast"), 0u) << kind.err;
+    EXPECT_EQ(run_program({"solve", scene, "-o", out, "--epw", "x.epw"}).status, 2);
+    EXPECT_EQ(
+        run_program({"solve", scene, "-o", out, "--sky", "perez,time=06-21T12:00", "--epw", folder / "x.epw"}).status,
+        3);
+}
+
+TEST(ProgramDaylight, WritesTablesOfAYear) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_program({"solve", write_court(folder), "-o", folder / "s.h5", "--bounces", "0", "-q", "--sky",
+                           "uniform,dhi=100"})
+                  .status,
+              0);
+    write_text(folder / "w.epw", weather());
+    write_text(folder / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n");
+    const Finished run = run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points",
+                                      folder / "p.pts", "-o", folder / "year", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("\"sDA_300_50\": 1.0"), std::string::npos) << run.out;
+    EXPECT_EQ(lines(read_text(folder / "year/illuminance.csv")), 25u);
+    EXPECT_EQ(lines(read_text(folder / "year/sun.csv")), 25u);
+    EXPECT_EQ(lines(read_text(folder / "year/metrics.csv")), 3u);
+    EXPECT_EQ(lines(read_text(folder / "year/matrix.csv")), 3u);
+    EXPECT_EQ(read_text(folder / "year/summary.csv").find("name,value\nsensors,2\nhours,24\noccupied_hours,10\n"), 0u);
+    EXPECT_EQ(read_text(folder / "year/illuminance.csv").find("month,day,hour,E_0,E_1\n6,21,1,0,0\n"), 0u);
+    EXPECT_EQ(run_program({"daylight", folder / "s.h5", "--epw", folder / "none.epw", "--points", folder / "p.pts",
+                           "-o", folder / "y"})
+                  .status,
+              3);
+    EXPECT_EQ(
+        run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points", folder / "p.pts"}).status, 2);
+}
+
+}  // namespace exitance::test
