@@ -545,6 +545,19 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+void declare(CLI::App& app, ViewArguments& arguments) {
+    declare_scene(app, arguments.scene);
+    app.get_option("SCENE")->description("Solution (.h5), or a scene, which is then solved while one looks on");
+    add_count(app, "--port", arguments.port, 0, "Port on 127.0.0.1; default: any that is free")
+        ->check(CLI::Range(0, 65535));
+    add_positive(app, "--error", arguments.error, "R", "Of a scene: the relative RMS error asked for; default 0.02")
+        ->check(CLI::Range(1e-5, 1.0));
+    add_choice(app, "--method", method_names, arguments.options.method, "Of a scene: as of solve");
+    app.add_option("--save", arguments.save, "Of a scene: where the page's button saves its light; default viewed.h5")
+        ->type_name("FILE");
+    declare_work(app, arguments, arguments.options.threads);
+}
+
 // -------------------------------------------------------------------------------------------------- parsing
 
 /// The word in quotation marks or after a colon that CLI11 did not expect.
@@ -616,6 +629,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<GenerateArguments>},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
+        {"view", "Shows a solution in a browser, or a scene while it is solved.", "exitance view room.h5",
+         parse_verb<ViewArguments>},
     };
     return all;
 }

@@ -129,10 +129,18 @@ struct ViewFactorArguments : CommonArguments {
     int threads = 0;
 };
 
+struct ViewArguments : CommonArguments {
+    SceneArguments scene;  ///< Or a solution (.h5).
+    int port = 0;          ///< 0: any that is free.
+    double error = 0.02;   ///< Asked for, of a scene.
+    SolveOptions options;  ///< Method and threads.
+    std::string save = "viewed.h5";
+};
+
 /// What the program is to do.
 using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
-                 BakeArguments, ReportArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
+                 BakeArguments, ReportArguments, CheckArguments, GenerateArguments, ViewFactorArguments, ViewArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

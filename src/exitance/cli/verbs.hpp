@@ -18,5 +18,6 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal);
 ExitCode run(const CheckArguments& arguments, Terminal& terminal);
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
+ExitCode run(const ViewArguments& arguments, Terminal& terminal);
 
 }  // namespace exitance
