@@ -6,7 +6,6 @@ export interface Facts {
     materials: {name: string; reflectance: Triple; exitance: Triple}[];
     exposure: number; camera: {eye: Triple; target: Triple; fov: number}; box: [Triple, Triple];
     parts: {exported: number; method: number}; error: number | null; links: number;
-    groups?: string[]; group_of_material?: number[];
 }
 
 export interface Part {
@@ -30,7 +29,6 @@ export const load_facts = () => answer('/data/scene').then(r => r.json() as Prom
 export const load_point = (at: number[]) => answer(`/data/point?at=${at.join(',')}`).then(r => r.json() as Promise<Light>);
 export const load_line = (at: number[]) =>
     answer(`/data/line?at=${at.join(',')}`).then(r => r.json() as Promise<{length: number; values: number[]}>);
-export const load_numbers = async (path: string) => new Float32Array(await (await answer(path)).arrayBuffer());
 
 export async function load_part(layer: string, part: number): Promise<Part> {
     const bytes = await (await answer(`/data/part?layer=${layer}&part=${part}`)).arrayBuffer();

@@ -1,6 +1,6 @@
-// The elements as three.js draws them, a part at a time, and their light when groups are dimmed.
+// The elements as three.js draws them, a part at a time.
 import * as THREE from 'three';
-import {load_numbers, load_part, type Facts, type Part} from './data';
+import {load_part, type Facts, type Part} from './data';
 import type {Shading} from './shading';
 
 /** Of edges by the order of the discontinuity along them (CurveOrder): border, D0, D1, D2. */
@@ -8,7 +8,7 @@ const order_colours: Record<number, Triple3> = {0: [0.9, 0.9, 0.9], 1: [0.9, 0.1
 const plain: Triple3 = [0.25, 0.25, 0.28];
 type Triple3 = [number, number, number];
 
-interface Loaded { part: Part; mesh: THREE.Mesh; light: THREE.BufferAttribute; groups: Float32Array[] | null }
+interface Loaded { part: Part; mesh: THREE.Mesh; light: THREE.BufferAttribute }
 
 export class Elements {
     readonly whole = new THREE.Group();
@@ -27,10 +27,6 @@ export class Elements {
             this.loaded = fresh;
             changed();
         }
-        if (this.facts.groups)
-            for (let i = 0; i < fresh.length; ++i)
-                fresh[i].groups = await Promise.all(this.facts.groups.map((_, g) =>
-                    load_numbers(`/data/group?layer=${layer}&part=${i}&group=${g}`)));
     }
 
     private clear(old: Loaded[]): void {
@@ -42,7 +38,7 @@ export class Elements {
 
     private add(part: Part): Loaded {
         const geometry = new THREE.BufferGeometry();
-        const light = new THREE.BufferAttribute(part.irradiance.slice(), 3);
+        const light = new THREE.BufferAttribute(part.irradiance, 3);
         geometry.setAttribute('position', new THREE.BufferAttribute(part.positions, 3));
         geometry.setAttribute('irradiance', light);
         geometry.setAttribute('material', new THREE.BufferAttribute(Float32Array.from(part.materials), 1));
@@ -58,22 +54,7 @@ export class Elements {
         edges.setAttribute('position', new THREE.BufferAttribute(ends, 3));
         edges.setAttribute('color', new THREE.BufferAttribute(colours, 3));
         this.lines.add(new THREE.LineSegments(edges, new THREE.LineBasicMaterial({vertexColors: true, toneMapped: false})));
-        return {part, mesh, light, groups: null};
-    }
-
-    /** Light is a sum over the groups. */
-    dim(factors: number[]): boolean {
-        for (const {light, groups} of this.loaded) {
-            if (!groups) return false;
-            const out = light.array as Float32Array;
-            out.fill(0);
-            groups.forEach((values, g) => {
-                const f = factors[g];
-                for (let i = 0; i < out.length; ++i) out[i] += f * values[i];
-            });
-            light.needsUpdate = true;
-        }
-        return true;
+        return {part, mesh, light};
     }
 
     /** The range of what is shown, a hundredth left out at either end, emitters too. */

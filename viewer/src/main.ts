@@ -11,7 +11,7 @@ renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shader encodes b
 const stage = new THREE.Scene();
 const chosen = new THREE.Group();
 let facts: Facts, shading: Shading, elements: Elements, view: Viewpoint;
-let wanted = true, measuring: THREE.Vector3[] | null = null, factors: number[] = [];
+let wanted = true, measuring: THREE.Vector3[] | null = null;
 
 const redraw = () => { wanted = true; };
 
@@ -113,30 +113,6 @@ async function pick(x: number, y: number): Promise<void> {
     } catch (error) { by_id('point').textContent = String(error); }
 }
 
-function make_sliders(): void {
-    const set = by_id('groups');
-    set.hidden = !facts.groups?.length;
-    while (set.children.length > 1) set.lastChild!.remove();
-    factors = (facts.groups ?? []).map(() => 1);
-    facts.groups?.forEach((name, g) => {
-        const label = document.createElement('label'), slider = document.createElement('input');
-        Object.assign(slider, {type: 'range', min: '0', max: '2', step: '0.01', value: '1', id: `group_${g}`});
-        const text = document.createElement('output');
-        text.textContent = ' 1.00';
-        slider.addEventListener('input', () => {
-            const begin = performance.now();
-            factors[g] = Number(slider.value);
-            text.textContent = ' ' + factors[g].toFixed(2);
-            elements.dim(factors);
-            shading.dim(factors);
-            apply();
-            document.body.dataset.answer = (performance.now() - begin).toFixed(2);
-        });
-        label.append(name, text, slider);
-        set.append(label);
-    });
-}
-
 async function load(first: boolean): Promise<void> {
     facts = await load_facts();
     if (!first) { stage.clear(); }
@@ -152,7 +128,6 @@ async function load(first: boolean): Promise<void> {
         resize();
         draw(performance.now());
     }
-    make_sliders();
     elements.lines.visible = false;
     await elements.load(by_id<HTMLSelectElement>('layer').value as 'exported' | 'method', () => {
         if (!document.body.dataset.first) document.body.dataset.first = performance.now().toFixed(0);
@@ -164,9 +139,9 @@ async function load(first: boolean): Promise<void> {
 /** A running solve tells what it does, and when there is better light. */
 function follow(): void {
     const events = new EventSource('/data/events');
+    by_id('running').hidden = false;
     events.addEventListener('progress', event => {
         const {phase, fraction} = JSON.parse((event as MessageEvent).data);
-        by_id('running').hidden = false;
         by_id<HTMLProgressElement>('progress').value = fraction;
         by_id('phase').textContent = phase;
     });
@@ -186,8 +161,7 @@ function follow(): void {
 }
 
 for (const id of ['quantity', 'tone', 'exposure', 'mesh', 'isolux']) by_id(id).addEventListener('input', () => elements && apply());
-by_id('layer').addEventListener('input', () => elements.load(by_id<HTMLSelectElement>('layer').value as 'exported' | 'method', apply)
-    .then(() => { if (facts.groups) elements.dim(factors); apply(); }));
+by_id('layer').addEventListener('input', () => elements.load(by_id<HTMLSelectElement>('layer').value as 'exported' | 'method', apply));
 by_id('fit').addEventListener('click', () => { view.fit(); view.to_address(); });
 by_id('line').addEventListener('click', () => { measuring = []; by_id('point').textContent = 'click on one end'; });
 by_id('record').addEventListener('click', () => {

@@ -94,20 +94,15 @@ export class Shading {
                 steps: {value: new Float32Array(most_steps)},
                 colours: {value: Array.from({length: most_steps}, () => new THREE.Vector3())}},
         });
-        this.dim(null);
+        this.fill();
         this.set_steps([0, 1]);
     }
 
-    /** Emitters shine by these factors, one a light group. */
-    dim(factors: number[] | null): void {
+    /** Reflectances in the first row, exitances in the second. */
+    private fill(): void {
         const n = this.table.image.width, data = this.table.image.data as unknown as Float32Array;
         this.facts.materials.forEach((m, i) => {
-            const group = this.facts.group_of_material?.[i] ?? -1;
-            const factor = factors && group >= 0 ? factors[group] : 1;
-            for (let c = 0; c < 3; ++c) {
-                data[4 * i + c] = m.reflectance[c];
-                data[4 * (n + i) + c] = factor * m.exitance[c];
-            }
+            for (let c = 0; c < 3; ++c) data[4 * i + c] = m.reflectance[c], data[4 * (n + i) + c] = m.exitance[c];
         });
         this.table.needsUpdate = true;
     }

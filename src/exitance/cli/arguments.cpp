@@ -404,6 +404,10 @@ void declare(CLI::App& app, RenderArguments& arguments) {
            "auto (default): one that shows much; 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal "
            "angle in degrees (orthographic: width in metres); or a camera of the scene, by name or by number from 1")
         ->type_name("CAMERA");
+    app.add_option("--path", arguments.path,
+                   "Cameras to take numbered pictures from (P.0001.png, ...): CSV time,ex,ey,ez,tx,ty,tz,fov, as the "
+                   "viewer records them; one exposure for all")
+        ->type_name("FILE");
     add_choice(app, "--projection", projection_names, arguments.projection,
                "Default perspective; fisheye: equidistant; panorama: 360 x 180 degrees");
     app.add_option_function<std::string>(

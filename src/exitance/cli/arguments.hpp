@@ -88,6 +88,7 @@ struct RenderArguments : CommonArguments {
     std::size_t samples = 16;  ///< Rays a pixel.
     std::size_t gather = 0;    ///< Rays of a final gather at each of them.
     bool mesh = false;         ///< With the elements' edges.
+    std::string path;          ///< A camera a row, for numbered pictures; empty: one picture.
     int threads = 0;
 };
 
