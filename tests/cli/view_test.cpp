@@ -118,4 +118,19 @@ TEST(ProgramRender, TakesNumberedPicturesAlongAPath) {
     EXPECT_EQ(with({folder / "bad.csv"}).status, 3);
 }
 
+TEST(ProgramHelp, MakesAManualPageAndACompletionOfItsOptions) {
+    const Finished man = run_program({"--man"}), completion = run_program({"--completion", "bash"});
+    EXPECT_EQ(man.status, 0);
+    EXPECT_TRUE(man.out.starts_with(".TH EXITANCE 1"));
+    EXPECT_NE(man.out.find(".SH viewfactors"), std::string::npos);
+    EXPECT_NE(man.out.find("\\-\\-keep\\-links"), std::string::npos);
+    EXPECT_EQ(completion.status, 0);
+    EXPECT_EQ(run_program({"--completion", "cobol"}).status, 2);
+    const TemporaryFolder folder;
+    write_text(
+        folder / "c.sh",
+        completion.out + "COMP_WORDS=(exitance render --pa) COMP_CWORD=2\n_exitance\necho \"${COMPREPLY[@]}\"\n");
+    EXPECT_EQ(RunningProgram({folder / "c.sh"}, {}, "/bin/bash").finish().out, "--path --palette\n");
+}
+
 }  // namespace exitance::test

@@ -645,7 +645,69 @@ std::string help() {
         "Light in rooms of diffuse surfaces.\n\n"
         "Usage: exitance VERB [options] INPUT...\n\nVerbs:\n";
     for (const Verb& verb : verbs()) text += fmt::format("  {:<12} {}\n", verb.name, verb.does);
-    return text + "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n";
+    return text +
+           "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n"
+           "exitance --man is a manual page, exitance --completion bash a completion for the shell.\n";
+}
+
+/// Every option of a verb: the parser declares them before it meets --help.
+std::vector<std::string> option_names(const Verb& verb) {
+    CLI::App app(verb.does, "exitance " + verb.name);
+    (void)verb.parse(app, {"--help"});
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+/// For bash: source <(exitance --completion bash)
+std::string bash_completion() {
+    std::vector<std::string> names;
+    std::string cases;
+    for (const Verb& verb : verbs()) {
+        names.push_back(verb.name);
+        cases += fmt::format("        {}) words='{}' ;;\n", verb.name, fmt::join(option_names(verb), " "));
+    }
+    return fmt::format(
+        "_exitance() {{\n"
+        "    local word=${{COMP_WORDS[COMP_CWORD]}} words=\n"
+        "    if [[ $COMP_CWORD -eq 1 ]]; then\n"
+        "        COMPREPLY=($(compgen -W '{} --help --version' -- \"$word\"))\n"
+        "        return\n"
+        "    fi\n"
+        "    case ${{COMP_WORDS[1]}} in\n{}    esac\n"
+        "    COMPREPLY=()\n"
+        "    [[ $word == -* ]] && COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
+        "}}\n"
+        "complete -o default -F _exitance exitance\n",
+        fmt::join(names, " "), cases);
+}
+
+/// Lines as they are, for roff.
+std::string verbatim(const std::string& text) {
+    std::string out = ".nf\n";
+    bool begins = true;
+    for (const char c : text) {
+        if (begins && (c == '.' || c == '\'')) out += "\\&";
+        if (c == '\\') out += '\\';
+        if (c == '-') out += '\\';
+        out += c, begins = c == '\n';
+    }
+    return out + (begins ? "" : "\n") + ".fi\n";
+}
+
+/// exitance --man | man -l -
+std::string man_page() {
+    std::string text = fmt::format(
+        ".TH EXITANCE 1 \"\" \"exitance {}\"\n.SH NAME\nexitance \\- light in rooms of diffuse surfaces\n"
+        ".SH SYNOPSIS\n.B exitance\n.I VERB\n[options]\n.I INPUT...\n",
+        EXITANCE_VERSION);
+    for (const Verb& verb : verbs()) {
+        CLI::App app(fmt::format("{}\n\nExample: {}", verb.does, verb.example), "exitance " + verb.name);
+        const Result<Parsed> parsed = verb.parse(app, {"--help"});
+        text += fmt::format(".SH {}\n", verb.name) + verbatim(std::get<Information>(*parsed).text);
+    }
+    return text;
 }
 
 Error unknown_verb(const std::string& word) {
@@ -665,6 +727,11 @@ Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
     if (first == "--help" || first == "-h" || first == "help") return Parsed(Information{help()});
     if (first == "--version")
         return Parsed(Information{fmt::format("exitance {}\n{}\n", EXITANCE_VERSION, EXITANCE_LIBRARIES)});
+    if (first == "--man") return Parsed(Information{man_page()});
+    if (first == "--completion") {
+        if (arguments.size() == 2 && arguments[1] == "bash") return Parsed(Information{bash_completion()});
+        return Error{ErrorCode::usage, "is there for bash", "--completion", "source <(exitance --completion bash)"};
+    }
     const auto verb = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == first; });
     if (verb == verbs().end()) return unknown_verb(first);
     CLI::App app(fmt::format("Example:\n  {}\n\n{}", verb->example, verb->does), "exitance " + verb->name);
