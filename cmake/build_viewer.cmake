@@ -11,7 +11,7 @@ if(EXISTS ${BUILD}/installed)
     file(READ ${BUILD}/installed installed)
 endif()
 if(NOT installed STREQUAL wanted)
-    execute_process(COMMAND ${NPM} install --no-save --no-audit --no-fund --ignore-scripts --loglevel=error
+    execute_process(COMMAND ${NPM} install --no-save --no-audit --no-fund --ignore-scripts --fetch-retries=1 --loglevel=error
         WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE failed OUTPUT_QUIET TIMEOUT 300)
     if(failed)
         message("No viewer: npm cannot install what its page is made of (see above)")

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <deque>
@@ -139,7 +140,6 @@ class RunningSolve {
         constexpr double coarse = 0.32, ratio = 0.4;  // a round takes several times as long as the one before
         std::string message = "done";
         for (double error = std::max(coarse, arguments_.error); !stop_.requested(); error *= ratio) {
-            const bool last = error <= arguments_.error / ratio * (1 + 1e-9) && error <= arguments_.error;
             SolveOptions options = arguments_.options;
             options.error = std::max(error, arguments_.error);
             progress_.set_round(fmt::format("to {:.3g}%: ", 100 * *options.error));
@@ -152,8 +152,10 @@ class RunningSolve {
             solution->options = options_json(options);
             const std::size_t count = gallery_.add(std::move(*solution));
             events_.tell("light", fmt::format(R"({{"count": {}}})", count));
-            if (last || *options.error <= arguments_.error) break;
+            if (*options.error <= arguments_.error) break;
         }
+        std::replace_if(
+            message.begin(), message.end(), [](char c) { return c == '"' || c == '\\' || (c >= 0 && c < ' '); }, '\'');
         events_.end(fmt::format(R"({{"message": "{}"}})", stop_.requested() ? "stopped" : message));
     }
 
