@@ -17,3 +17,5 @@ configure_package_config_file(cmake/exitanceConfig.cmake.in ${PROJECT_BINARY_DIR
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/exitanceConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/exitanceConfig.cmake ${PROJECT_BINARY_DIR}/exitanceConfigVersion.cmake
     DESTINATION ${package_folder})
+
+install(DIRECTORY ${PROJECT_BINARY_DIR}/viewer/ DESTINATION ${CMAKE_INSTALL_DATADIR}/exitance/viewer OPTIONAL)

@@ -7,9 +7,12 @@ packages=(
     libembree-dev libtbb-dev libcgal-dev libeigen3-dev libhdf5-dev libpng-dev libopenexr-dev  # the library
     libtinygltf-dev libjpeg-dev                                              # scenes as glTF, and their textures
     libfmt-dev libcli11-dev nlohmann-json3-dev                               # the program
+    libcpp-httplib-dev                                                       # the viewer's server
     libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers
     libbenchmark-dev                                                         # the benchmarks
 )
+# The viewer's page is built by node and npm, of any origin; without them everything else is built.
+command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
 
 missing=()
 for package in "${packages[@]}"; do

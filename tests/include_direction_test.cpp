@@ -39,7 +39,8 @@ const std::vector<Door> doors{
     {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf.cpp"}},
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/arguments.cpp"}},
-    {"nlohmann-json", std::regex("nlohmann/.*"), {"cli/json_output.cpp"}},
+    {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view_server.cpp"}},
+    {"nlohmann-json", std::regex("nlohmann/.*"), {"cli/json_output.cpp", "io/export/viewer_data.cpp"}},
 };
 
 struct Include {

@@ -421,6 +421,10 @@ void declare(CLI::App& app, RenderArguments& arguments) {
            "auto (default): one that shows much; 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal "
            "angle in degrees (orthographic: width in metres); or a camera of the scene, by name or by number from 1")
         ->type_name("CAMERA");
+    app.add_option("--path", arguments.path,
+                   "Cameras to take numbered pictures from (P.0001.png, ...): CSV time,ex,ey,ez,tx,ty,tz,fov, as the "
+                   "viewer records them; one exposure for all")
+        ->type_name("FILE");
     add_choice(app, "--projection", projection_names, arguments.projection,
                "Default perspective; fisheye: equidistant; panorama: 360 x 180 degrees");
     app.add_option_function<std::string>(
@@ -596,6 +600,19 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+void declare(CLI::App& app, ViewArguments& arguments) {
+    declare_scene(app, arguments.scene);
+    app.get_option("SCENE")->description("Solution (.h5), or a scene, which is then solved while one looks on");
+    add_count(app, "--port", arguments.port, 0, "Port on 127.0.0.1; default: any that is free")
+        ->check(CLI::Range(0, 65535));
+    add_positive(app, "--error", arguments.error, "R", "Of a scene: the relative RMS error asked for; default 0.02")
+        ->check(CLI::Range(1e-5, 1.0));
+    add_choice(app, "--method", method_names, arguments.options.method, "Of a scene: as of solve");
+    app.add_option("--save", arguments.save, "Of a scene: where the page's button saves its light; default viewed.h5")
+        ->type_name("FILE");
+    declare_work(app, arguments, arguments.options.threads);
+}
+
 // -------------------------------------------------------------------------------------------------- parsing
 
 /// The word in quotation marks or after a colon that CLI11 did not expect.
@@ -669,6 +686,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<GenerateArguments>},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
+        {"view", "Shows a solution in a browser, or a scene while it is solved.", "exitance view room.h5",
+         parse_verb<ViewArguments>},
     };
     return all;
 }
@@ -679,7 +698,69 @@ std::string help() {
         "Light in rooms of diffuse surfaces.\n\n"
         "Usage: exitance VERB [options] INPUT...\n\nVerbs:\n";
     for (const Verb& verb : verbs()) text += fmt::format("  {:<12} {}\n", verb.name, verb.does);
-    return text + "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n";
+    return text +
+           "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n"
+           "exitance --man is a manual page, exitance --completion bash a completion for the shell.\n";
+}
+
+/// Every option of a verb: the parser declares them before it meets --help.
+std::vector<std::string> option_names(const Verb& verb) {
+    CLI::App app(verb.does, "exitance " + verb.name);
+    (void)verb.parse(app, {"--help"});
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+/// For bash: source <(exitance --completion bash)
+std::string bash_completion() {
+    std::vector<std::string> names;
+    std::string cases;
+    for (const Verb& verb : verbs()) {
+        names.push_back(verb.name);
+        cases += fmt::format("        {}) words='{}' ;;\n", verb.name, fmt::join(option_names(verb), " "));
+    }
+    return fmt::format(
+        "_exitance() {{\n"
+        "    local word=${{COMP_WORDS[COMP_CWORD]}} words=\n"
+        "    if [[ $COMP_CWORD -eq 1 ]]; then\n"
+        "        COMPREPLY=($(compgen -W '{} --help --version' -- \"$word\"))\n"
+        "        return\n"
+        "    fi\n"
+        "    case ${{COMP_WORDS[1]}} in\n{}    esac\n"
+        "    COMPREPLY=()\n"
+        "    [[ $word == -* ]] && COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
+        "}}\n"
+        "complete -o default -F _exitance exitance\n",
+        fmt::join(names, " "), cases);
+}
+
+/// Lines as they are, for roff.
+std::string verbatim(const std::string& text) {
+    std::string out = ".nf\n";
+    bool begins = true;
+    for (const char c : text) {
+        if (begins && (c == '.' || c == '\'')) out += "\\&";
+        if (c == '\\') out += '\\';
+        if (c == '-') out += '\\';
+        out += c, begins = c == '\n';
+    }
+    return out + (begins ? "" : "\n") + ".fi\n";
+}
+
+/// exitance --man | man -l -
+std::string man_page() {
+    std::string text = fmt::format(
+        ".TH EXITANCE 1 \"\" \"exitance {}\"\n.SH NAME\nexitance \\- light in rooms of diffuse surfaces\n"
+        ".SH SYNOPSIS\n.B exitance\n.I VERB\n[options]\n.I INPUT...\n",
+        EXITANCE_VERSION);
+    for (const Verb& verb : verbs()) {
+        CLI::App app(fmt::format("{}\n\nExample: {}", verb.does, verb.example), "exitance " + verb.name);
+        const Result<Parsed> parsed = verb.parse(app, {"--help"});
+        text += fmt::format(".SH {}\n", verb.name) + verbatim(std::get<Information>(*parsed).text);
+    }
+    return text;
 }
 
 Error unknown_verb(const std::string& word) {
@@ -699,6 +780,11 @@ Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
     if (first == "--help" || first == "-h" || first == "help") return Parsed(Information{help()});
     if (first == "--version")
         return Parsed(Information{fmt::format("exitance {}\n{}\n", EXITANCE_VERSION, EXITANCE_LIBRARIES)});
+    if (first == "--man") return Parsed(Information{man_page()});
+    if (first == "--completion") {
+        if (arguments.size() == 2 && arguments[1] == "bash") return Parsed(Information{bash_completion()});
+        return Error{ErrorCode::usage, "is there for bash", "--completion", "source <(exitance --completion bash)"};
+    }
     const auto verb = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == first; });
     if (verb == verbs().end()) return unknown_verb(first);
     CLI::App app(fmt::format("Example:\n  {}\n\n{}", verb->example, verb->does), "exitance " + verb->name);

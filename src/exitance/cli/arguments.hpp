@@ -90,6 +90,7 @@ struct RenderArguments : CommonArguments {
     std::size_t gather = 0;    ///< Rays of a final gather at each of them.
     bool mesh = false;         ///< With the elements' edges.
     bool shadow_classes = false;
+    std::string path;          ///< A camera a row, for numbered pictures; empty: one picture.
     int threads = 0;
 };
 
@@ -138,10 +139,19 @@ struct ViewFactorArguments : CommonArguments {
     int threads = 0;
 };
 
+struct ViewArguments : CommonArguments {
+    SceneArguments scene;  ///< Or a solution (.h5).
+    int port = 0;          ///< 0: any that is free.
+    double error = 0.02;   ///< Asked for, of a scene.
+    SolveOptions options;  ///< Method and threads.
+    std::string save = "viewed.h5";
+};
+
 /// What the program is to do.
-using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
-                             RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments,
-                             GenerateArguments, ViewFactorArguments>;
+using Command =
+    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
+                 BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
+                 ViewFactorArguments, ViewArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

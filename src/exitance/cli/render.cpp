@@ -35,6 +35,10 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
     if (a.false_colour && a.shadow_classes)
         return usage("shows classes, --false-colour values, and a pixel has one colour", "--shadow-classes",
                      "make a picture of each");
+    if (!a.path.empty() && (a.camera || !a.camera_name.empty() || a.projection != Projection::perspective))
+        return usage("has cameras of its own, in perspective", "--path", "leave --camera and --projection out");
+    if (!a.path.empty() && (a.false_colour || a.isolux) && !a.scale.range)
+        return usage("needs one scale for all pictures", "--path", "add --scale LO,HI");
     if (a.gather > 0 && (!std::has_single_bit(a.gather) || a.gather > 1 << 20))
         return usage(fmt::format("{} is not a power of two from 4 to 1048576", a.gather), "--gather", "");
     const double most = a.projection == Projection::fisheye ? 360 : 170;
@@ -99,6 +103,37 @@ Result<void> write_linear(const RenderArguments& arguments, const Camera& camera
                                               : write_hdr(arguments.output, image, facts);
 }
 
+Result<void> write_picture(const RenderArguments& arguments, const RadiosityFunction& light, const Camera& camera,
+                           const Picture& picture, Terminal& terminal) {
+    return ending(arguments.output) == ".png" ? write_display(arguments, light, camera, picture, terminal)
+                                              : write_linear(arguments, camera, picture);
+}
+
+/// "walk.png" as "walk.0012.png".
+std::string numbered(const std::string& output, std::size_t number) {
+    const std::string end = ending(output);
+    return fmt::format("{}.{:04}{}", output.substr(0, output.size() - end.size()), number, end);
+}
+
+/// A picture a camera, all with the exposure of the first.
+ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>& cameras,
+                     const RadiosityFunction& light, Terminal& terminal) {
+    const StopRequest stop;
+    RenderArguments frame = arguments;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        PictureOptions options{cameras[i], arguments.size, static_cast<int>(arguments.samples)};
+        options.gather = static_cast<unsigned>(arguments.gather);
+        const Picture picture = take_picture(light, options, terminal.progress(), stop);
+        if (!frame.exposure_scale) frame.exposure_scale = automatic_exposure(picture) * std::exp2(arguments.exposure);
+        frame.output = numbered(arguments.output, i + 1);
+        const Result<void> written = write_picture(frame, light, cameras[i], picture, terminal);
+        if (!written) return terminal.fail(written.error());
+    }
+    terminal.progress().finish();
+    terminal.note(fmt::format("{} pictures with --exposure {:.4g}x", cameras.size(), *frame.exposure_scale));
+    return ExitCode::done;
+}
+
 }  // namespace
 
 /// exitance render SOLUTION -o PICTURE
@@ -114,6 +149,10 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
                                    "--shadow-classes", "solve with --method discontinuity"});
 
     const RadiosityFunction light(*solution);
+    if (!arguments.path.empty()) {
+        const Result<std::vector<Camera>> cameras = load_camera_path(arguments.path);
+        return cameras ? render_path(arguments, *cameras, light, terminal) : terminal.fail(cameras.error());
+    }
     const Result<Camera> camera = choose_camera(arguments, light);
     if (!camera) return terminal.fail(camera.error());
     if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(*camera)));
@@ -122,9 +161,7 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     const bool shows_light = !arguments.shadow_classes || arguments.isolux;
     const Picture picture = shows_light ? take_picture(light, options, terminal.progress(), stop) : Picture{};
     terminal.progress().finish();
-    const Result<void> written = ending(arguments.output) == ".png"
-                                     ? write_display(arguments, light, *camera, picture, terminal)
-                                     : write_linear(arguments, *camera, picture);
+    const Result<void> written = write_picture(arguments, light, *camera, picture, terminal);
     return written ? ExitCode::done : terminal.fail(written.error());
 }
 

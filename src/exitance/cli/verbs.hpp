@@ -19,5 +19,6 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal);
 ExitCode run(const CheckArguments& arguments, Terminal& terminal);
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
+ExitCode run(const ViewArguments& arguments, Terminal& terminal);
 
 }  // namespace exitance

@@ -267,7 +267,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
             std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
     };
     // Where elements are many, the first of them are to know what they may leave, too.
-    const bool estimates = active.size() > few && stage.direct.beams().empty();
+    const bool estimates = active.size() > few && !stage.scene.has_light_apart();
     double share = estimates ? share_of(estimated_flux(stage, out.tree, active, options.seed, stop)) : 0;
     std::vector<double> share_in;               // of the rooms, where there are several
     const auto allowed_on = [&](ElementId e) {  // (W/m^2)^2 m^2

@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <optional>
+#include <sstream>
+#include <thread>
+
+#include "exitance/cli/json_output.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/cli/view_events.hpp"
+#include "exitance/cli/view_server.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/export/viewer_data.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/methods/solve_scene.hpp"
+#include "exitance/reconstruct/pictures/automatic_camera.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+using Parameters = ViewServer::Parameters;
+
+/// A solution that the page looks at, and what is made of it once.
+struct Viewed {
+    explicit Viewed(Solution found)
+        : solution(std::move(found)),
+          light(solution),
+          camera(automatic_camera(solution, light.stage().tracer, Projection::perspective, {})) {}
+    Solution solution;
+    RadiosityFunction light;
+    Camera camera;
+};
+
+/// All solutions that were there, the newest last: requests under way go on with theirs.
+class Gallery {
+  public:
+    std::size_t add(Solution solution) {
+        auto fresh = std::make_unique<Viewed>(std::move(solution));
+        const std::lock_guard lock(mutex_);
+        all_.push_back(std::move(fresh));
+        return all_.size();
+    }
+    const Viewed* newest() const {
+        const std::lock_guard lock(mutex_);
+        return all_.empty() ? nullptr : all_.back().get();
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::deque<std::unique_ptr<Viewed>> all_;
+};
+
+std::string text_of(const Parameters& parameters, const std::string& name) {
+    const auto found = parameters.find(name);
+    return found == parameters.end() ? "" : found->second;
+}
+
+/// Finite numbers between commas; none where there are not `count` of them.
+std::optional<std::vector<double>> numbers_of(const Parameters& parameters, const std::string& name,
+                                              std::size_t count) {
+    std::istringstream in(text_of(parameters, name));
+    std::vector<double> out;
+    for (std::string word; std::getline(in, word, ',');) {
+        char* end = nullptr;
+        const double x = std::strtod(word.c_str(), &end);
+        if (word.empty() || *end != 0 || !(std::abs(x) < 1e12)) return std::nullopt;
+        out.push_back(x);
+    }
+    if (out.size() != count) return std::nullopt;
+    return out;
+}
+
+const ViewAnswer bad{400, "text/plain", "not understood"}, absent{404, "text/plain", "there is no light yet"};
+
+/// Requests that read the newest solution.
+void serve_light(ViewServer& server, const Gallery& gallery) {
+    const auto with_light = [&gallery](auto answer) {
+        return [&gallery, answer](const Parameters& parameters) {
+            const Viewed* viewed = gallery.newest();
+            return viewed ? answer(*viewed, parameters) : absent;
+        };
+    };
+    server.get("/data/scene", with_light([](const Viewed& v, const Parameters&) {
+                   return ViewAnswer{200, "application/json", viewer_scene_json(v.light, v.camera)};
+               }));
+    server.get("/data/part", with_light([](const Viewed& v, const Parameters& parameters) {
+                   const std::string name = text_of(parameters, "layer");
+                   const auto part = numbers_of(parameters, "part", 1);
+                   const ViewerLayer layer = name == "method" ? ViewerLayer::method : ViewerLayer::exported;
+                   if ((name != "method" && name != "exported") || !part || (*part)[0] < 0 ||
+                       (*part)[0] >= static_cast<double>(viewer_part_count(v.solution, layer)))
+                       return bad;
+                   return ViewAnswer{200, "application/octet-stream",
+                                     viewer_part(v.solution, layer, static_cast<std::size_t>((*part)[0]))};
+               }));
+    server.get("/data/point", with_light([](const Viewed& v, const Parameters& parameters) {
+                   const auto at = numbers_of(parameters, "at", 6);
+                   if (!at) return bad;
+                   const std::vector<double>& n = *at;
+                   const Vec3 normal{n[3], n[4], n[5]};
+                   if (!(norm(normal) > 0)) return bad;
+                   return ViewAnswer{200, "application/json",
+                                     viewer_point_json(v.light, {{n[0], n[1], n[2]}, normalized(normal)})};
+               }));
+    server.get("/data/line", with_light([](const Viewed& v, const Parameters& parameters) {
+                   constexpr std::size_t points = 129;
+                   const auto at = numbers_of(parameters, "at", 9);
+                   if (!at) return bad;
+                   const std::vector<double>& n = *at;
+                   const Vec3 normal{n[6], n[7], n[8]};
+                   if (!(norm(normal) > 0)) return bad;
+                   return ViewAnswer{
+                       200, "application/json",
+                       viewer_line_json(v.light, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, normalized(normal), points)};
+               }));
+}
+
+/// A solve that shows its light as it converges: rounds of falling error, each a solution that can be looked at.
+class RunningSolve {
+  public:
+    RunningSolve(const ViewArguments& arguments, Scene scene, Gallery& gallery, Terminal& terminal)
+        : arguments_(arguments), scene_(std::move(scene)), gallery_(gallery), progress_(events_, terminal.progress()) {}
+
+    void serve(ViewServer& server) {
+        server.events("/data/events",
+                      [this](std::size_t& next, std::string& text) { return events_.wait(next, text); });
+        server.post("/data/stop", [this](const Parameters&) {
+            stop_.interrupt();
+            return ViewAnswer{200, "text/plain", "stopping"};
+        });
+        server.post("/data/save", [this](const Parameters&) { return save(); });
+    }
+
+    void run() {
+        constexpr double coarse = 0.32, ratio = 0.4;  // a round takes several times as long as the one before
+        std::string message = "done";
+        for (double error = std::max(coarse, arguments_.error); !stop_.requested(); error *= ratio) {
+            SolveOptions options = arguments_.options;
+            options.error = std::max(error, arguments_.error);
+            progress_.set_round(fmt::format("to {:.3g}%: ", 100 * *options.error));
+            Result<Solution> solution = solve_scene(scene_, options, progress_, stop_);
+            if (!solution) {
+                message = solution.error().message;
+                break;
+            }
+            if (stop_.requested() && !solution->statistics.relative_error_estimate && gallery_.newest()) break;
+            solution->options = options_json(options);
+            const std::size_t count = gallery_.add(std::move(*solution));
+            events_.tell("light", fmt::format(R"({{"count": {}}})", count));
+            if (*options.error <= arguments_.error) break;
+        }
+        std::replace_if(
+            message.begin(), message.end(), [](char c) { return c == '"' || c == '\\' || (c >= 0 && c < ' '); }, '\'');
+        events_.end(fmt::format(R"({{"message": "{}"}})", stop_.requested() ? "stopped" : message));
+    }
+
+  private:
+    ViewAnswer save() {
+        const Viewed* viewed = gallery_.newest();
+        if (!viewed) return absent;
+        const Result<void> written = write_solution(arguments_.save, viewed->solution);
+        if (!written) return {500, "text/plain", written.error().message};
+        return {200, "text/plain", "saved as " + arguments_.save};
+    }
+
+    const ViewArguments& arguments_;
+    Scene scene_;
+    Gallery& gallery_;
+    ViewEvents events_;
+    ViewProgress progress_;
+    StopRequest stop_;
+};
+
+/// Listens, tells where, and answers until a signal ends the program.
+ExitCode serve(ViewServer& server, const ViewArguments& arguments, RunningSolve* running, Terminal& terminal) {
+    const Result<int> port = server.bind(arguments.port);
+    if (!port) return terminal.fail(port.error());
+    terminal.print(fmt::format("http://127.0.0.1:{}/", *port));
+    std::fflush(stdout);
+    terminal.note(fmt::format("open http://127.0.0.1:{}/ in a browser; Ctrl+C ends the viewer", *port));
+    std::jthread solver;
+    if (running) solver = std::jthread([running] { running->run(); });
+    server.listen();
+    return ExitCode::done;
+}
+
+}  // namespace
+
+/// exitance view SOLUTION, exitance view SCENE
+ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
+    const Result<std::string> page = find_viewer_page();
+    if (!page) return terminal.fail(page.error());
+    set_threads(arguments.options.threads);
+    Gallery gallery;
+    ViewServer server;
+    if (const Result<void> read = server.serve_page(*page); !read) return terminal.fail(read.error());
+    serve_light(server, gallery);
+    const bool solves = arguments.scene.files.size() > 1 || !arguments.scene.files[0].ends_with(".h5");
+    server.get("/data/state", [solves](const Parameters&) {
+        return ViewAnswer{200, "application/json", solves ? R"({"solving": true})" : R"({"solving": false})"};
+    });
+    if (!solves) {
+        Result<Solution> solution = load_solution(arguments.scene.files[0]);
+        if (!solution) return terminal.fail(solution.error());
+        gallery.add(std::move(*solution));
+        return serve(server, arguments, nullptr, terminal);
+    }
+    CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
+    terminal.show(checked.findings);
+    if (!checked.scene) return terminal.fail(checked);
+    RunningSolve running(arguments, std::move(*checked.scene), gallery, terminal);
+    running.serve(server);
+    return serve(server, arguments, &running, terminal);
+}
+
+}  // namespace exitance

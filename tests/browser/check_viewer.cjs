@@ -1,0 +1,99 @@
+// Called by scripts/check_viewer, which says what it does.
+const fs = require('fs'), path = require('path');
+const {execFileSync, spawn} = require('child_process');
+const {chromium} = require('playwright-core');
+const {EXITANCE: exitance, SOLUTION: solution, SCENE: scene, WORK: folder} = process.env;
+const size = [640, 400];
+let failed = 0;
+const programs = [];
+process.on('exit', () => programs.forEach(p => p.kill()));
+
+function check(good, words) {
+    console.log(`${good ? 'ok' : 'FAILED'}: ${words}`);
+    if (!good) ++failed;
+}
+
+/** The program showing something, once it tells where. */
+function start(...words) {
+    const program = spawn(exitance, ['view', ...words, '-q'], {stdio: ['ignore', 'pipe', 'inherit'], cwd: folder});
+    programs.push(program);
+    return new Promise((done, fail) => {
+        program.stdout.once('data', data => done({program, origin: String(data).trim()}));
+        program.once('exit', code => fail(new Error(`view ended with ${code}`)));
+    });
+}
+
+/** Mean difference as a share of white, right of the panel, where nothing is drawn over the picture. */
+async function difference(page, a, b) {
+    return page.evaluate(async ([a, b]) => {
+        const pixels = async url => {
+            const image = new Image();
+            image.src = url;
+            await image.decode();
+            const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+            context.drawImage(image, 0, 0);
+            return context.getImageData(0, 0, image.width, image.height).data;
+        };
+        const [p, q] = [await pixels(a), await pixels(b)];
+        let sum = 0;
+        for (let i = 0; i < p.length; ++i) if (i % 4 < 3) sum += Math.abs(p[i] - q[i]) / 255;
+        return p.length === q.length ? sum / (0.75 * p.length) : 1;
+    }, [a, b]);
+}
+
+async function check_solution(page) {
+    const {program, origin} = await start(solution);
+    const begin = Date.now(), foreign = [];
+    page.on('request', r => { if (!r.url().startsWith(origin) && !/^(data|blob):/.test(r.url())) foreign.push(r.url()); });
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.first');
+    console.log(`first picture ${Date.now() - begin} ms after the page was asked for`);
+    await page.waitForFunction('document.body.dataset.ready');
+    const [words, exposure] = await page.evaluate(() => [exitance.words(), exitance.exposure()]);
+    const picture = path.join(folder, 'render.png');
+    execFileSync(exitance, ['render', solution, '-o', picture, '--size', size.join('x'), '--camera', words,
+        '--exposure', exposure + 'x', '--tone-map', 'filmic', '-q']);
+    const shown = await page.evaluate(() => exitance.canvas());
+    if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, 'viewer.png'), Buffer.from(shown.split(',')[1], 'base64'));
+    const apart = await difference(page, shown, 'data:image/png;base64,' + fs.readFileSync(picture).toString('base64'));
+    check(apart < 0.03, `differs from render by ${(100 * apart).toFixed(2)}% of white on average (3% allowed)`);
+    await page.mouse.click(size[0] * 0.75, size[1] * 0.75);
+    await page.waitForFunction(() => /element/.test(document.getElementById('point').textContent), null, {timeout: 10000});
+    check(true, 'picks: ' + (await page.textContent('#point')).replaceAll('\n', '; ').slice(0, 120));
+    await page.selectOption('#quantity', 'irradiance');
+    check(await page.isVisible('#legend') && /W\/m²|lx/.test(await page.textContent('#legend')), 'a legend with units');
+    await page.focus('#picture');
+    await page.keyboard.press('m');
+    check(await page.isChecked('#mesh'), 'the keyboard shows the mesh');
+    await page.keyboard.press('f');
+    check(/^#camera=/.test(await page.evaluate('location.hash')), 'the camera stands in the address');
+    const unnamed = await page.evaluate(() => [...document.querySelectorAll('button, input, select, canvas, svg')]
+        .filter(e => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim())).length);
+    check(unnamed === 0, `${unnamed} controls without a name`);
+    check(foreign.length === 0, `${foreign.length} calls elsewhere`);
+    program.kill();
+}
+
+async function check_scene(page) {
+    const {program, origin} = await start(scene, '--error', '0.1', '--save', path.join(folder, 'saved.h5'));
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.first', null, {timeout: 120000});
+    await page.waitForFunction('document.body.dataset.ended', null, {timeout: 120000});
+    const snapshots = Number(await page.evaluate('document.body.dataset.snapshots'));
+    check(snapshots >= 2, `a running solve showed its light ${snapshots} times`);
+    await page.click('#save');
+    await page.waitForFunction(() => /saved/.test(document.getElementById('phase').textContent));
+    check(fs.existsSync(path.join(folder, 'saved.h5')), 'its light is saved');
+    program.kill();
+}
+
+(async () => {
+    const browser = await chromium.launch({executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
+        args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']});
+    const page = await browser.newPage({viewport: {width: size[0], height: size[1]}, bypassCSP: true});
+    page.on('pageerror', error => check(false, 'page: ' + error));
+    await check_solution(page);
+    if (scene) await check_scene(page);
+    await browser.close();
+    process.exit(failed > 0 ? 1 : 0);
+})().catch(error => { console.log('FAILED: ' + error); process.exit(1); });
