@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 
+#include "exitance/cli/classical_solve.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/summary.hpp"
@@ -159,6 +160,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     SolveArguments arguments = given;
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
+    if (const Result<void> obeyed = check_classical(arguments); !obeyed) return terminal.fail(obeyed.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
     if (const Result<void> ending = check_ending(arguments.output); !ending) return terminal.fail(ending.error());
@@ -190,14 +192,16 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
 
     Result<std::optional<CheckpointFile>> checkpoint = open_checkpoint(arguments, *checked.scene, terminal);
     if (!checkpoint) return terminal.fail(checkpoint.error());
-    Result<Solution> solution =
-        solve_scene(*checked.scene, arguments.options, tracing.progress(), stop, *checkpoint ? &**checkpoint : nullptr);
+    const bool is_classical = arguments.classical.any();
+    Result<Solution> solution = is_classical ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
+                                             : solve_scene(*checked.scene, arguments.options, tracing.progress(), stop,
+                                                           *checkpoint ? &**checkpoint : nullptr);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
     if (!solution && signals.received()) return *signals.received();
     if (!solution) return terminal.fail(solution.error());
 
     SolveStatistics& statistics = solution->statistics;
-    solution->options = options_json(arguments.options);
+    if (!is_classical) solution->options = options_json(arguments.options);
     add_findings(statistics.warnings, checked.findings, checked.scene->file());
     statistics.seconds["read"] = read_seconds;
     statistics.seconds["total"] = run_time.seconds();
@@ -219,7 +223,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
 
     if (arguments.json) {
-        terminal.print(statistics_json(statistics));
+        terminal.print(statistics_json(*solution));
     } else if (!arguments.quiet) {
         terminal.print(summary(statistics));
     }
