@@ -14,6 +14,14 @@ constexpr double default_least_share = 1.0 / 65536;
 constexpr std::size_t default_memory = std::size_t(1) << 32;  // of links, bytes
 constexpr std::size_t most_rounds = 200;                      // of refinement and gathering; a safeguard
 
+/// Into quarters; a parallelogram much longer than wide across its length, so that elements come to be as long as wide.
+Cut way_to_cut(const Patch& patch) {
+    constexpr double long_ratio = 1.5;
+    const double a = norm(patch.a), b = norm(patch.b);
+    if (patch.is_triangle() || std::max(a, b) <= long_ratio * std::min(a, b)) return Cut::both;
+    return a > b ? Cut::u : Cut::v;
+}
+
 struct Link {
     ElementId source;
     float share = 1;  ///< What of it is visible.
@@ -121,7 +129,7 @@ void LinkedElements::set_light(ElementId e) {
 bool LinkedElements::may_cut(ElementId e) const {
     if (!tree_.is_leaf(e)) return true;
     const Patch& patch = tree_.patch(e);
-    if (patch.area() / 4 < least_area_) return false;
+    if (patch.area() / (way_to_cut(patch) == Cut::both ? 4 : 2) < least_area_) return false;
     const double edge = std::max({norm(patch.a), norm(patch.b), patch.is_triangle() ? norm(patch.a - patch.b) : 0.0});
     return edge > longest_edge_ * (1 + 1e-9);
 }
@@ -129,11 +137,11 @@ bool LinkedElements::may_cut(ElementId e) const {
 /// Children begin with their parent's light.
 void LinkedElements::cut(ElementId e) {
     if (!tree_.is_leaf(e)) return;
-    tree_.split(e, Cut::both);
+    tree_.split(e, way_to_cut(tree_.patch(e)));
     grow();
     std::size_t i = 0;
     for (ElementId child : tree_.children(e)) {
-        const auto push = basis_.push(tree_.patch(e).shape, Cut::both, i++);
+        const auto push = basis_.push(tree_.patch(e).shape, tree_.way(e), i++);
         set_light(child);
         for (std::size_t k = 0; k < n_; ++k) {
             Spectrum b = rhs_[child][k];
@@ -145,7 +153,9 @@ void LinkedElements::cut(ElementId e) {
 
 /// F_eps: the larger form factor of the two. BF_eps: F_pq A_p B_q, W in the brightest band [Hanrahan91].
 double LinkedElements::strength(ElementId receiver, ElementId source) const {
-    const double F = kernel_.unoccluded(tree_, receiver, source);
+    // From either middle; by reciprocity both are the same number, of which one misses what lies near an end.
+    const double F = std::max(kernel_.unoccluded(tree_, receiver, source),
+                              kernel_.unoccluded(tree_, source, receiver) * tree_.area(source) / tree_.area(receiver));
     if (input_.options.oracle == LinkOracle::form_factor)
         return std::max(F, F * tree_.area(receiver) / tree_.area(source));
     const auto nodes = basis_.nodes(tree_.patch(source).shape);
@@ -272,7 +282,7 @@ double LinkedElements::gather() {
     for (ElementId p : tree_.ids()) {  // push
         std::size_t i = 0;
         for (ElementId child : tree_.children(p)) {
-            const auto push = basis_.push(tree_.patch(p).shape, Cut::both, i++);
+            const auto push = basis_.push(tree_.patch(p).shape, tree_.way(p), i++);
             for (std::size_t k = 0; k < n_; ++k)
                 for (std::size_t j = 0; j < n_; ++j) E_[child][k] += push[k * n_ + j] * E_[p][j];
         }
@@ -294,7 +304,7 @@ double LinkedElements::gather() {
         std::vector<Spectrum> b(n_);
         std::size_t c = 0;
         for (ElementId child : tree_.children(p)) {
-            const auto pull = basis_.pull(tree_.patch(p).shape, Cut::both, c++);
+            const auto pull = basis_.pull(tree_.patch(p).shape, tree_.way(p), c++);
             for (std::size_t j = 0; j < n_; ++j)
                 for (std::size_t k = 0; k < n_; ++k) b[j] += pull[j * n_ + k] * B_[child][k];
         }
