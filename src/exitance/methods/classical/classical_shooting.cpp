@@ -108,7 +108,7 @@ class Shooting {
     std::vector<std::vector<float>> kept_, kept_at_vertices_;
     std::size_t kept_bytes_ = 0, shots_ = 0;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
-    double first_power_ = 0, left_ = 1;
+    double first_power_ = 0;
 };
 
 void Shooting::cut(ElementId e) {
@@ -328,7 +328,6 @@ SolveReport Shooting::run() {
     for (;;) {
         const std::size_t left = shots_;
         report = shoot_once();
-        left_ = report.residual;
         if (report.iterations > 0) {
             ++shots_;
             if (during) refine();
