@@ -88,7 +88,6 @@ TEST(ProgramTaskEngine, RefusesOptionsThatItDoesNotObey) {
         EXPECT_NE(run.err.find(more[0]), std::string::npos) << run.err;
     }
     EXPECT_EQ(run_program({"solve", write_small_room(folder), "-o", folder / "x.h5", "--task-engine"}).status, 2);
-    EXPECT_EQ(run_program({"solve", write_small_room(folder), "-o", folder / "x.h5", "--threshold", "1"}).status, 2);
 }
 
 }  // namespace exitance::test

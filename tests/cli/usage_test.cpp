@@ -74,7 +74,7 @@ TEST(ProgramUsage, ValuesOutOfRangeAreUsageErrorsThatNameTheOptionAndTheValue) {
         {"--error", "-1"},        {"--error", "nan"},    {"--error", "0"},          {"--error", "two"},
         {"--mesh-size", "0"},     {"--bounces", "1.5"},  {"--bounces", "-1"},       {"--method", "matrx"},
         {"--basis", "cubic"},     {"--threads", "0"},    {"--max-iterations", "0"}, {"--time-limit", "0"},
-        {"--memory-limit", "4X"}, {"--seed", "-3"},      {"--visibility", "yes"},   {"--relaxation", "sor"},
+        {"--memory-limit", "4X"}, {"--seed", "-3"},      {"--visibility", "yes"},   {"--relaxation", "sors"},
         {"--progress", "loudly"}, {"--min-area", "inf"}, {"--residual", "1e-3x"},   {"--memory-limit", "0"},
     };
     for (const std::vector<std::string>& option : cases) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "exitance/cli/classical_arguments.hpp"
 #include "exitance/cli/nearest.hpp"
 
 namespace exitance {
@@ -275,7 +276,6 @@ void declare_accuracy(CLI::App& app, SolveOptions& o) {
 
 void declare_method(CLI::App& app, SolveArguments& arguments) {
     SolveOptions& o = arguments.options;
-    add_choice(app, "--relaxation", relaxation_names, o.relaxation, "How the system is solved")->group("Method");
     app.add_flag("--overshooting", o.overshooting, "Shoot ahead what will come back")->group("Method");
     add_choice(app, "--visibility", visibility_names, o.visibility, "Default auto")->group("Method");
     add_count(app, "--visibility-samples", o.visibility_samples, 1, "Rays a pair of elements")->group("Method");
@@ -302,12 +302,8 @@ void declare_method(CLI::App& app, SolveArguments& arguments) {
     add_choice(app, "--oracle", oracle_names, o.oracle,
                "By what links are cut: error of what they bring (default), form factor, or power")
         ->group("Method");
-    add_positive(app, "--threshold", o.threshold, "X", "Of the oracles ff (no unit) and bf (W in the brightest band)")
-        ->group("Method");
     app.add_flag("--task-engine", o.task_engine,
                  "With --method hierarchical: as tasks that make tasks, the light of emitters through links, too")
-        ->group("Method");
-    add_choice(app, "--form-factors", form_factor_names, o.form_factors, "Where a method has the choice")
         ->group("Method");
     add_choice(app, "--gcs", cells_names, o.gcs,
                "Growing cells as published, all light through the networks, or improved (default)")
@@ -315,6 +311,22 @@ void declare_method(CLI::App& app, SolveArguments& arguments) {
     add_count(app, "--max-units", o.max_units, 8, "Of each network of growing cells")->group("Method");
     add_count(app, "--hemicube-cells", o.hemicube_cells, 2, "Along an edge of a hemicube's top, even")->group("Method");
     add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");
+}
+
+/// Options of methods in the form of their papers, which `classical_arguments` reads.
+void declare_classical(CLI::App& app, SolveArguments& arguments) {
+    for (const ClassicalArgument& option : classical_arguments()) {
+        const auto read = [&arguments, &option](const std::string& word) {
+            if (const std::string wrong = option.read(word, arguments); !wrong.empty())
+                throw CLI::ValidationError(option.name, wrong);
+        };
+        CLI::Option* const declared =
+            option.type.empty()
+                ? app.add_flag_callback(
+                      option.name, [read] { read(""); }, option.help)
+                : app.add_option_function<std::string>(option.name, read, option.help)->type_name(option.type);
+        declared->group(option.group);
+    }
 }
 
 void declare_limits(CLI::App& app, SolveArguments& arguments) {
@@ -355,6 +367,7 @@ void declare(CLI::App& app, SolveArguments& arguments) {
         ->type_name("N|all");
     declare_accuracy(app, o);
     declare_method(app, arguments);
+    declare_classical(app, arguments);
     declare_limits(app, arguments);
     declare_json(app, arguments);
     declare_work(app, arguments, o.threads);

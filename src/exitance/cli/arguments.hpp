@@ -13,6 +13,7 @@
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/methods/classical/classical_options.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/solve/solve_options.hpp"
 
@@ -38,6 +39,7 @@ struct SolveArguments : CommonArguments {
     SceneArguments scene;
     std::string output;
     SolveOptions options;
+    ClassicalOptions classical;
     std::optional<double> time_limit;        ///< Of the whole run, seconds.
     std::string importance;                  ///< Points that light is looked at; empty: everywhere.
     std::string trace;                       ///< Where to write what parallel loops did; empty: nowhere.

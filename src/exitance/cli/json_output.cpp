@@ -108,6 +108,27 @@ std::string statistics_json(const SolveStatistics& s) {
     return dump(json, 2);
 }
 
+std::string statistics_json(const Solution& solution) {
+    Json json = Json::parse(statistics_json(solution.statistics));
+    const Json options = Json::parse(solution.options, nullptr, false);
+    const Json* facts = nullptr;
+    if (options.is_object() && options.contains("classical")) {
+        const Json& classical = options["classical"];
+        if (classical.is_object() && classical.contains("facts")) facts = &classical["facts"];
+    }
+    const std::string& method = solution.statistics.method;
+    const bool is_linked = method == "hierarchical" || method == "wavelet";
+    const Json oracle = options.is_object() && options.contains("oracle") ? options["oracle"] : Json(nullptr);
+    Json own{{"direct", solution.direct_in_elements ? "carried" : "apart"},
+             {"mesh_kind", "aligned"},
+             {"links_found_by", is_linked ? oracle : Json("none")},
+             {"initial_links", nullptr},
+             {"coefficient_memory_bytes", solution.statistics.element_memory_bytes}};
+    for (const auto& [name, value] : own.items())
+        json[name] = facts && facts->is_object() && facts->contains(name) ? (*facts)[name] : value;
+    return dump(json, 2);
+}
+
 std::string forecast_json(const Forecast& f) {
     const Json json{
         {"surfaces", f.surfaces},
@@ -152,6 +173,34 @@ std::string options_json(const SolveOptions& o) {
         {"keep_links", o.keep_links},
         {"seed", o.seed},
     };
+    return dump(json, -1);
+}
+
+std::string options_json(const SolveOptions& options, const ClassicalOptions& c, const ClassicalFacts& facts) {
+    Json json = Json::parse(options_json(options));
+    json["classical"] = {
+        {"direct", name_or_null(classical_direct_names, c.direct)},
+        {"mesh", name_or_null(mesh_kind_names, c.mesh)},
+        {"gather", value_or_null(c.gather)},
+        {"certify", value_or_null(c.certify)},
+        {"threshold", value_or_null(c.threshold)},
+        {"multigrid", value_or_null(c.multigrid)},
+        {"kernel", name_or_null(transfer_kernel_names, c.kernel)},
+        {"refine_gradient", value_or_null(c.refine_gradient)},
+        {"refine", name_or_null(refine_when_names, c.refine)},
+        {"relaxation", name_or_null(classical_relaxation_names, c.relaxation)},
+        {"sor_factor", value_or_null(c.sor_factor)},
+        {"form_factors", name_or_null(shooting_receiver_names, c.receivers)},
+        {"ambient", c.ambient},
+    };
+    if (!facts.direct.empty())
+        json["classical"]["facts"] = {
+            {"direct", facts.direct},
+            {"mesh_kind", facts.mesh_kind},
+            {"links_found_by", facts.links_found_by},
+            {"initial_links", facts.initial_links},
+            {"coefficient_memory_bytes", facts.coefficient_memory_bytes},
+        };
     return dump(json, -1);
 }
 

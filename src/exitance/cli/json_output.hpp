@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "exitance/methods/classical/classical.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/reconstruct/solution.hpp"
@@ -16,14 +17,20 @@ namespace exitance {
 /// The one place where the program writes JSON. Every function returns text without a line end; the names and the
 /// order of the keys are part of the program's interface.
 
-/// `solve --json` and `stats --json`.
+/// What a report page holds of `stats --json`.
 std::string statistics_json(const SolveStatistics& statistics);
+
+/// `solve --json` and `stats --json`: the same, with what kind of mesh, links and direct light the solution has.
+std::string statistics_json(const Solution& solution);
 
 /// `solve --dry-run --json`.
 std::string forecast_json(const Forecast& forecast);
 
 /// The options in force, as the solution records them: what the light depends on, and hence neither threads nor limits.
 std::string options_json(const SolveOptions& options);
+
+/// The same of a classical form, with what it took (`ClassicalFacts`).
+std::string options_json(const SolveOptions& options, const ClassicalOptions& classical, const ClassicalFacts& facts);
 
 /// The same one by one, with the memory limit: what a checkpoint is of. Values as JSON.
 std::vector<std::pair<std::string, std::string>> option_facts(const SolveOptions& options);

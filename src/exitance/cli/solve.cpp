@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
+#include "exitance/cli/classical_solve.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/summary.hpp"
@@ -179,9 +181,13 @@ ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) 
 ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     SolveArguments arguments = given;
-    if (const Result<void> engine = check_task_engine(given); !engine) return terminal.fail(engine.error());
+    // The engine of tasks reads the threshold that classical forms read.
+    if (given.options.task_engine)
+        arguments.options.threshold = std::exchange(arguments.classical.threshold, std::nullopt);
+    if (const Result<void> engine = check_task_engine(arguments); !engine) return terminal.fail(engine.error());
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
     if (const Result<void> sky = read_sky(arguments); !sky) return terminal.fail(sky.error());
+    if (const Result<void> obeyed = check_classical(arguments); !obeyed) return terminal.fail(obeyed.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
     if (const Result<void> ending = check_ending(arguments.output); !ending) return terminal.fail(ending.error());
@@ -213,14 +219,16 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
 
     Result<std::optional<CheckpointFile>> checkpoint = open_checkpoint(arguments, *checked.scene, terminal);
     if (!checkpoint) return terminal.fail(checkpoint.error());
-    Result<Solution> solution =
-        solve_scene(*checked.scene, arguments.options, tracing.progress(), stop, *checkpoint ? &**checkpoint : nullptr);
+    const bool is_classical = arguments.classical.any();
+    Result<Solution> solution = is_classical ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
+                                             : solve_scene(*checked.scene, arguments.options, tracing.progress(), stop,
+                                                           *checkpoint ? &**checkpoint : nullptr);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
     if (!solution && signals.received()) return *signals.received();
     if (!solution) return terminal.fail(solution.error());
 
     SolveStatistics& statistics = solution->statistics;
-    solution->options = options_json(arguments.options);
+    if (!is_classical) solution->options = options_json(arguments.options);
     add_findings(statistics.warnings, checked.findings, checked.scene->file());
     statistics.seconds["read"] = read_seconds;
     statistics.seconds["total"] = run_time.seconds();
@@ -242,7 +250,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
 
     if (arguments.json) {
-        terminal.print(statistics_json(statistics));
+        terminal.print(statistics_json(*solution));
     } else if (!arguments.quiet) {
         terminal.print(summary(statistics));
     }

@@ -8,12 +8,10 @@ namespace exitance {
 
 Result<void> check_task_engine(const SolveArguments& arguments) {
     const SolveOptions& o = arguments.options;
-    if (!o.task_engine) {
-        if (o.threshold)
-            return Error{ErrorCode::usage, "is obeyed by --method hierarchical --task-engine alone", "--threshold",
-                         "--epsilon is the tolerance of all links together"};
-        return {};
-    }
+    if (!o.task_engine) return {};
+    if (arguments.classical.any())
+        return Error{ErrorCode::usage, "is a classical form of its own: of their options it takes --threshold alone",
+                     "--task-engine", "leave --task-engine or the others out"};
     if (o.method != Method::hierarchical)
         return Error{ErrorCode::usage, "is a form of --method hierarchical", "--task-engine",
                      "exitance solve SCENE -o S.h5 --method hierarchical --task-engine"};

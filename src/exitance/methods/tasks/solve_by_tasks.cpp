@@ -109,7 +109,7 @@ TaskOptions task_options(const Scene& scene, const SolveOptions& options) {
 
 Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options, Progress& progress,
                                 const StopRequest& stop) {
-    if (!scene.lights().empty() || scene.has_directed_emission())
+    if (scene.has_light_apart() || !scene.panes().empty() || scene.has_directed_emission())
         return Error{ErrorCode::bad_input, "has lights without extent, or that are not diffuse", scene.file(),
                      "--task-engine carries light between diffuse patches alone: leave it out"};
     const Stopwatch watch;

@@ -1,0 +1,243 @@
+#include "exitance/methods/classical/classical.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/reconstruct/radiosity_function.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+struct Solved {
+    Solution solution;
+    ClassicalFacts facts;
+};
+
+Solved solve(const Scene& scene, const SolveOptions& options, const ClassicalOptions& classical,
+             const SnapshotSink& sink = {}) {
+    Progress progress;
+    const StopRequest stop;
+    ClassicalFacts facts;
+    Result<Solution> solution = solve_classical(scene, options, classical, progress, stop, facts, sink);
+    EXPECT_TRUE(solution) << solution.error().message;
+    return {std::move(*solution), facts};
+}
+
+ClassicalOptions carried_raw(bool uniform) {
+    ClassicalOptions out;
+    out.direct = ClassicalDirect::carried;
+    if (uniform) out.mesh = MeshKind::uniform;
+    out.gather = false;
+    return out;
+}
+const ClassicalOptions raw = carried_raw(true);
+
+ClassicalOptions by_power(double threshold) {
+    ClassicalOptions out = carried_raw(false);
+    out.threshold = threshold;
+    return out;
+}
+
+/// RMS over elements of the irradiance's departure from exact direct light, relative to its mean; of black scenes.
+double error_of(const Solution& solution) {
+    Solution exact{.scene = solution.scene, .indirect = solution.indirect};
+    for (auto& value : exact.indirect.values) value = {};
+    const RadiosityFunction found(solution), right(exact);
+    std::vector<ProbePoint> points;
+    const ElementTree& tree = solution.indirect.tree;
+    constexpr int n = 24;
+    for (ElementId root : tree.roots()) {
+        if (solution.scene.material(tree.region(root)).emits()) continue;
+        for (int i = 0; i < n * n; ++i)
+            points.push_back({tree.patch(root).at((i % n + 0.37) / n, (i / n + 0.61) / n), tree.patch(root).normal()});
+    }
+    const std::vector<Light> a = found.at(points), b = right.at(points);
+    double square = 0, mean = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        square += std::pow(a[i].irradiance[0] - b[i].irradiance[0], 2);
+        mean += b[i].irradiance[0];
+    }
+    const auto count = static_cast<double>(points.size());
+    return std::sqrt(square / count) / (mean / count);
+}
+
+bool same_bits(const Solution& a, const Solution& b) {
+    return a.indirect.values == b.indirect.values;
+}
+
+class EveryClassicalMethod : public testing::TestWithParam<std::pair<Method, BasisKind>> {
+  protected:
+    SolveOptions options(double mesh_size) const {
+        SolveOptions o{.method = GetParam().first, .mesh_size = mesh_size};
+        if (o.method == Method::wavelet) o.basis = GetParam().second;
+        return o;
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Methods, EveryClassicalMethod,
+                         testing::Values(std::pair(Method::matrix, BasisKind::constant),
+                                         std::pair(Method::progressive, BasisKind::constant),
+                                         std::pair(Method::substructuring, BasisKind::constant),
+                                         std::pair(Method::hierarchical, BasisKind::haar),
+                                         std::pair(Method::wavelet, BasisKind::flatlet2),
+                                         std::pair(Method::wavelet, BasisKind::flatlet3),
+                                         std::pair(Method::wavelet, BasisKind::multiwavelet2),
+                                         std::pair(Method::wavelet, BasisKind::multiwavelet3)));
+
+TEST_P(EveryClassicalMethod, CarriesLightInAFurnace) {
+    const double rho = 0.5;
+    const Scene scene = box_scene(1, 1, 1, rho, 1, 1);
+    SolveOptions o = options(0.25);
+    o.residual = 1e-6;
+    const Solution solution = solve(scene, o, raw).solution;
+    // E = M / (1 - rho); at the edges elements' own form factors are exact, and rows sum to 1 where all are.
+    const RadiosityFunction light(solution);
+    for (const Light& l : light.at(std::vector<ProbePoint>{{{0.4, 0.3, 0}, {0, 0, 1}}, {{1, 0.6, 0.7}, {-1, 0, 0}}}))
+        EXPECT_NEAR(l.irradiance[0], 1 / (1 - rho), 0.02 / (1 - rho));
+    EXPECT_TRUE(solution.direct_in_elements);
+    EXPECT_TRUE(solution.statistics.converged);
+    EXPECT_FALSE(solution.statistics.relative_error_estimate);
+}
+
+TEST_P(EveryClassicalMethod, SolvesABlackSceneThroughItsOwnTransport) {
+    const Scene scene = built_scene("blocker", {{"h", "0.7"}});
+    const double coarse = error_of(solve(scene, options(0.5), raw).solution);
+    const double fine = error_of(solve(scene, options(0.25), raw).solution);
+    EXPECT_LT(fine, 0.12);
+    EXPECT_LT(fine, 0.75 * coarse);  // shadows blocky by one share a link: first order whatever the basis
+}
+
+TEST(Classical, ExactVisibilityWithinLinksGivesHighOrdersTheirDue) {
+    const Scene scene = built_scene("blocker", {{"h", "0.7"}});
+    SolveOptions o{.method = Method::wavelet, .basis = BasisKind::multiwavelet3, .mesh_size = 0.5};
+    const double fractional = error_of(solve(scene, o, raw).solution);
+    o.visibility = VisibilityKind::exact;
+    EXPECT_LT(error_of(solve(scene, o, raw).solution), 0.25 * fractional);
+}
+
+TEST(Classical, LinksGrowAsOneOverTheirThreshold) {
+    const Scene scene = built_scene("tube", {{"rho", "0.7"}});
+    const SolveOptions o{.method = Method::hierarchical, .oracle = LinkOracle::power};
+    const Solved coarse = solve(scene, o, by_power(0.08)), fine = solve(scene, o, by_power(0.02));
+    const double ratio =
+        static_cast<double>(fine.solution.statistics.links) / static_cast<double>(coarse.solution.statistics.links);
+    EXPECT_NEAR(ratio, 4, 1);
+    EXPECT_EQ(fine.facts.links_found_by, "bf");
+    EXPECT_EQ(fine.facts.initial_links, 30u);  // six polygons that all see each other
+}
+
+TEST(Classical, NoElementIsCutBelowTheLeastArea) {
+    const Scene scene = built_scene("tube", {{"rho", "0.7"}});
+    const double least = 0.01;
+    ClassicalOptions c = by_power(1e-3);
+    const Solution solution =
+        solve(scene, {.method = Method::hierarchical, .min_area = least, .oracle = LinkOracle::form_factor}, c)
+            .solution;
+    for (ElementId e : solution.indirect.tree.leaves()) EXPECT_GE(solution.indirect.tree.area(e), least);
+}
+
+TEST(Classical, GatherAndSmoothingChangeNoSolver) {
+    const Scene scene = built_scene("tube", {{"rho", "0.7"}});
+    SolveOptions o{.method = Method::progressive, .mesh_size = 0.5};
+    const Solution plain = solve(scene, o, raw).solution;
+    ClassicalOptions gathers = raw;
+    gathers.gather = true;
+    const Solution gathered = solve(scene, o, gathers).solution;
+    o.smoothing = true;
+    const Solution smooth = solve(scene, o, raw).solution;
+    for (const Solution* s : {&gathered, &smooth}) {
+        EXPECT_EQ(s->statistics.iterations, plain.statistics.iterations);
+        EXPECT_EQ(s->statistics.residual, plain.statistics.residual);
+        EXPECT_FALSE(same_bits(*s, plain));
+    }
+    EXPECT_EQ(smooth.indirect.tree.size(), plain.indirect.tree.size());
+}
+
+TEST(Classical, SnapshotsFollowTheShotsAndAmbientLightFillsThem) {
+    const Scene scene = built_scene("tube", {{"rho", "0.7"}});
+    ClassicalOptions c = raw;
+    c.snapshots.shots = {5, 2};
+    const auto flux = [&](bool ambient) {
+        c.ambient = ambient;
+        std::vector<double> out;
+        solve(scene, {.method = Method::progressive, .mesh_size = 0.5}, c, [&](const Solution& s, std::size_t number) {
+            EXPECT_EQ(number, out.size() + 1);
+            double sum = 0;
+            for (ElementId e : s.indirect.tree.leaves())
+                sum += s.indirect.tree.area(e) * s.indirect.at({e, s.indirect.tree.centre(e)})[0];
+            out.push_back(sum);
+            return Result<void>();
+        });
+        return out;
+    };
+    const std::vector<double> bare = flux(false), filled = flux(true);
+    ASSERT_EQ(bare.size(), 2u);
+    ASSERT_EQ(filled.size(), 2u);
+    EXPECT_LT(bare[0], bare[1]);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_GT(filled[i], bare[i]);
+}
+
+TEST(Classical, RefinementCutsWhereLightChangesDuringShootingOrAfter) {
+    const Scene scene = built_scene("blocker", {{"h", "0.7"}});
+    ClassicalOptions c = raw;
+    c.receivers = ShootingReceivers::vertex;
+    c.refine_gradient = 0.5;
+    const SolveOptions o{.method = Method::substructuring, .mesh_size = 0.5, .min_area = 1e-3};
+    std::size_t elements[2];
+    for (RefineWhen when : {RefineWhen::during, RefineWhen::after}) {
+        c.refine = when;
+        elements[when == RefineWhen::after] = solve(scene, o, c).solution.statistics.leaf_elements;
+    }
+    c.refine.reset(), c.refine_gradient.reset();
+    const std::size_t unrefined = solve(scene, o, c).solution.statistics.leaf_elements;
+    EXPECT_GT(elements[0], unrefined);
+    EXPECT_GT(elements[1], unrefined);
+    EXPECT_NE(elements[0], elements[1]);
+}
+
+TEST(Classical, TheSameBitsOnAnyNumberOfThreads) {
+    const Scene scene = built_scene("tube", {{"rho", "0.7"}});
+    SolveOptions o{.method = Method::wavelet, .oracle = LinkOracle::power, .threads = 1};
+    const Solution one = solve(scene, o, by_power(0.1)).solution;
+    o.threads = 2;
+    EXPECT_TRUE(same_bits(one, solve(scene, o, by_power(0.1)).solution));
+}
+
+TEST(Classical, EveryRelaxationFindsTheSameLightInItsNumberOfSweeps) {
+    const Scene scene = built_scene("tube", {{"rho", "0.9"}});
+    SolveOptions o{.method = Method::matrix, .mesh_size = 0.5, .residual = 1e-6};
+    const auto sweeps = [&](std::optional<Relaxation> relaxation, std::optional<ClassicalRelaxation> own) {
+        o.relaxation = relaxation;
+        ClassicalOptions c = raw;
+        c.relaxation = own;
+        const Solution s = solve(scene, o, c).solution;
+        EXPECT_LE(s.statistics.residual, 1e-6);
+        return s.statistics.iterations;
+    };
+    const std::size_t jacobi = sweeps(Relaxation::jacobi, {}), seidel = sweeps(Relaxation::gauss_seidel, {}),
+                      sor = sweeps({}, ClassicalRelaxation::sor), chebyshev = sweeps(Relaxation::chebyshev, {}),
+                      cg = sweeps(Relaxation::cg, {}), gmres = sweeps(Relaxation::gmres, {});
+    EXPECT_GT(jacobi, seidel);
+    EXPECT_GT(seidel, sor);
+    EXPECT_GT(sor, chebyshev);
+    EXPECT_GT(chebyshev, cg);
+    EXPECT_GE(cg, gmres);
+    sweeps({}, ClassicalRelaxation::direct);
+    EXPECT_LT(sweeps(Relaxation::southwell, {}), jacobi);
+}
+
+TEST(Classical, WhatAMethodDoesNotObeyNamesThoseThatDo) {
+    ClassicalOptions c = raw;
+    c.ambient = true;
+    const Result<Method> wrong = classical_method({.method = Method::matrix}, c);
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().where, "--ambient");
+    EXPECT_NE(wrong.error().message.find("progressive, substructuring"), std::string::npos);
+    EXPECT_EQ(*classical_method({}, c), Method::progressive);
+    EXPECT_FALSE(classical_method({.method = Method::monte_carlo}, raw));
+    EXPECT_FALSE(classical_method({.method = Method::wavelet, .oracle = LinkOracle::power}, raw));
+}
+
+}  // namespace
+}  // namespace exitance
