@@ -45,7 +45,12 @@ const std::vector<std::string> statistics_keys{"method",
                                                "element_memory_bytes",
                                                "bytes_per_element",
                                                "elements_by_level",
-                                               "warnings"};
+                                               "warnings",
+                                               "direct",
+                                               "mesh_kind",
+                                               "links_found_by",
+                                               "initial_links",
+                                               "coefficient_memory_bytes"};
 
 }  // namespace
 

@@ -125,7 +125,8 @@ std::string statistics_json(const Solution& solution) {
              {"initial_links", nullptr},
              {"coefficient_memory_bytes", solution.statistics.element_memory_bytes}};
     for (const auto& [name, value] : own.items())
-        json[name] = facts && facts->is_object() && facts->contains(name) ? (*facts)[name] : value;
+        if (!solution.statistics.figures.contains(name))
+            json[name] = facts && facts->is_object() && facts->contains(name) ? (*facts)[name] : value;
     return dump(json, 2);
 }
 
