@@ -471,20 +471,25 @@ class Solver {
         return options_.method == Method::discontinuity && !solution_.direct_in_elements;
     }
 
-    /// Direct light on triangles that follow its shadows, with what is reflected on top of it.
-    void make_discontinuity() {
+    /// Direct light on triangles that follow its shadows, with what is reflected on top of it. False where a request to
+    /// stop left no time for any: then plain elements are made.
+    bool make_discontinuity() {
         progress_.phase("discontinuities");
         const DiscontinuityReport report = add_discontinuity_mesh(stage_, options_, solution_, stop_);
         statistics().seconds["mesh"] += report.mesh_seconds, statistics().seconds["direct"] += report.direct_seconds;
         mesh_seconds_ = report.mesh_seconds + report.direct_seconds;
         if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+        if (!solution_.discontinuity.empty()) return true;
+        if (direct_.tree.size() == 0) project_direct();
+        return false;
     }
 
     void make_output_mesh() {
         const Stopwatch watch;
         progress_.phase("reconstruct");
-        if (makes_discontinuity_mesh()) {
-            make_discontinuity();
+        const bool follows_shadows = makes_discontinuity_mesh() && make_discontinuity();
+        if (follows_shadows) {
+            // The mesh is what is exported.
         } else if (solution_.direct_in_elements) {
             solution_.interpolant = solution_.indirect;
             statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;

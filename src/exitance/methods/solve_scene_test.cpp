@@ -300,6 +300,19 @@ TEST(SolveScene, AnInterruptedSolveStillHasAResult) {
         for (float v : value) EXPECT_TRUE(std::isfinite(v));
 }
 
+TEST(SolveScene, ADiscontinuityMeshThatIsNeverMadeLeavesPlainElements) {
+    const Scene scene = built_scene("gcr2");
+    Progress progress;
+    StopRequest stop;
+    stop.interrupt();
+    const Result<Solution> solution =
+        solve_scene(scene, {.method = Method::discontinuity, .bounces = 0, .error = 0.02}, progress, stop);
+    ASSERT_TRUE(solution);
+    EXPECT_EQ(solution->statistics.stopped_by, "interrupt");
+    EXPECT_TRUE(solution->discontinuity.empty());
+    EXPECT_GE(solution->interpolant.tree.roots().size(), scene.regions().size());
+}
+
 /// Interrupts a solve in a round of links of its second attempt.
 class InterruptsSecondAttempt final : public Progress {
   public:

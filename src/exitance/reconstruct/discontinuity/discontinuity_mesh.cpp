@@ -1,6 +1,7 @@
 #include "exitance/reconstruct/discontinuity/discontinuity_mesh.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <optional>
 
@@ -37,14 +38,18 @@ class Builder {
         Stopwatch watch;
         look_ahead();
         report_.direct_seconds += watch.restart();
-        find_curves();
+        if (!stop_.requested()) find_curves();
         report_.mesh_seconds += watch.restart();
+        report_.interrupted = stop_.requested();
+        if (report_.interrupted) return {};
         constexpr int most_attempts = 5;
         double tolerance = 0.8 * options_.error * report_.scale;
         SixNodeMesh out;
         for (int attempt = 1;; ++attempt) {
             refine(tolerance);
             report_.direct_seconds += watch.restart();
+            report_.interrupted = stop_.requested();
+            if (values_.empty()) return {};
             out = finish();
             report_.error = report_.scale > 0 ? error_at_places(out) / report_.scale : 0;
             report_.mesh_seconds += watch.restart();
@@ -78,7 +83,7 @@ class Builder {
         }
         parallel_ranges(places_.size(), 16, [&](std::size_t first, std::size_t last) {
             DirectLight::Workspace workspace;
-            for (std::size_t i = first; i < last; ++i) {
+            for (std::size_t i = first; i < last && !stop_.requested(); ++i) {
                 Place& place = places_[i];
                 const Normal& n = stage_.scene.regions()[place.region].plane.n;
                 if (!stage_.occluders.is_covered(place.at, n, place.region)) {
@@ -104,14 +109,17 @@ class Builder {
         const BlockerEdges edges(stage_.occluders);
         constexpr double unseen = 0.1, tiny = 1e-5;
         const CurveFinder finder(
-            stage_, edges, {.least_effect = unseen * options_.largest_error * largest_, .least_area = tiny * area_});
+            stage_, edges,
+            {.least_effect = unseen * options_.largest_error * largest_, .least_area = tiny * area_, .stop = &stop_});
         const std::size_t regions = stage_.scene.regions().size();
         std::vector<std::optional<ReceiverCurves>> receivers(regions);
         std::vector<LabelledTriangles> triangles(regions);
         parallel_for(regions, 1, [&](std::size_t i) {
+            if (stop_.requested()) return;
             receivers[i].emplace(finder.find(RegionId(static_cast<std::uint32_t>(i))));
-            triangles[i] = triangulated(*receivers[i]);
+            if (!stop_.requested()) triangles[i] = triangulated(*receivers[i]);
         });
+        if (stop_.requested()) return;
         std::vector<std::uint32_t> whole;
         for (const RegionId r : stage_.scene.regions().ids()) {
             ReceiverCurves& receiver = *receivers[r.value];
@@ -122,7 +130,7 @@ class Builder {
         lights_.resize(region_.size());
         parallel_ranges(region_.size(), 16, [&](std::size_t first, std::size_t last) {
             DirectLight::Workspace workspace;
-            for (std::size_t f = first; f < last; ++f) {
+            for (std::size_t f = first; f < last && !stop_.requested(); ++f) {
                 const ReceiverLight& light = receivers[whole[f]]->light;
                 if (light.is_dark())
                     lights_[f].n = light.n, lights_[f].own = light.own;
@@ -185,15 +193,18 @@ class Builder {
         return light.sources.size() + light.beams.size() >= facing ? ShadowClass::lit : ShadowClass::penumbra;
     }
 
-    /// Exact light at the nodes that have none yet.
-    void light_nodes() {
+    /// Exact light at the nodes that have none yet. False, and nothing is done, where a request to stop cuts it short.
+    bool light_nodes() {
         const std::size_t first_node = values_.size();
         values_.resize(mesh_.nodes().size());
+        std::atomic<std::size_t> left = values_.size() - first_node;
         parallel_ranges(values_.size() - first_node, 32, [&](std::size_t first, std::size_t last) {
             DirectLight::Workspace workspace;
-            for (std::size_t i = first_node + first; i < first_node + last; ++i)
-                values_[i] = light(mesh_.nodes()[i], workspace);
+            for (std::size_t i = first_node + first; i < first_node + last && !stop_.requested(); ++i)
+                values_[i] = light(mesh_.nodes()[i], workspace), --left;
         });
+        if (left > 0) values_.resize(first_node);
+        return left == 0;
     }
 
     Spectrum light(const BisectionMesh::Node& node, DirectLight::Workspace& workspace) const {
@@ -246,7 +257,10 @@ class Builder {
         constexpr double unfindable = 3e-7, shortest = 1e-6;
         constexpr int most_rounds = 60;
         for (int round = 0; round < most_rounds; ++round) {
-            light_nodes();
+            if (!light_nodes()) {
+                if (lit_) mesh_ = std::move(*lit_);
+                return;
+            }
             misfits_.resize(mesh_.triangles().size());
             const std::vector<std::uint32_t> fresh = mesh_.take_changed();
             parallel_for(fresh.size(), 256, [&](std::size_t i) { misfits_[fresh[i]] = misfit(fresh[i]); });
@@ -262,6 +276,7 @@ class Builder {
                     coarse.push_back(t);
             }
             if (coarse.empty() || is_full() || stop_.requested()) return;
+            lit_ = mesh_;
             // Some were bisected for a neighbour's sake: then their misfit is out of date.
             const std::size_t before = mesh_.triangles().size();
             std::vector<std::uint8_t> depth(before);
@@ -340,6 +355,7 @@ class Builder {
     DiscontinuityReport& report_;
     const StopRequest& stop_;
     BisectionMesh mesh_;
+    std::optional<BisectionMesh> lit_;   ///< As it was when all of its nodes had light.
     std::vector<std::uint8_t> touched_;  ///< By region: does anything cover parts of it?
     std::vector<RegionId> region_;       ///< Of faces.
     std::vector<ReceiverLight> lights_;  ///< Of faces.

@@ -64,6 +64,7 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
         add_events(number, out);
     else if (!out.light.is_unshadowed())
         out.left_out += out.light.sources.size();
+    if (options_.stop && options_.stop->requested()) return out;
     ArrangedCurves arranged = arranged_curves(std::move(out.curves), out.loops, nearness * stage_->scene.size());
     out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
     if (out.curves.size() > options_.most_curves) {
@@ -108,6 +109,7 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
     for (const ReceiverLight::Source& s : out.light.sources)
         for (const PieceId p : candidates(s)) blockers[s.emitter].push_back(p);
     for (const auto& [number, pieces] : blockers) {
+        if (options_.stop && options_.stop->requested()) return;
         const DirectLight::Emitter& emitter = stage_->direct.emitters()[number];
         if (stage_->direct.is_distant(number)) continue;  // bisection follows the shadows of skies and suns
         const double gain = greatest_effect(region, emitter);

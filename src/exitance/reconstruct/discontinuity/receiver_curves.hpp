@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "exitance/core/progress.hpp"
 #include "exitance/mesh/discontinuity/curve_arrangement.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/visibility/blocker_edges.hpp"
@@ -21,9 +22,10 @@ struct ReceiverCurves {
 };
 
 struct CurveOptions {
-    double least_effect = 0;          ///< W/m^2 of rho E: sources that bring less than this have no curves.
-    double least_area = 0;            ///< m^2: smaller regions have contacts alone.
-    std::size_t most_curves = 1'000;  ///< On a region.
+    double least_effect = 0;            ///< W/m^2 of rho E: sources that bring less than this have no curves.
+    double least_area = 0;              ///< m^2: smaller regions have contacts alone.
+    std::size_t most_curves = 1'000;    ///< On a region.
+    const StopRequest* stop = nullptr;  ///< Once it is requested, what is found is not complete.
 };
 
 /// Finds D0, D1 and D2 curves of primary sources: where other polygons touch a region, and its VE and EV events.
