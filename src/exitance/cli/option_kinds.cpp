@@ -1,0 +1,82 @@
+#include "exitance/cli/option_kinds.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace exitance {
+namespace {
+
+constexpr std::array<std::pair<ProgressStyle, std::string_view>, 5> progress_names{{
+    {ProgressStyle::automatic, "auto"},
+    {ProgressStyle::bar, "bar"},
+    {ProgressStyle::plain, "plain"},
+    {ProgressStyle::json, "json"},
+    {ProgressStyle::none, "none"},
+}};
+
+}  // namespace
+
+double read_number(const std::string& option, const std::string& word) {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(word, value) || !std::isfinite(value))
+        throw CLI::ValidationError(option, fmt::format("'{}' is not a number", word));
+    return value;
+}
+
+std::size_t read_bytes(const std::string& option, const std::string& word) {
+    const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
+    std::string unit = word.substr(digits);
+    for (char& c : unit) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    const std::vector<std::string> units{"", "K", "M", "G", "T"};
+    const auto at = std::find_if(units.begin(), units.end(), [&](const std::string& prefix) {
+        return unit == prefix || unit == prefix + "B" || (!prefix.empty() && unit == prefix + "IB");
+    });
+    if (digits == 0 || at == units.end())
+        throw CLI::ValidationError(option, fmt::format("'{}' is not a size such as 500M or 4G", word));
+    const double bytes =
+        std::ldexp(read_number(option, word.substr(0, digits)), static_cast<int>(10 * (at - units.begin())));
+    if (bytes < 1 || bytes > 1e18)
+        throw CLI::ValidationError(option, fmt::format("must be between 1 byte and an exabyte, not {}", word));
+    return static_cast<std::size_t>(bytes);
+}
+
+std::vector<double> read_numbers(const std::string& option, std::string words) {
+    std::replace(words.begin(), words.end(), ',', ' ');
+    std::vector<double> numbers;
+    std::istringstream in(words);
+    for (std::string word; in >> word;) numbers.push_back(read_number(option, word));
+    return numbers;
+}
+
+bool read_switch(const char* option, const std::string& word) {
+    if (word != "on" && word != "off")
+        throw CLI::ValidationError(option, fmt::format("must be on or off, not '{}'", word));
+    return word == "on";
+}
+
+void declare_common(CLI::App& app, CommonArguments& arguments) {
+    app.add_flag("-q,--quiet", arguments.quiet, "Nothing but errors on the error stream");
+    app.add_flag("-v,--verbose", arguments.verbose, "Say more on the error stream");
+}
+
+void declare_json(CLI::App& app, CommonArguments& arguments) {
+    app.add_flag("--json", arguments.json, "Facts as JSON on standard output");
+}
+
+void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
+    add_count(app, "--threads", threads, 1, "Threads to use; default all. The result does not depend on it");
+    add_choice(app, "--progress", progress_names, arguments.progress,
+               "auto: a bar on a terminal, a line every ten seconds otherwise");
+}
+
+void declare_scene(CLI::App& app, SceneArguments& scene) {
+    app.add_option("SCENE", scene.files, "Scene (.obj with its .mtl, .gltf, .glb, .rad); several files make one")
+        ->required();
+    app.add_flag_callback(
+        "--strict", [&scene] { scene.load.faults = Faults::refuse; },
+        "Faults of the scene are errors; else they are repaired");
+    app.add_flag("--run-commands", scene.load.run_commands,
+                 "Have lines of .rad files that begin with '!' done by Radiance's programs, where they are installed");
+}
+
+}  // namespace exitance
