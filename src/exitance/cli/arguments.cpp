@@ -83,6 +83,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",
          parse_verb<GenerateArguments>},
+        {"luminaire", "Tells the facts of a photometric file; draws its polar diagram and its opening.",
+         "exitance luminaire downlight.ies -o downlight.svg", parse_verb<LuminaireArguments>},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
         {"view", "Shows a solution in a browser, or a scene while it is solved.", "exitance view room.h5",

@@ -92,7 +92,7 @@ struct RenderArguments : CommonArguments {
     std::size_t gather = 0;    ///< Rays of a final gather at each of them.
     bool mesh = false;         ///< With the elements' edges.
     bool shadow_classes = false;
-    std::string path;          ///< A camera a row, for numbered pictures; empty: one picture.
+    std::string path;  ///< A camera a row, for numbered pictures; empty: one picture.
     int threads = 0;
 };
 
@@ -130,6 +130,11 @@ struct GenerateArguments : CommonArguments {
     std::vector<std::string> parameters;  ///< "name=value"
 };
 
+struct LuminaireArguments : CommonArguments {
+    std::string file;
+    std::vector<std::string> outputs;
+};
+
 struct ViewFactorArguments : CommonArguments {
     SceneArguments scene;
     std::string output;
@@ -150,10 +155,9 @@ struct ViewArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command =
-    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
-                 BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
-                 ViewFactorArguments, ViewArguments>;
+using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
+                             RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments,
+                             GenerateArguments, LuminaireArguments, ViewFactorArguments, ViewArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

@@ -102,6 +102,7 @@ void declare(CLI::App& app, ReportArguments& arguments);
 void declare(CLI::App& app, DaylightArguments& arguments);
 void declare(CLI::App& app, CheckArguments& arguments);
 void declare(CLI::App& app, GenerateArguments& arguments);
+void declare(CLI::App& app, LuminaireArguments& arguments);
 void declare(CLI::App& app, ViewFactorArguments& arguments);
 void declare(CLI::App& app, ViewArguments& arguments);
 

@@ -313,6 +313,16 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
     app.add_option("-o,--output", arguments.output, "Scene to write (.obj, its .mtl beside it)")->type_name("FILE");
 }
 
+void declare(CLI::App& app, LuminaireArguments& arguments) {
+    app.add_option("FILE", arguments.file, "Photometric file: IES LM-63 (.ies) or EULUMDAT (.ldt)")->required();
+    app.add_option("-o,--output", arguments.outputs,
+                   "Polar diagram (.svg) or luminous opening (.obj) to write; may be given again")
+        ->type_name("FILE")
+        ->expected(1)
+        ->take_all();
+    declare_json(app, arguments);
+}
+
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("-o,--output", arguments.output,

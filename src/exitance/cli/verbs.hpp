@@ -18,6 +18,7 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal);
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal);
 ExitCode run(const CheckArguments& arguments, Terminal& terminal);
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
+ExitCode run(const LuminaireArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewArguments& arguments, Terminal& terminal);
 
