@@ -1,7 +1,10 @@
 #include <array>
+#include <cstdlib>
 #include <cstring>
 
 #include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/photometry/luminaire_body.hpp"
+#include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/scenes/mtl.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "fuzz/solution_target.hpp"
@@ -58,6 +61,17 @@ void read_csv_bytes(const std::string& bytes) {
     (void)load_probe_points(file_with(bytes, "p.csv"));
 }
 
+/// What a file says must be possible to build, too.
+void build(const Result<Photometry>& photometry) {
+    if (photometry && !make_luminaire_body(*photometry).profile.is_sane()) std::abort();
+}
+void read_ies_bytes(const std::string& bytes) {
+    build(read_ies(bytes, "f.ies"));
+}
+void read_ldt_bytes(const std::string& bytes) {
+    build(read_eulumdat(bytes, "f.ldt"));
+}
+
 void read_pts_bytes(const std::string& bytes) {
     (void)load_probe_points(file_with(bytes, "p.pts"));
 }
@@ -78,6 +92,8 @@ std::span<const Target> targets() {
         Target{"csv", read_csv_bytes},
         Target{"pts", read_pts_bytes},
         Target{"reference", read_reference_bytes},
+        Target{"ies", read_ies_bytes},
+        Target{"ldt", read_ldt_bytes},
         Target{"solution", read_solution_bytes, mend_solution, solution_corpus, rehearse_solution_bytes,
                read_rehearsed_solution},
         Target{"values", read_solution_with_values, nullptr, value_corpus, rehearse_solution_with_values,

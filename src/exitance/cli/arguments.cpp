@@ -523,6 +523,16 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
     app.add_option("-o,--output", arguments.output, "Scene to write (.obj, its .mtl beside it)")->type_name("FILE");
 }
 
+void declare(CLI::App& app, LuminaireArguments& arguments) {
+    app.add_option("FILE", arguments.file, "Photometric file: IES LM-63 (.ies) or EULUMDAT (.ldt)")->required();
+    app.add_option("-o,--output", arguments.outputs,
+                   "Polar diagram (.svg) or luminous opening (.obj) to write; may be given again")
+        ->type_name("FILE")
+        ->expected(1)
+        ->take_all();
+    declare_json(app, arguments);
+}
+
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("-o,--output", arguments.output,
@@ -614,6 +624,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",
          parse_verb<GenerateArguments>},
+        {"luminaire", "Tells the facts of a photometric file; draws its polar diagram and its opening.",
+         "exitance luminaire downlight.ies -o downlight.svg", parse_verb<LuminaireArguments>},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
     };

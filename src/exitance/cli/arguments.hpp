@@ -118,6 +118,11 @@ struct GenerateArguments : CommonArguments {
     std::vector<std::string> parameters;  ///< "name=value"
 };
 
+struct LuminaireArguments : CommonArguments {
+    std::string file;
+    std::vector<std::string> outputs;
+};
+
 struct ViewFactorArguments : CommonArguments {
     SceneArguments scene;
     std::string output;
@@ -130,9 +135,9 @@ struct ViewFactorArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command =
-    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
-                 BakeArguments, ReportArguments, CheckArguments, GenerateArguments, ViewFactorArguments>;
+using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
+                             RenderArguments, BakeArguments, ReportArguments, CheckArguments, GenerateArguments,
+                             LuminaireArguments, ViewFactorArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

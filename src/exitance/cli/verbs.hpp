@@ -17,6 +17,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal);
 ExitCode run(const ReportArguments& arguments, Terminal& terminal);
 ExitCode run(const CheckArguments& arguments, Terminal& terminal);
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
+ExitCode run(const LuminaireArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
 
 }  // namespace exitance

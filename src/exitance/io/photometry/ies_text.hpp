@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "exitance/core/result.hpp"
+#include "exitance/io/files/text_lines.hpp"
+
+namespace exitance {
+
+/// Lines ended by LF, CR LF or CR, and numbers between blanks, commas and the ends of lines.
+class IesText {
+  public:
+    IesText(std::string_view text, const std::string& name) : rest_(text), name_(name) {
+        if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);  // byte order mark
+    }
+
+    std::optional<std::string_view> line() {
+        if (rest_.empty()) return std::nullopt;
+        const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+        const std::string_view out = rest_.substr(0, end);
+        rest_.remove_prefix(end);
+        take_line_end();
+        return out;
+    }
+
+    /// The next number; an error that says what it should have been.
+    Result<double> number(const std::string& what);
+
+    /// Is there anything behind the numbers?
+    bool at_end() {
+        skip_blanks();
+        return rest_.empty() || rest_[0] == '\x1a';
+    }
+    std::size_t bytes_left() const { return rest_.size(); }
+    int line_number() const { return line_; }
+    Error error(std::string message, std::string hint = "") const;
+
+  private:
+    static constexpr const char* blanks = " \t,\r\n\x1a\f\v";
+
+    void take_line_end() {
+        if (rest_.empty()) return;
+        rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : 1);
+        ++line_;
+    }
+    void skip_blanks() {
+        while (!rest_.empty() && rest_[0] != '\x1a' &&
+               std::string_view(blanks).find(rest_[0]) != std::string_view::npos) {
+            if (rest_[0] == '\r' || rest_[0] == '\n')
+                take_line_end();
+            else
+                rest_.remove_prefix(1);
+        }
+    }
+
+    std::string_view rest_;
+    const std::string& name_;
+    int line_ = 1;
+};
+
+}  // namespace exitance

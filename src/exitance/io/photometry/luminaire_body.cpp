@@ -1,0 +1,199 @@
+#include "exitance/io/photometry/luminaire_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/geometry/polygon.hpp"
+
+namespace exitance {
+namespace {
+
+using Shape = Opening::Shape;
+using Polygons = std::vector<std::vector<Point>>;
+
+constexpr double degree = pi / 180;
+constexpr double least_size = 0.01;  ///< Of what has no extent, metres.
+constexpr int sides = 24;  ///< Of a round edge: it has normals where tables of 1, 3, 5 and 15 degrees have entries.
+constexpr int lying_sides = 32;  ///< Of a cylinder that lies, whose edges no grid of angles follows.
+constexpr int bands_of_sphere = 8, sides_of_sphere = 16;
+
+/// A regular polygon of the area of a circle of diameter 1, its edges' normals at multiples of 360 / n degrees.
+std::vector<Vec2> round_outline(int n) {
+    const double radius = 0.5 * std::sqrt(2 * pi / (n * std::sin(2 * pi / n)));
+    std::vector<Vec2> out;
+    for (int i = 0; i < n; ++i) {
+        const double a = 2 * pi * (i + 0.5) / n;
+        out.push_back({radius * std::cos(a), radius * std::sin(a)});
+    }
+    return out;
+}
+
+std::vector<Vec2> square_outline() {
+    return {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+}
+
+/// An outline swept along z from -1/2 to 1/2: sides and both ends.
+Polygons prism(const std::vector<Vec2>& outline) {
+    Polygons out;
+    const std::size_t n = outline.size();
+    std::vector<Point> bottom, top;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec2 &a = outline[i], &b = outline[(i + 1) % n];
+        out.push_back({{a.x, a.y, -0.5}, {b.x, b.y, -0.5}, {b.x, b.y, 0.5}, {a.x, a.y, 0.5}});
+        top.push_back({a.x, a.y, 0.5});
+        bottom.push_back({outline[n - 1 - i].x, outline[n - 1 - i].y, -0.5});
+    }
+    out.push_back(std::move(bottom)), out.push_back(std::move(top));
+    return out;
+}
+
+/// A polyhedron of the area of a sphere of diameter 1: bands of trapezia between caps of triangles.
+Polygons ball() {
+    const auto at = [](int band, int i) {
+        const double t = pi * band / bands_of_sphere, p = 2 * pi * (i + 0.5) / sides_of_sphere;
+        return Point{0.5 * std::sin(t) * std::cos(p), 0.5 * std::sin(t) * std::sin(p), -0.5 * std::cos(t)};
+    };
+    Polygons out;
+    double area = 0;
+    for (int band = 0; band < bands_of_sphere; ++band)
+        for (int i = 0; i < sides_of_sphere; ++i) {
+            std::vector<Point> face{at(band, i), at(band, i + 1), at(band + 1, i + 1), at(band + 1, i)};
+            if (band == 0) face.erase(face.begin());
+            if (band == bands_of_sphere - 1) face.erase(face.begin() + 2);
+            area += norm(area_vector(face));
+            out.push_back(std::move(face));
+        }
+    const double scale = std::sqrt(pi / area);
+    for (std::vector<Point>& face : out)
+        for (Point& p : face) p *= scale;
+    return out;
+}
+
+Polygons polygons_of(Shape shape, const Vec3& size) {
+    Polygons out;
+    switch (shape) {
+        case Shape::rectangle:
+        case Shape::ellipse: {
+            std::vector<Point> up, down;
+            for (const Vec2& v : shape == Shape::rectangle ? square_outline() : round_outline(sides))
+                up.push_back({v.x, v.y, 0});
+            down.assign(up.rbegin(), up.rend());
+            out = {down, up};
+            break;
+        }
+        case Shape::ellipsoid:
+            out = ball();
+            break;
+        case Shape::point:
+        case Shape::box:
+            out = prism(square_outline());
+            break;
+        default:
+            out = prism(round_outline(shape == Shape::cylinder_z ? sides : lying_sides));
+    }
+    // A cylinder along x or y is one along z with its axes renamed in a circle, which keeps fronts in front.
+    const int turns = shape == Shape::cylinder_x ? 1 : shape == Shape::cylinder_y ? 2 : 0;
+    for (std::vector<Point>& face : out)
+        for (Point& p : face) {
+            for (int i = 0; i < turns; ++i) p = {p.z, p.x, p.y};
+            p = {p.x * size.x, p.y * size.y, p.z * size.z};
+        }
+    return out;
+}
+
+/// Area that a convex body shows in the direction d.
+double projected_area(const std::vector<Vec3>& areas, const Vec3& d) {
+    double sum = 0;
+    for (const Vec3& a : areas) sum += std::max(0.0, dot(a, d));
+    return sum;
+}
+
+/// The table's angles with those of a finer grid between them.
+std::vector<double> refined(const std::vector<double>& at, double last, double step) {
+    std::vector<double> out = at.size() > 1 ? at : std::vector<double>{0, last};
+    for (int i = 0; i * step <= last; ++i) out.push_back(i * step);
+    std::sort(out.begin(), out.end());
+    constexpr double alike = 1e-7;
+    out.erase(std::unique(out.begin(), out.end(), [](double a, double b) { return b - a < alike; }), out.end());
+    return out;
+}
+
+/// Radiance as a table of its own: intensity over the body's projected area, on a grid fine enough that this area is
+/// as good as linear between its angles.
+EmissionProfile baked(const Photometry& p, const std::vector<Vec3>& areas, double step) {
+    EmissionProfile out;
+    out.axes[0] = {EmissionProfile::Angle::phi, 0, refined(p.phi, 360, step)};
+    out.axes[1] = {EmissionProfile::Angle::theta, 0, refined(p.theta, 180, step)};
+    for (const double phi : out.axes[0].at)
+        for (const double theta : out.axes[1].at) {
+            const double a = theta * degree, b = phi * degree;
+            const Vec3 d = std::sin(a) * (std::cos(b) * p.axis_x + std::sin(b) * p.axis_y) - std::cos(a) * p.axis_z;
+            out.values.push_back(p.intensity(d) / projected_area(areas, d));
+        }
+    return out;
+}
+
+EmissionProfile profile_of(const Photometry& p, Shape shape, const Vec3& size, const std::vector<Vec3>& areas) {
+    EmissionProfile out;
+    const bool is_flat = shape == Shape::rectangle || shape == Shape::ellipse;
+    // EmissionProfile::Body::box measures the box along the axes of the table, which are the body's in type C.
+    const bool is_box = (shape == Shape::box || shape == Shape::point) && p.type == Photometry::Type::c;
+    if (!is_flat && !is_box) {
+        // Degrees, by how far the body's edges lie off the lines of the table, and how blunt they are.
+        const double step = shape == Shape::cylinder_z || shape == Shape::box ? 1
+                            : shape == Shape::ellipsoid                       ? 0.25
+                                                                              : 0.5;
+        return baked(p, areas, step);
+    }
+    out.axes[0] = {EmissionProfile::Angle::phi, 0, p.phi};
+    out.axes[1] = {EmissionProfile::Angle::theta, 0, p.theta};
+    out.values = p.candela;
+    out.body = is_flat ? EmissionProfile::Body::flat : EmissionProfile::Body::box;
+    out.size = is_box ? size : Vec3{1, 1, 1};
+    const double area = is_flat ? norm(areas[0]) : 1;
+    for (double& v : out.values) v /= area;
+    return out;
+}
+
+}  // namespace
+
+double LuminaireBody::flux() const {
+    double sum = 0;
+    for (const Face& face : faces) sum += face.exitance * norm(area_vector(face.corners));
+    return sum;
+}
+
+LuminaireBody make_luminaire_body(const Photometry& p) {
+    LuminaireBody out;
+    Shape shape = p.opening.shape;
+    Vec3 size = p.opening.size;
+    const bool is_flat = shape == Shape::rectangle || shape == Shape::ellipse;
+    const auto enlarge = [&](double& v) {
+        if (v < least_size / 2) v = least_size, out.is_enlarged = true;
+    };
+    enlarge(size.x), enlarge(size.y);
+    if (!is_flat) enlarge(size.z);
+    const Polygons polygons = polygons_of(shape, size);
+    std::vector<Vec3> areas;
+    for (const std::vector<Point>& face : polygons) areas.push_back(area_vector(face));
+    out.profile = profile_of(p, shape, size, areas);
+    const bool is_upright = p.type == Photometry::Type::c;
+    double most = 0;
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+        const Normal n = normalized(areas[i]);
+        const double exitance = is_flat && is_upright
+                                    ? (n.z < 0 ? p.flux(0, 90) : p.flux(90, 180)) / norm(areas[i])
+                                    : exitance_of(out.profile, {dot(p.axis_x, n), dot(p.axis_y, n), dot(p.axis_z, n)});
+        most = std::max(most, exitance);
+        out.faces.push_back({polygons[i], exitance});
+    }
+    // What a table that ends at 90 degrees sends upwards by rounding is no light; of a plane opening the dark side is
+    // left out, since the other one blocks light by itself.
+    constexpr double negligible = 1e-7;
+    for (LuminaireBody::Face& face : out.faces)
+        if (face.exitance < negligible * most) face.exitance = 0;
+    if (is_flat) std::erase_if(out.faces, [](const LuminaireBody::Face& face) { return face.exitance == 0; });
+    return out;
+}
+
+}  // namespace exitance

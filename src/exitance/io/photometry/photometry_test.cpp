@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "exitance/geometry/polygon.hpp"
+#include "exitance/io/photometry/luminaire_body.hpp"
+#include "exitance/io/photometry/photometric_file.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double degree = pi / 180;
+
+/// A file of type C, its opening and angles as given, I = f(theta, phi).
+template <class F>
+std::string ies(const std::string& opening, const std::vector<double>& vertical, const std::vector<double>& horizontal,
+                F f, const std::string& edition = "IESNA:LM-63-2002", int type = 1) {
+    std::string text = edition + "\n[TEST] own\nTILT=NONE\n1 -1 1 " + std::to_string(vertical.size()) + " " +
+                       std::to_string(horizontal.size()) + " " + std::to_string(type) + " 2 " + opening + "\n1 1 10\n";
+    for (const double v : vertical) text += std::to_string(v) + " ";
+    for (const double h : horizontal) text += "\n" + std::to_string(h);
+    for (const double h : horizontal)
+        for (const double v : vertical) text += "\n" + std::to_string(f(v * degree, h * degree));
+    return text;
+}
+
+std::vector<double> steps(double from, double to, double by) {
+    std::vector<double> out;
+    for (double v = from; v <= to + 1e-9; v += by) out.push_back(v);
+    return out;
+}
+
+double cosine(double t, double) {
+    return 1000 * std::max(0.0, std::cos(t));
+}
+
+Photometry read(const std::string& text) {
+    Result<Photometry> out = read_ies(text, "own.ies");
+    EXPECT_TRUE(out) << out.error().message;
+    return std::move(*out);
+}
+
+Vec3 direction(double theta, double phi) {
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), -std::cos(theta)};
+}
+
+TEST(Photometry, SamplesHaveTheirFluxAndBadOnesAPlace) {
+    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "formats/samples";
+    if (!std::filesystem::exists(folder / "expected.json")) return;
+    std::ifstream in(folder / "expected.json");
+    const nlohmann::json all = nlohmann::json::parse(in);
+    for (const auto& [name, expected] : all.items()) {
+        const Result<Photometry> p = load_photometry((folder / name).string());
+        if (expected.contains("error")) {
+            EXPECT_TRUE(!p && p.error().code == ErrorCode::bad_input) << name;
+            continue;
+        }
+        ASSERT_TRUE(p) << name << ": " << p.error().message;
+        EXPECT_NEAR(p->flux() / expected["flux_bilinear_lm"].get<double>(), 1, 1e-6) << name;
+    }
+}
+
+TEST(Photometry, EverySymmetryIsWrittenOut) {
+    const auto f = [](double t, double p) { return 100 * std::max(0.0, std::cos(t)) * (2 + std::cos(2 * p)); };
+    const std::vector<double> v = steps(0, 90, 5);
+    const Photometry full = read(ies("0.6 0.6 0", v, steps(0, 360, 10), f));
+    for (const auto& h : {steps(0, 90, 10), steps(0, 180, 10), steps(90, 270, 10), steps(0, 350, 10)}) {
+        const Photometry p = read(ies("0.6 0.6 0", v, h, f));
+        EXPECT_NEAR(p.flux() / full.flux(), 1, 1e-9);
+        for (double phi = 0; phi < 2 * pi; phi += 0.3)
+            EXPECT_NEAR(p.intensity(direction(0.7, phi)), full.intensity(direction(0.7, phi)), 1e-3) << phi;
+    }
+}
+
+TEST(Photometry, BeyondItsAnglesATableIsDark) {
+    const Photometry p = read(ies("0.6 0.6 0", steps(0, 60, 10), {0}, [](double, double) { return 100; }));
+    EXPECT_DOUBLE_EQ(p.intensity(direction(59.9 * degree, 1)), 100);
+    EXPECT_DOUBLE_EQ(p.intensity(direction(60.1 * degree, 1)), 0);
+    EXPECT_NEAR(p.flux(), 2 * pi * 100 * 0.5, 1e-3);
+}
+
+TEST(Photometry, TypesAAndBHaveTheirBeamAlongTheAxis) {
+    // Brightest where V = 30 degrees, H = -20: towards +x and -y of the luminaire.
+    const auto f = [](double v, double h) {
+        return 1000 * std::max(0.0, 1 - 2 * (std::abs(v - pi / 6) + std::abs(h + pi / 9)));
+    };
+    for (const int type : {2, 3}) {
+        const Photometry p = read(ies("0.3 0.3 0", steps(-90, 90, 10), steps(-90, 90, 10), f, "IESNA91", type));
+        const double v = pi / 6, h = -pi / 9;
+        const Vec3 peak = type == 2 ? Vec3{std::cos(h) * std::sin(v), std::sin(h), -std::cos(h) * std::cos(v)}
+                                    : Vec3{std::sin(v), std::cos(v) * std::sin(h), -std::cos(v) * std::cos(h)};
+        EXPECT_NEAR(p.intensity(peak), 1000, 1e-3) << type;
+        EXPECT_DOUBLE_EQ(p.intensity({-peak.x, -peak.y, -peak.z}), 0);
+    }
+}
+
+TEST(Photometry, BeamAndFieldAnglesOfACosine) {
+    const Photometry down = read(ies("0.6 0.6 0", steps(0, 90, 1), {0}, cosine));
+    EXPECT_NEAR(beam_spread(down, {1, 0, 0}, 0.5).whole(), 120, 0.01);
+    EXPECT_NEAR(beam_spread(down, {0, 1, 0}, 0.1).whole(), 2 * 84.26, 0.01);
+    const Photometry up =
+        read(ies("0.6 0.6 0", steps(90, 180, 1), {0}, [](double t, double) { return -1000 * std::cos(t) + 1e-9; }));
+    EXPECT_NEAR(beam_spread(up, {1, 0, 0}, 0.5).whole(), 120, 0.01);
+}
+
+/// Intensity of all faces together, far away: sum of L A cos.
+double far_intensity(const LuminaireBody& body, const Photometry& p, const Vec3& d) {
+    double sum = 0;
+    for (const LuminaireBody::Face& face : body.faces) {
+        const Vec3 area = area_vector(face.corners);
+        const double above = dot(area, d);
+        if (face.exitance > 0 && above > 0)
+            sum += above *
+                   body.profile.radiance({dot(p.axis_x, d), dot(p.axis_y, d), dot(p.axis_z, d)}, above / norm(area));
+    }
+    return sum;
+}
+
+TEST(LuminaireBody, EveryShapeHasTheFilesFluxAndIntensity) {
+    const auto f = [](double t, double p) {
+        return 300 + 200 * std::cos(t) * (1 + 0.3 * std::cos(p)) + 50 * std::sin(t) * std::sin(p);
+    };
+    for (const char* opening : {"0 0 0", "0.3 0.6 0", "-0.4 -0.4 0", "0.3 0.6 0.2", "-0.3 -0.3 0.5", "1.2 -0.1 -0.1"}) {
+        const Photometry p = read(ies(opening, steps(0, 180, 10), steps(0, 360, 15), f));
+        const LuminaireBody body = make_luminaire_body(p);
+        ASSERT_TRUE(body.profile.is_sane()) << opening;
+        EXPECT_NEAR(body.flux() / p.flux(), 1, 1e-3) << opening;
+        double worst = 0;
+        for (int i = 0; i < 1000; ++i) {  // Fibonacci's points
+            const double z = 1 - (2 * i + 1) / 1000.0, phi = i * 2.399963229728653, r = std::sqrt(1 - z * z);
+            const Vec3 d{r * std::cos(phi), r * std::sin(phi), z};
+            if (p.opening.size.z == 0 && std::abs(z) < 0.02) continue;                             // an edge-on opening
+            if (p.opening.shape == Opening::Shape::cylinder_y && std::abs(d.y) > 0.996) continue;  // end-on: 4e-3
+            worst = std::max(worst, std::abs(far_intensity(body, p, d) / p.intensity(d) - 1));
+        }
+        EXPECT_LT(worst, 1e-3) << opening;
+    }
+}
+
+TEST(LuminaireBody, TypeBKeepsItsFluxWhateverItsShape) {
+    const auto f = [](double v, double h) { return 1000 * std::pow(std::cos(v) * std::cos(h), 3); };
+    for (const char* opening : {"0.3 0.6 0", "0.3 0.3 0.2"}) {
+        const Photometry p = read(ies(opening, steps(-90, 90, 5), steps(0, 90, 5), f, "IESNA:LM-63-2002", 2));
+        EXPECT_NEAR(make_luminaire_body(p).flux() / p.flux(), 1, 1e-3) << opening;
+    }
+}
+
+TEST(LuminaireBody, APlaneOpeningShinesOnlyWhereTheTableDoes) {
+    EXPECT_EQ(make_luminaire_body(read(ies("0.6 1.2 0", steps(0, 90, 5), {0}, cosine))).faces.size(), 1u);
+    const Photometry both =
+        read(ies("0.6 1.2 0", steps(0, 180, 5), {0}, [](double t, double) { return std::abs(std::cos(t)); }));
+    EXPECT_EQ(make_luminaire_body(both).faces.size(), 2u);
+}
+
+}  // namespace
+}  // namespace exitance
