@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/photometry/placed_luminaire.hpp"
 #include "exitance/io/scenes/gltf.hpp"
 #include "exitance/io/scenes/obj.hpp"
 #include "exitance/io/scenes/radiance.hpp"
@@ -113,10 +114,26 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
             for (SceneDescription::Face& face : one.description.faces)
                 if (face.line > 0) face.line += before;
             append(all.description, std::move(one.description)), append(all.findings, one.findings);
+            append(all.luminaires, one.luminaires);
         }
         is_first = false;
     }
     return all;
+}
+
+/// Those that files place, and those of the table.
+void add_luminaires(ReadScene& read, const LoadOptions& options) {
+    std::vector<PlacedLuminaire> all = std::move(read.luminaires);
+    if (!options.luminaires.empty()) {
+        Result<std::vector<PlacedLuminaire>> table = load_luminaire_table(options.luminaires);
+        if (!table) {
+            const Error& e = table.error();
+            read.findings.push_back({Finding::Kind::error, e.where, 0, e.message, e.hint});
+            return;
+        }
+        append(all, *table);
+    }
+    add_luminaires(all, options.photometric, read.description, read.findings);
 }
 
 }  // namespace
@@ -135,6 +152,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");
     }
     ReadScene read = read_files(paths, options);
+    add_luminaires(read, options);
     SceneLines lines = std::move(read.lines);
     LoadedScene scene{checked(std::move(read), lines), {}};
     scene.lines = std::move(lines);
@@ -149,7 +167,9 @@ CheckedScene load_scene(const std::string& path, Faults faults) {
 }
 
 SceneDescription read_description(std::span<const std::string> paths, const LoadOptions& options) {
-    return read_files(paths, options).description;
+    ReadScene read = read_files(paths, options);
+    add_luminaires(read, options);
+    return std::move(read.description);
 }
 
 }  // namespace exitance

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,7 +20,9 @@ enum class Faults : std::uint8_t {
 struct LoadOptions {
     Faults faults = Faults::repair;
     bool run_commands = false;  ///< Lets installed programs of Radiance's do what lines that begin with '!' say.
-    const StopRequest* stop = nullptr;  ///< Ends such programs.
+    const StopRequest* stop = nullptr;     ///< Ends such programs.
+    std::string luminaires = {};           ///< A table of luminaires that stand in the scene; empty: none.
+    std::optional<bool> photometric = {};  ///< Is the scene's light in lumens? None: as its files say.
 };
 
 /// A scene, and where its faces' lines stand: those of several files are counted on from one to the next.
