@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "run_program.hpp"
 
@@ -38,6 +41,109 @@ TEST(ProgramLuminaire, SaysWhereAFileIsWrong) {
     EXPECT_NE(bad.err.find("d.ies:9: '7o7.1'"), std::string::npos) << bad.err;
     EXPECT_EQ(run_program({"luminaire", folder / "d.xyz"}).status, 3);
     EXPECT_EQ(run_program({"luminaire", folder / "d.ies", "-o", "a.png"}).status, 2);
+}
+
+constexpr const char* floor_obj =
+    "mtllib floor.mtl\nv -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nusemtl grey\nf 1 2 3 4\n"
+    "v -5 -5 3\nv 5 -5 3\nv 5 5 3\nv -5 5 3\ng ceiling\nf 8 7 6 5\n";
+
+/// Illuminance (last column) at points of a floor below a ceiling, both of them black, with luminaires from a table.
+std::vector<double> lux_below(const TemporaryFolder& folder, const std::string& table, const std::string& points) {
+    write_text(folder / "floor.obj", floor_obj);
+    write_text(folder / "floor.mtl", "newmtl grey\nKd 0 0 0\n");
+    write_text(folder / "d.ies", downlight);
+    write_text(folder / "l.csv", table);
+    const Finished solved = run_program(
+        {"solve", folder / "floor.obj", "--luminaires", folder / "l.csv", "-o", folder / "s.h5", "--progress", "none"});
+    EXPECT_EQ(solved.status, 0) << solved.err;
+    const Finished probed =
+        run_program({"probe", folder / "s.h5", "--points", "-", "-o", "-"}, "x,y,z,nx,ny,nz\n" + points);
+    EXPECT_EQ(probed.status, 0) << probed.err;
+    std::vector<double> out;
+    std::istringstream lines(probed.out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_TRUE(line.ends_with(",lux")) << line;
+    while (std::getline(lines, line)) out.push_back(std::stod(line.substr(line.rfind(',') + 1)));
+    return out;
+}
+
+/// The intensity of `downlight` under an angle from its axis.
+double intensity(double cosine) {
+    const std::vector<double> table{1000, 965.9, 866, 707.1, 500, 258.8, 0};
+    const double place = std::acos(std::clamp(cosine, 0.0, 1.0)) * 180 / std::numbers::pi / 15;
+    const auto i = std::min<std::size_t>(5, static_cast<std::size_t>(place));
+    return table[i] + (place - static_cast<double>(i)) * (table[i + 1] - table[i]);
+}
+
+/// Illuminance on a horizontal plane below an opening of 1.2 x 0.6 m, a sum over 400 x 200 places of it.
+double finely_summed(double x, double y, double height) {
+    double sum = 0;
+    for (int i = 0; i < 400; ++i)
+        for (int k = 0; k < 200; ++k) {
+            const double dx = x - 1.2 * ((i + 0.5) / 400 - 0.5), dy = y - 0.6 * ((k + 0.5) / 200 - 0.5);
+            const double r2 = dx * dx + dy * dy + height * height, cosine = height / std::sqrt(r2);
+            sum += intensity(cosine) * cosine / r2 / (400 * 200);
+        }
+    return sum;
+}
+
+TEST(ProgramLuminaire, LightOfAnOpeningInACeilingIsThatOfItsParts) {
+    const TemporaryFolder folder;
+    const std::vector<double> lux = lux_below(folder, "file,x,y,z\nd.ies,0,0,3\n",
+                                              "0,0,0,0,0,1\n2,1,0,0,0,1\n0.2,0.1,2.5,0,0,1\n0.9,0,2.9,0,0,1\n");
+    ASSERT_EQ(lux.size(), 4u);
+    EXPECT_NEAR(lux[0] / finely_summed(0, 0, 3), 1, 1e-3);
+    EXPECT_NEAR(lux[1] / finely_summed(2, 1, 3), 1, 1e-3);
+    EXPECT_NEAR(lux[2] / finely_summed(0.2, 0.1, 0.5), 1, 1e-3);
+    EXPECT_NEAR(lux[3] / finely_summed(0.9, 0, 0.1), 1, 1e-3);
+}
+
+TEST(ProgramLuminaire, ATableTurnsAndDims) {
+    const TemporaryFolder folder;
+    const std::vector<double> plain = lux_below(folder, "file,x,y,z\nd.ies,0,0,2\n", "1,0,0,0,0,1\n0,1,0,0,0,1\n");
+    const std::vector<double> turned = lux_below(folder,
+                                                 "# a comment\nfile,x,y,z,rotation,dimming,lumens,maintenance_factor,"
+                                                 "group\n\"d.ies\",0,0,2,90,0.5,2000,0.8,\"office, west\"\n",
+                                                 "1,0,0,0,0,1\n0,1,0,0,0,1\n");
+    ASSERT_EQ(turned.size(), 2u);
+    EXPECT_NEAR(turned[1] / plain[0], 0.5 * 0.5 * 0.8, 1e-6);  // half of its 4000 lm
+    EXPECT_NEAR(turned[0] / plain[1], 0.5 * 0.5 * 0.8, 1e-6);
+    const std::vector<double> aimed =
+        lux_below(folder, "file,x,y,z,aim_x,aim_y,aim_z\nd.ies,0,0,2,1,0,-1\n", "2,0,0,0,0,1\n-2,0,0,0,0,1\n");
+    EXPECT_NEAR(aimed[0] / (1000 * std::sqrt(0.5) / 8), 1, 0.05);  // on its axis, 2.83 m away: not quite far
+    EXPECT_NEAR(aimed[1], 0, 0.5);
+}
+
+TEST(ProgramLuminaire, ATableIsReadStrictly) {
+    const TemporaryFolder folder;
+    write_text(folder / "floor.obj", floor_obj);
+    write_text(folder / "floor.mtl", "newmtl grey\nKd 0 0 0\n");
+    write_text(folder / "d.ies", downlight);
+    const auto message = [&](const std::string& table) {
+        write_text(folder / "l.csv", table);
+        const Finished ran = run_program({"check", folder / "floor.obj", "--luminaires", folder / "l.csv"});
+        EXPECT_EQ(ran.status, 3) << table;
+        return ran.err;
+    };
+    EXPECT_NE(message("file,x,y\nd.ies,0,0\n").find("l.csv:1: the header has no column z"), std::string::npos);
+    EXPECT_NE(message("file,x,y,z,dimmer\nd.ies,0,0,1,1\n").find("no column 'dimmer'"), std::string::npos);
+    EXPECT_NE(message("file,x,y,z\nd.ies,0,0,one\n").find("l.csv:2: 'one'"), std::string::npos);
+    EXPECT_NE(message("file,x,y,z\ne.ies,0,0,1\n").find("e.ies"), std::string::npos);
+    EXPECT_NE(message("file,x,y,z,dimming\nd.ies,0,0,1,2\n").find("dimming 2"), std::string::npos);
+}
+
+TEST(ProgramLuminaire, ANamedEmptyOfGltfIsALuminaire) {
+    const TemporaryFolder folder;
+    const std::string points = "1,0,0,0,0,1\n0,1,0,0,0,1\n";
+    const std::vector<double> table = lux_below(folder, "file,x,y,z\nd.ies,0.5,0,2\n", points);
+    write_text(folder / "e.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+                                  R"("nodes":[{"name":"d.ies.001","translation":[0.5,2,0]}]})");
+    const Finished solved = run_program({"solve", folder / "floor.obj", folder / "e.gltf", "-o", folder / "g.h5"});
+    EXPECT_EQ(solved.status, 0) << solved.err;
+    const Finished probed = run_program({"probe", folder / "g.h5", "--points", "-"}, "x,y,z,nx,ny,nz\n" + points);
+    const std::size_t last = probed.out.rfind(',');
+    EXPECT_NEAR(std::stod(probed.out.substr(last + 1)), table[1], 1e-6 * table[1]);
 }
 
 }  // namespace

@@ -75,6 +75,10 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
     app.add_flag_callback(
         "--strict", [&scene] { scene.load.faults = Faults::refuse; },
         "Faults of the scene are errors; else they are repaired");
+    app.add_option("--luminaires", scene.load.luminaires,
+                   "Table of luminaires in the scene (.csv): file,x,y,z and, where wanted, aim_x,aim_y,aim_z,rotation,"
+                   "dimming,lumens,maintenance_factor,group")
+        ->type_name("FILE");
     app.add_flag("--run-commands", scene.load.run_commands,
                  "Have lines of .rad files that begin with '!' done by Radiance's programs, where they are installed");
 }

@@ -201,6 +201,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     StopRequest reading_stop;  // of programs that make parts of the scene
     if (arguments.time_limit) reading_stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
     arguments.scene.load.stop = &reading_stop;
+    arguments.scene.load.photometric = arguments.photometric;
     CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);

@@ -124,7 +124,7 @@ double EmissionProfile::radiance(const Vec3& d, double cosine) const {
 }
 
 void EmissionProfile::find_smooth_width() {
-    constexpr double widest = 30;
+    constexpr double widest = 30, jump = 1e-3;  // a shorter step is an edge of the light, which no rule follows
     double width = widest;
     double sum = 0;
     for (const double v : values) sum += v;
@@ -132,7 +132,8 @@ void EmissionProfile::find_smooth_width() {
     const std::size_t rows = axes[0].at.size(), columns = axes[1].at.size();
     const auto add_axis = [&](const Axis& axis, std::size_t lines, std::size_t stride, std::size_t step) {
         double finest = widest;
-        for (std::size_t i = 1; i < axis.at.size(); ++i) finest = std::min(finest, axis.at[i] - axis.at[i - 1]);
+        for (std::size_t i = 1; i < axis.at.size(); ++i)
+            if (const double step = axis.at[i] - axis.at[i - 1]; step > jump) finest = std::min(finest, step);
         double found = axis.at.size() > 1 ? finest : widest;
         for (std::size_t k = 2; k < axis.at.size() && found < widest; k *= 2) {
             double narrowest = widest;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/scenes/gltf.hpp"
 #include "exitance/io/scenes/gltf_model.hpp"
 
@@ -25,7 +27,8 @@ Spectrum spread(const GltfModel::Colour& c) {
 
 class SceneMaker {
   public:
-    SceneMaker(const GltfModel& in, ReadScene& out) : in_(in), out_(out.description), findings_(out.findings) {}
+    SceneMaker(const GltfModel& in, ReadScene& out)
+        : in_(in), out_(out.description), findings_(out.findings), luminaires_(out.luminaires) {}
     void make();
 
   private:
@@ -40,6 +43,7 @@ class SceneMaker {
     std::uint32_t corner(const GltfModel::Primitive& p, const Affine& to_world, std::uint32_t index);
     void add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world);
     void add_view(const GltfModel::View& view, const Affine& to_world);
+    void add_luminaire(const std::string& name, const Affine& to_world);
 
     bool error(std::string message, std::string hint = "") {
         findings_.push_back({Finding::Kind::error, out_.file, 0, std::move(message), std::move(hint)});
@@ -52,6 +56,7 @@ class SceneMaker {
     const GltfModel& in_;
     SceneDescription& out_;
     std::vector<Finding>& findings_;
+    std::vector<PlacedLuminaire>& luminaires_;
     std::vector<std::uint32_t> group_of_mesh_;
     std::uint32_t default_material_ = 0;
     bool has_default_ = false;
@@ -217,6 +222,25 @@ void SceneMaker::add_view(const GltfModel::View& view, const Affine& to_world) {
     out_.cameras.push_back(std::move(camera));
 }
 
+/// The name of a photometric file, without the number by which programs tell copies apart ("a.ies.001"); or nothing.
+std::string photometric_name(std::string name) {
+    if (const std::size_t dot = name.find_last_of('.');
+        dot != std::string::npos && dot + 1 < name.size() && name.find_first_not_of("0123456789", dot + 1) == name.npos)
+        name.erase(dot);
+    return names_photometry(name) ? name : "";
+}
+
+/// An empty node with the name of a photometric file is a luminaire: turned by nothing it shines down, its C0 along x.
+void SceneMaker::add_luminaire(const std::string& name, const Affine& to_world) {
+    PlacedLuminaire out;
+    out.path = beside(out_.file, name), out.file = out_.file, out.position = to_world.origin;
+    const Vec3 z = to_world.y, x = to_world.x - (squared_norm(z) > 0 ? dot(to_world.x, z) / squared_norm(z) : 0) * z;
+    if (!(norm(x) > 0 && norm(z) > 0) || !is_finite(to_world.origin))
+        return void(error(fmt::format("luminaire '{}' has no direction: its node has scale 0", name)));
+    out.x = normalized(x), out.z = normalized(z), out.y = cross(out.z, out.x);
+    luminaires_.push_back(std::move(out));
+}
+
 /// Every node once, parents first; a node that is reached twice is no tree's.
 bool SceneMaker::visit_nodes() {
     struct Visit {
@@ -239,6 +263,8 @@ bool SceneMaker::visit_nodes() {
         if (node.mesh >= 0 && !add_mesh(node, to_world)) return false;
         if (node.lamp >= 0) add_lamp(in_.lamps[static_cast<std::size_t>(node.lamp)], to_world);
         if (node.view >= 0) add_view(in_.views[static_cast<std::size_t>(node.view)], to_world);
+        if (node.mesh < 0 && node.lamp < 0 && node.view < 0)
+            if (const std::string name = photometric_name(node.name); !name.empty()) add_luminaire(name, to_world);
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
             open.push_back({*child, to_world});
     }

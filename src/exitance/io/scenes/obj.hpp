@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "exitance/io/photometry/placed_luminaire.hpp"
 #include "exitance/io/scenes/scene_lines.hpp"
 #include "exitance/scene/scene.hpp"
 
@@ -12,6 +13,7 @@ namespace exitance {
 struct ReadScene {
     SceneDescription description;
     std::vector<Finding> findings;
+    std::vector<PlacedLuminaire> luminaires = {};
     SceneLines lines = {};  ///< Empty: all faces stand in the description's file.
 };
 

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/photometry/placed_luminaire.hpp"
 #include "exitance/io/scenes/gltf.hpp"
 #include "exitance/io/scenes/obj.hpp"
 #include "exitance/io/scenes/radiance.hpp"
@@ -116,6 +117,7 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
             for (Pane& pane : one.description.panes)
                 if (pane.line > 0) pane.line += before;
             append(all.description, std::move(one.description)), append(all.findings, one.findings);
+            append(all.luminaires, one.luminaires);
         }
         is_first = false;
     }
@@ -131,6 +133,21 @@ void give_sky(const ChosenSky& sky, ReadScene& read) {
                                  "leave out --sky to have the scene's own"});
     const bool photometric = sky.photometric.value_or(description.photometric);
     description.distant = photometric ? sky.in_lumens : sky.in_watts;
+}
+
+/// Those that files place, and those of the table.
+void add_luminaires(ReadScene& read, const LoadOptions& options) {
+    std::vector<PlacedLuminaire> all = std::move(read.luminaires);
+    if (!options.luminaires.empty()) {
+        Result<std::vector<PlacedLuminaire>> table = load_luminaire_table(options.luminaires);
+        if (!table) {
+            const Error& e = table.error();
+            read.findings.push_back({Finding::Kind::error, e.where, 0, e.message, e.hint});
+            return;
+        }
+        append(all, *table);
+    }
+    add_luminaires(all, options.photometric, read.description, read.findings);
 }
 
 }  // namespace
@@ -150,6 +167,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
     }
     ReadScene read = read_files(paths, options);
     if (options.sky) give_sky(*options.sky, read);
+    add_luminaires(read, options);
     SceneLines lines = std::move(read.lines);
     LoadedScene scene{checked(std::move(read), lines), {}};
     scene.lines = std::move(lines);
@@ -164,7 +182,9 @@ CheckedScene load_scene(const std::string& path, Faults faults) {
 }
 
 SceneDescription read_description(std::span<const std::string> paths, const LoadOptions& options) {
-    return read_files(paths, options).description;
+    ReadScene read = read_files(paths, options);
+    add_luminaires(read, options);
+    return std::move(read.description);
 }
 
 }  // namespace exitance

@@ -28,6 +28,8 @@ struct LoadOptions {
     bool run_commands = false;  ///< Lets installed programs of Radiance's do what lines that begin with '!' say.
     const StopRequest* stop = nullptr;  ///< Ends such programs.
     std::optional<ChosenSky> sky = {};
+    std::string luminaires = {};           ///< A table of luminaires that stand in the scene; empty: none.
+    std::optional<bool> photometric = {};  ///< Is the scene's light in lumens? None: as its files say.
 };
 
 /// A scene, and where its faces' lines stand: those of several files are counted on from one to the next.

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <tuple>
+
+#include "exitance/io/photometry/luminaire_body.hpp"
+#include "exitance/io/photometry/photometric_file.hpp"
+#include "exitance/io/photometry/placed_luminaire.hpp"
+#include "exitance/scene/photometric_units.hpp"
+
+namespace exitance {
+namespace {
+
+class Luminaires {
+  public:
+    Luminaires(SceneDescription& scene, std::vector<Finding>& findings) : scene_(scene), findings_(findings) {}
+
+    double lumens_to_light = 1;
+    void add(const PlacedLuminaire& luminaire);
+
+  private:
+    /// A photometric file and what has been made of it.
+    struct Lamp {
+        bool is_read = false;
+        Photometry photometry;
+        LuminaireBody body;
+        ProfileId profile;
+    };
+    const Lamp* lamp_of(const PlacedLuminaire& luminaire);
+    std::uint32_t material_of(const Lamp& lamp, const PlacedLuminaire& luminaire, double table_exitance, double factor);
+
+    SceneDescription& scene_;
+    std::vector<Finding>& findings_;
+    std::map<std::string, Lamp> lamps_;
+    std::map<std::tuple<std::uint32_t, double, double, std::array<double, 9>>, std::uint32_t> materials_;
+    std::size_t count_ = 0;
+};
+
+const Luminaires::Lamp* Luminaires::lamp_of(const PlacedLuminaire& luminaire) {
+    const auto [at, is_new] = lamps_.try_emplace(luminaire.path);
+    Lamp& lamp = at->second;
+    if (!is_new) return lamp.is_read ? &lamp : nullptr;
+    Result<Photometry> read = load_photometry(luminaire.path);
+    if (!read) {
+        const Error& e = read.error();
+        findings_.push_back({Finding::Kind::error, luminaire.file, luminaire.line,
+                             fmt::format("its luminaire cannot be read: {}: {}", e.where, e.message), e.hint});
+        return nullptr;
+    }
+    findings_.insert(findings_.end(), read->findings.begin(), read->findings.end());
+    lamp.photometry = std::move(*read);
+    lamp.body = make_luminaire_body(lamp.photometry);
+    if (lamp.body.is_enlarged)
+        findings_.push_back({Finding::Kind::warning, luminaire.path, 0,
+                             "its opening has no extent in some direction: 1 cm is taken",
+                             "light nearer than some centimetres follows from that"});
+    lamp.profile = ProfileId(scene_.profiles.size());
+    scene_.profiles.push_back(lamp.body.profile);
+    lamp.is_read = true;
+    return &lamp;
+}
+
+/// Faces that are alike in how they shine share a material.
+std::uint32_t Luminaires::material_of(const Lamp& lamp, const PlacedLuminaire& luminaire, double table_exitance,
+                                      double factor) {
+    const auto world = [&](const Vec3& v) { return v.x * luminaire.x + v.y * luminaire.y + v.z * luminaire.z; };
+    const Photometry& p = lamp.photometry;
+    DirectedEmission emission;
+    emission.profile = lamp.profile;
+    emission.x = world(p.axis_x), emission.y = world(p.axis_y), emission.z = world(p.axis_z);
+    std::array<double, 9> turn;
+    std::size_t next = 0;
+    for (const Vec3& v : {emission.x, emission.y, emission.z})
+        for (const double c : {v.x, v.y, v.z}) turn[next++] = c;
+    const auto number = static_cast<std::uint32_t>(scene_.materials.size());
+    const auto [at, is_new] = materials_.try_emplace({lamp.profile.value, table_exitance, factor, turn}, number);
+    if (!is_new) return at->second;
+    Material material;
+    material.name = "luminaire " + std::filesystem::path(p.file).filename().string();
+    material.exitance = Spectrum(table_exitance * factor);
+    if (material.emits()) {
+        emission.scale = pi / table_exitance;
+        material.emission = emission;
+    }
+    scene_.materials.push_back(std::move(material));
+    return number;
+}
+
+void Luminaires::add(const PlacedLuminaire& luminaire) {
+    const Lamp* lamp = lamp_of(luminaire);
+    ++count_;
+    if (!lamp) return;
+    double factor = luminaire.dimming * luminaire.maintenance * lumens_to_light;
+    if (luminaire.lumens) factor *= *luminaire.lumens / lamp->photometry.lamp_lumens.value_or(lamp->photometry.flux());
+    const auto group = static_cast<std::uint32_t>(scene_.groups.size());
+    scene_.groups.push_back(fmt::format("{} #{}", luminaire.group.empty() ? "luminaire" : luminaire.group, count_));
+    for (const LuminaireBody::Face& face : lamp->body.faces) {
+        SceneDescription::Face out;
+        out.material = material_of(*lamp, luminaire, face.exitance, factor);
+        out.group = group;
+        for (const Point& p : face.corners) {
+            out.corners.push_back(static_cast<std::uint32_t>(scene_.points.size()));
+            scene_.points.push_back(luminaire.position + p.x * luminaire.x + p.y * luminaire.y + p.z * luminaire.z);
+        }
+        scene_.faces.push_back(std::move(out));
+    }
+}
+
+}  // namespace
+
+void add_luminaires(const std::vector<PlacedLuminaire>& luminaires, std::optional<bool> photometric,
+                    SceneDescription& scene, std::vector<Finding>& findings) {
+    if (luminaires.empty()) return;
+    const bool shines =
+        std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.emits(); }) ||
+        !scene.lights.empty();
+    const bool in_lumens = photometric.value_or(scene.photometric || !shines);
+    if (!in_lumens && !photometric)
+        findings.push_back({Finding::Kind::warning, scene.file, 0,
+                            fmt::format("light of the scene is in watts: the luminaires' is taken as W by {:g} lm/W",
+                                        daylight_efficacy),
+                            "--quantity photometric takes the scene's own light as given in cd/m^2"});
+    scene.photometric = in_lumens;
+    Luminaires all(scene, findings);
+    if (!in_lumens) all.lumens_to_light = 1 / daylight_efficacy;
+    for (const PlacedLuminaire& luminaire : luminaires) all.add(luminaire);
+}
+
+}  // namespace exitance

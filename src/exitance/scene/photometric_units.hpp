@@ -1,0 +1,27 @@
+#pragma once
+
+#include "exitance/core/spectrum.hpp"
+
+namespace exitance {
+
+/// lm/W of white light, as Radiance has it (WHTEFFICACY): what turns lumens into watts of three equal bands.
+inline constexpr double daylight_efficacy = 179;
+
+/// How much each of three bands in watts counts for the eye: Radiance's weights of R, G, B, 0.265, 0.670, 0.065, whose
+/// sum is 1. In builds of other bands all count alike.
+inline double radiance_weighted_mean(const Spectrum& watts) {
+    if constexpr (bands == 3) return 0.265 * watts[0] + 0.670 * watts[1] + 0.065 * watts[2];
+    return mean(watts);
+}
+
+/// What makes lm/m^2 (lx) of light.
+struct LuminousWeights {
+    bool photometric = false;  ///< Light is in lumens as it stands; its bands are weighed as those of linear sRGB.
+    double efficacy = daylight_efficacy;  ///< lm/W otherwise.
+
+    double operator()(const Spectrum& light) const {
+        return photometric ? luminous_mean(light) : efficacy * radiance_weighted_mean(light);
+    }
+};
+
+}  // namespace exitance
