@@ -19,6 +19,8 @@ class Luminaires {
 
     double lumens_to_light = 1;
     void add(const PlacedLuminaire& luminaire);
+    /// What the path of luminaires means, without a file.
+    void know(const std::string& path, Photometry photometry);
 
   private:
     /// A photometric file and what has been made of it.
@@ -50,16 +52,21 @@ const Luminaires::Lamp* Luminaires::lamp_of(const PlacedLuminaire& luminaire) {
         return nullptr;
     }
     findings_.insert(findings_.end(), read->findings.begin(), read->findings.end());
-    lamp.photometry = std::move(*read);
-    lamp.body = make_luminaire_body(lamp.photometry);
+    know(luminaire.path, std::move(*read));
     if (lamp.body.is_enlarged)
         findings_.push_back({Finding::Kind::warning, luminaire.path, 0,
                              "its opening has no extent in some direction: 1 cm is taken",
                              "light nearer than some centimetres follows from that"});
+    return &lamp;
+}
+
+void Luminaires::know(const std::string& path, Photometry photometry) {
+    Lamp& lamp = lamps_[path];
+    lamp.photometry = std::move(photometry);
+    lamp.body = make_luminaire_body(lamp.photometry);
     lamp.profile = ProfileId(scene_.profiles.size());
     scene_.profiles.push_back(lamp.body.profile);
     lamp.is_read = true;
-    return &lamp;
 }
 
 /// Faces that are alike in how they shine share a material.
@@ -109,6 +116,13 @@ void Luminaires::add(const PlacedLuminaire& luminaire) {
 }
 
 }  // namespace
+
+void add_luminaire(const Photometry& photometry, const PlacedLuminaire& luminaire, SceneDescription& scene) {
+    std::vector<Finding> none;
+    Luminaires one(scene, none);
+    one.know(luminaire.path, photometry);
+    one.add(luminaire);
+}
 
 void add_luminaires(const std::vector<PlacedLuminaire>& luminaires, std::optional<bool> photometric,
                     SceneDescription& scene, std::vector<Finding>& findings) {

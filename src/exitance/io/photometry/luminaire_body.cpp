@@ -12,7 +12,8 @@ using Shape = Opening::Shape;
 using Polygons = std::vector<std::vector<Point>>;
 
 constexpr double degree = pi / 180;
-constexpr double least_size = 0.01;  ///< Of what has no extent, metres.
+constexpr double least_size = 0.01;   ///< Of what has an extent in some directions alone, metres,
+constexpr double point_size = 0.001;  ///< and of what has none.
 constexpr int sides = 24;  ///< Of a round edge: it has normals where tables of 1, 3, 5 and 15 degrees have entries.
 constexpr int lying_sides = 32;  ///< Of a cylinder that lies, whose edges no grid of angles follows.
 constexpr int bands_of_sphere = 8, sides_of_sphere = 16;
@@ -169,7 +170,8 @@ LuminaireBody make_luminaire_body(const Photometry& p) {
     Vec3 size = p.opening.size;
     const bool is_flat = shape == Shape::rectangle || shape == Shape::ellipse;
     const auto enlarge = [&](double& v) {
-        if (v < least_size / 2) v = least_size, out.is_enlarged = true;
+        const double least = shape == Shape::point ? point_size : least_size;
+        if (v < least / 2) v = least, out.is_enlarged = shape != Shape::point;
     };
     enlarge(size.x), enlarge(size.y);
     if (!is_flat) enlarge(size.z);

@@ -13,7 +13,7 @@ namespace exitance {
 /// so that far away the faces together have the file's intensity exactly, and near by every part of the opening is
 /// seen under its own direction. A plane opening is one face for the light below it and one for that above.
 /// Rounded bodies are polyhedra of the same surface (of the same area where they are plane), whose own projected area
-/// divides. A point is a cube of 1 cm. A line is 1 cm wide.
+/// divides. A point is a cube of 1 mm. A line is 1 cm wide.
 struct LuminaireBody {
     struct Face {
         std::vector<Point> corners;  ///< In the luminaire's frame, metres, counter-clockwise seen from its front.
@@ -22,7 +22,7 @@ struct LuminaireBody {
     std::vector<Face> faces;
     EmissionProfile profile;   ///< Radiance in cd/m^2 by directions of the table's frame (Photometry::axis_x, ...).
     double flux() const;       ///< Of all faces, lm.
-    bool is_enlarged = false;  ///< A point or a line that has been given an extent.
+    bool is_enlarged = false;  ///< A line that has been given a width, for example.
 };
 
 LuminaireBody make_luminaire_body(const Photometry& photometry);

@@ -31,6 +31,11 @@ void aim(PlacedLuminaire& luminaire, const Normal& direction, double rotation);
 /// comment.
 Result<std::vector<PlacedLuminaire>> load_luminaire_table(const std::string& path);
 
+struct Photometry;
+
+/// Adds one luminaire of photometry that is no file's, in the scene's own unit.
+void add_luminaire(const Photometry& photometry, const PlacedLuminaire& luminaire, SceneDescription& scene);
+
 /// Adds luminaires to a scene, their openings as faces that shine; each is a group of its own, "GROUP #3" or
 /// "luminaire #3". They come last, so that of faces in one plane they are on top: an opening may lie in a ceiling.
 /// photometric: whether the scene's light is in lumens; none: it is, unless something shines there in watts. In a scene
