@@ -40,7 +40,10 @@ const std::vector<Door> doors{
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view_server.cpp"}},
-    {"nlohmann-json", std::regex("nlohmann/.*"), {"cli/json_output.cpp", "io/export/viewer_data.cpp"}},
+    {"nlohmann-json",
+     std::regex("nlohmann/.*"),
+     {"cli/json_output.cpp", "experiments/study/run_facts.cpp", "io/export/viewer_data.cpp"}},
+    {"toml++", std::regex("toml\\+\\+/.*"), {"experiments/study/study_file.cpp"}},
 };
 
 struct Include {

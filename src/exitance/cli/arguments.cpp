@@ -85,6 +85,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<GenerateArguments>},
         {"luminaire", "Tells the facts of a photometric file; draws its polar diagram and its opening.",
          "exitance luminaire downlight.ies -o downlight.svg", parse_verb<LuminaireArguments>},
+        {"experiment", "Runs a study of methods: tables, plots, and a page of conclusions.",
+         "exitance experiment blocker --quick -o blocker", parse_verb<ExperimentArguments>},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
         {"view", "Shows a solution in a browser, or a scene while it is solved.", "exitance view room.h5",

@@ -135,6 +135,14 @@ struct LuminaireArguments : CommonArguments {
     std::vector<std::string> outputs;
 };
 
+struct ExperimentArguments : CommonArguments {
+    std::string study;   ///< A built-in one, a file (.toml), or "list".
+    std::string output;  ///< A folder.
+    std::vector<std::string> methods;
+    bool quick = false, print = false;
+    int threads = 0;
+};
+
 struct ViewFactorArguments : CommonArguments {
     SceneArguments scene;
     std::string output;
@@ -155,9 +163,10 @@ struct ViewArguments : CommonArguments {
 };
 
 /// What the program is to do.
-using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments,
-                             RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments,
-                             GenerateArguments, LuminaireArguments, ViewFactorArguments, ViewArguments>;
+using Command =
+    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
+                 BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
+                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, ViewArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

@@ -103,6 +103,7 @@ void declare(CLI::App& app, DaylightArguments& arguments);
 void declare(CLI::App& app, CheckArguments& arguments);
 void declare(CLI::App& app, GenerateArguments& arguments);
 void declare(CLI::App& app, LuminaireArguments& arguments);
+void declare(CLI::App& app, ExperimentArguments& arguments);
 void declare(CLI::App& app, ViewFactorArguments& arguments);
 void declare(CLI::App& app, ViewArguments& arguments);
 

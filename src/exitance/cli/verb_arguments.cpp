@@ -323,6 +323,21 @@ void declare(CLI::App& app, LuminaireArguments& arguments) {
     declare_json(app, arguments);
 }
 
+void declare(CLI::App& app, ExperimentArguments& arguments) {
+    app.add_option("STUDY", arguments.study, "Name of a study, a file that describes one (.toml), or 'list'")
+        ->required();
+    app.add_option("-o,--output", arguments.output,
+                   "Folder for index.html, results.csv, plots and pictures; runs that are finished there are not "
+                   "repeated")
+        ->type_name("FOLDER");
+    app.add_option("--methods", arguments.methods, "Only rows with these labels, methods or bases, between commas")
+        ->delimiter(',')
+        ->type_name("NAMES");
+    app.add_flag("--quick", arguments.quick, "Fewer and smaller runs: under two minutes");
+    app.add_flag("--print", arguments.print, "Print the study's description, to begin one's own with");
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("-o,--output", arguments.output,

@@ -19,6 +19,7 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal);
 ExitCode run(const CheckArguments& arguments, Terminal& terminal);
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
 ExitCode run(const LuminaireArguments& arguments, Terminal& terminal);
+ExitCode run(const ExperimentArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewArguments& arguments, Terminal& terminal);
 

@@ -141,6 +141,11 @@ ElementFunction with_direct(const ElementFunction& E, const DirectProjection& di
     return out;
 }
 
+// Among the figures: seconds, by the clock and of all processors, from the method's beginning to the end of gather and
+// smoothing, less what writing snapshots took.
+constexpr const char* method_key = "method_seconds";
+constexpr const char* processor_key = "processor_seconds";
+
 void record(const ClassicalInput& input, Method method, const ClassicalLight& light, SolveStatistics& s,
             ClassicalFacts& facts) {
     s.method = name_in(method_names, method);
@@ -166,19 +171,19 @@ void record(const ClassicalInput& input, Method method, const ClassicalLight& li
 }
 
 /// A solution as it stands while the method is at work.
-Solution unfinished(const Stage& stage, Method method, const SolveOptions& options, const ClassicalOptions& classical,
-                    const ElementFunction& E) {
+Solution unfinished(const ClassicalInput& input, Method method, const Snapshots::Moment& moment) {
+    const Stage& stage = input.stage;
+    const ElementFunction& E = moment.light.irradiance;
     Solution out{.scene = stage.scene};
-    out.direct_in_elements = classical.carried();
-    out.indirect = options.smoothing.value_or(false) ? averaged_at_vertices(E, 1e-6 * stage.scene.size()) : E;
-    out.interpolant = with_direct(out.indirect, direct_on(stage, classical.carried(), E.tree));
-    out.statistics.method = name_in(method_names, method);
-    out.statistics.basis = basis_name(method, options);
-    out.statistics.schedule = name_in(schedule_names, schedule());
-    out.statistics.threads = threads();
-    out.statistics.surfaces = stage.scene.surfaces().size();
-    out.statistics.leaf_elements = E.tree.leaves().size();
-    out.statistics.elements = E.tree.size();
+    out.direct_in_elements = input.carries();
+    out.indirect = input.options.smoothing.value_or(false) ? averaged_at_vertices(E, 1e-6 * stage.scene.size()) : E;
+    out.interpolant = with_direct(out.indirect, direct_on(stage, input.carries(), E.tree));
+    ClassicalFacts facts;
+    record(input, method, moment.light, out.statistics, facts);
+    out.statistics.converged = false;
+    out.statistics.seconds["total"] = moment.seconds;
+    out.statistics.figures[method_key] = moment.seconds;
+    out.statistics.figures[processor_key] = moment.processor_seconds;
     return out;
 }
 
@@ -204,17 +209,18 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     Stopwatch watch;
     Stage stage(scene);
     const Knobs knobs = knobs_for_error(options.error_target(), stage.pieces, options);
-    const auto on_the_way = [&](const ElementFunction& E, std::size_t number) {
-        return sink ? sink(unfinished(stage, *method, options, classical, E), number) : Result<void>();
-    };
-    Snapshots snapshots(classical.snapshots, on_the_way);
+    const ClassicalInput* watched = nullptr;
+    Snapshots snapshots(classical.snapshots, [&](const Snapshots::Moment& moment) {
+        return sink ? sink(unfinished(*watched, *method, moment), moment.number) : Result<void>();
+    });
     const ClassicalInput input{stage, options, classical, knobs, progress, stop, snapshots};
+    watched = &input;
     Solution solution{.scene = scene};
     SolveStatistics& statistics = solution.statistics;
     statistics.seconds["mesh"] = watch.restart();
     ClassicalLight light = find_light(*method, input);
     if (!snapshots.written()) return snapshots.written().error();
-    statistics.seconds["solve"] = watch.restart();
+    statistics.seconds["solve"] = watch.restart() - snapshots.writing();
     record(input, *method, light, statistics, facts);
     solution.direct_in_elements = classical.carried();
     solution.indirect = std::move(light.irradiance);
@@ -223,13 +229,15 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     statistics.seconds["gather"] = watch.restart();
     if (options.smoothing.value_or(false))
         solution.indirect = averaged_at_vertices(solution.indirect, 1e-6 * scene.size());
+    statistics.figures[method_key] = snapshots.seconds();
+    statistics.figures[processor_key] = snapshots.processor_seconds();
     progress.phase("reconstruct");
     const DirectProjection direct = direct_on(stage, input.carries(), solution.indirect.tree);
     solution.interpolant = with_direct(solution.indirect, direct);
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // the balance asks them what escapes
     statistics.energy = energy_balance(solution, direct, stage);
     statistics.seconds["reconstruct"] = watch.restart();
-    statistics.seconds["total"] = whole.seconds();
+    statistics.seconds["total"] = whole.seconds() - snapshots.writing();
     statistics.peak_memory_bytes = peak_memory_bytes();
     return solution;
 }

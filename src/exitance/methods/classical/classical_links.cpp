@@ -376,7 +376,11 @@ ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis
         const bool cut = round < most_rounds && elements.refine(coarser * input.classical.threshold.value_or(0));
         change = elements.gather();
         ++light.report.iterations;
-        input.snapshots.after_round([&] { return elements.irradiance(); });
+        input.snapshots.after_round([&] {
+            ClassicalLight so_far = light;
+            elements.report(so_far);
+            return so_far;
+        });
         light.report.interrupted = input.stop.requested();
         if (light.report.interrupted || elements.out_of_memory()) break;
         if (input.options.max_iterations && light.report.iterations >= *input.options.max_iterations) break;

@@ -43,14 +43,19 @@ void solve_with(const ClassicalInput& input, const ElementTree& tree, const Leaf
     if (!input.carries())
         for (std::size_t i = 0; i < n; ++i) rhs[i] *= rho[i];
     std::vector<Spectrum> b = rhs, E(n);
-    const auto function = [&] {
-        F.gather(b, E);
-        return constant_function(tree, numbering.leaves, E);
-    };
-    light.report = relax(input, {F, rho, rhs, area}, b, [&] { input.snapshots.after_round(function); });
-    light.irradiance = function();
     light.link_memory_bytes = F.memory_bytes();
     light.coefficient_memory_bytes = 3 * n * sizeof(Spectrum);  // b, E and what enters
+    std::size_t rounds = 0;
+    const auto light_so_far = [&] {
+        F.gather(b, E);
+        light.irradiance = constant_function(tree, numbering.leaves, E);
+        light.report.iterations = rounds;
+        return light;
+    };
+    const auto swept = [&] { ++rounds, input.snapshots.after_round(light_so_far); };
+    const SolveReport report = relax(input, {F, rho, rhs, area}, b, swept);
+    light_so_far();
+    light.report = report;
 }
 
 }  // namespace

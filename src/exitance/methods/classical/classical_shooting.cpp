@@ -331,7 +331,12 @@ SolveReport Shooting::run() {
         if (report.iterations > 0) {
             ++shots_;
             if (during) refine();
-            input_.snapshots.after_shot(shots_, [&] { return irradiance(); });
+            input_.snapshots.after_shot(shots_, [&] {
+                ClassicalLight so_far;
+                this->report(so_far);
+                so_far.report.iterations = shots_;
+                return so_far;
+            });
         }
         if (report.converged || report.interrupted || shots_ == left || shots_ >= most) break;
     }

@@ -102,7 +102,9 @@ PolygonKit make_complex(const FamilyValues& values) {
     kit.material("chair0", {0.55, 0.35, 0.20});
     kit.material("chair1", {0.25, 0.40, 0.55});
     kit.material("chair2", {0.50, 0.50, 0.45});
-    const double k = std::sqrt(m), outer = 2.4 * k, inner = 0.7 * k, height = 2.4 * k;
+    constexpr int whole_room = 36;  // chairs that an unscaled room is made for
+    const double k = std::sqrt(values.at("scaled") > 0 ? m : std::max(m, whole_room)), outer = 2.4 * k, inner = 0.7 * k,
+                 height = 2.4 * k;
     const double chairs = 2 * (outer / 2 - 0.75);  // circumradius of the triangle of chairs, clear of the walls
     std::vector<Point> floor, ceiling;
     std::array<Vec2, 3> corner;

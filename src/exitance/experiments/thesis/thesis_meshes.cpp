@@ -1,15 +1,7 @@
-// The thesis's meshes [Gatenby95] beside ours, as CSV, on the convex receiver with the most curves:
-//
-//     exitance-thesis-meshes triangulation|premesh|layers SCENE.obj...
-//
-// triangulation  triangles, shapes and error of three schemes over a DM-tree and of Delaunay's triangulation, for eight
-//                thresholds
-// premesh        faces, construction edges and shapes of a DM-tree by the order of its curves, and after coarse grids
-// layers         bytes of forms of a layer, and one mesh a source against one for all, at the threshold 0.01
+#include "exitance/experiments/thesis/thesis_studies.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <functional>
 #include <map>
 #include <optional>
@@ -18,15 +10,13 @@
 #include <vector>
 
 #include "exitance/core/random.hpp"
-#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
 #include "exitance/mesh/dm_tree/dm_tree.hpp"
 #include "exitance/mesh/dm_tree/light_layer.hpp"
 #include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
 
+namespace exitance {
 namespace {
-
-using namespace exitance;
 
 // --------------------------------------------------------------------------------------------- triangulations
 
@@ -147,7 +137,7 @@ double light_at(const Stage& stage, const Point& p, const Normal& n, RegionId r,
     return stage.occluders.is_covered(p, n, r) ? 0 : mean(stage.direct.irradiance(p, n, r, workspace));
 }
 
-void triangulation(const char* name, const Scene& scene) {
+void triangulation(const char* name, const Scene& scene, CsvText& out) {
     const Stage stage(scene);
     const ChosenReceiver receiver = choose(stage);
     if (!receiver.curves) return;
@@ -161,10 +151,9 @@ void triangulation(const char* name, const Scene& scene) {
                 *receiver.curves, scheme, 1e-7 * scene.size(), [](const FlatCurve&) { return true; }, &construction);
             const RefinedMesh m =
                 refine(first, receiver.curves->frame, light, threshold * receiver.largest, nudge_share * scene.size());
-            std::printf("%s,%zu,%g,%s,%zu,%zu,%zu,%.4f,%.6f\n", name, receiver.curves->curves.size(), threshold,
-                        scheme_name, construction, first.corners.size(), m.mesh.triangles().size(), m.ratio,
-                        m.rms / receiver.largest);
-            std::fflush(stdout);
+            out.print("%s,%zu,%g,%s,%zu,%zu,%zu,%.4f,%.6f\n", name, receiver.curves->curves.size(), threshold,
+                      scheme_name, construction, first.corners.size(), m.mesh.triangles().size(), m.ratio,
+                      m.rms / receiver.largest);
         }
 }
 
@@ -201,7 +190,7 @@ double worst(const LayerTriangles& exact, const LightLayer& layer, double larges
     return out;
 }
 
-void layers(const char* name, const Scene& scene) {
+void layers(const char* name, const Scene& scene, CsvText& out) {
     const Stage stage(scene);
     const ChosenReceiver receiver = choose(stage);
     if (!receiver.curves) return;
@@ -215,9 +204,9 @@ void layers(const char* name, const Scene& scene) {
         RefinedMesh m = refine(first, receiver.curves->frame, light, allowed, nudge_share * scene.size());
         const LayerTriangles all = layer_of(m, receiver.curves->frame, light);
         const LightLayer floats(all, LightLayer::Form::floats), halves(all, LightLayer::Form::halves);
-        std::printf("%s,%s,%zu,%zu,%zu,%zu,%zu,%.6f,%.2g,%.2g\n", name, kind, all.corners.size(), floats.size(),
-                    winged_edge_bytes(all), floats.memory_bytes(), halves.memory_bytes(), m.rms / receiver.largest,
-                    worst(all, floats, receiver.largest), worst(all, halves, receiver.largest));
+        out.print("%s,%s,%zu,%zu,%zu,%zu,%zu,%.6f,%.2g,%.2g\n", name, kind, all.corners.size(), floats.size(),
+                  winged_edge_bytes(all), floats.memory_bytes(), halves.memory_bytes(), m.rms / receiver.largest,
+                  worst(all, floats, receiver.largest), worst(all, halves, receiver.largest));
         parts.push_back(halves);
     };
     const Light together = [&](const Point& p) { return light_at(stage, p, n, receiver.region, workspace); };
@@ -243,14 +232,14 @@ void layers(const char* name, const Scene& scene) {
         for (const LightLayer& part : parts) sum += part.at(receiver.curves->frame.flat(p));
         off += (sum - together(p)) * (sum - together(p));
     }
-    std::printf("%s,sum of %zu layers,,,,,,%.6f,,\n", name, parts.size(), std::sqrt(off / places) / receiver.largest);
+    out.print("%s,sum of %zu layers,,,,,,%.6f,,\n", name, parts.size(), std::sqrt(off / places) / receiver.largest);
 }
 
 // ---------------------------------------------------------------------------------------------------- premesh
 
 /// Faces and construction edges of a DM-tree by the order in which curves come to it: as they are found; the longest
 /// first, a stand-in for the penumbra's outlines first; after a grid of cells.
-void premesh(const char* name, const Scene& scene) {
+void premesh(const char* name, const Scene& scene, CsvText& out) {
     const Stage stage(scene);
     const ChosenReceiver receiver = choose(stage);
     if (!receiver.curves) return;
@@ -269,9 +258,9 @@ void premesh(const char* name, const Scene& scene) {
         const LabelledTriangles t = triangulated(tree, TriangulationScheme::shortest, labels);
         double ratio = 0;
         for (const auto& c : t.corners) ratio += radius_ratio(t.points[c[0]], t.points[c[1]], t.points[c[2]]);
-        std::printf("%s,%zu,%s,%zu,%zu,%zu,%.4f,%zu\n", name, curves.size(), order, tree.mesh().faces().size(),
-                    tree.construction_edges(), t.corners.size(), ratio / static_cast<double>(t.corners.size()),
-                    tree.memory_bytes());
+        out.print("%s,%zu,%s,%zu,%zu,%zu,%.4f,%zu\n", name, curves.size(), order, tree.mesh().faces().size(),
+                  tree.construction_edges(), t.corners.size(), ratio / static_cast<double>(t.corners.size()),
+                  tree.memory_bytes());
     };
     run("found", receiver.curves->curves, 0);
     run("longest first", longest, 0);
@@ -279,33 +268,16 @@ void premesh(const char* name, const Scene& scene) {
     run("grid 16", receiver.curves->curves, 16);
 }
 
-struct Study {
-    const char* name;
-    const char* header;
-    void (*run)(const char*, const Scene&);
-};
-
 }  // namespace
 
-int main(int argc, char** argv) {
-    const Study studies[] = {
+std::span<const SceneStudy> thesis_mesh_studies() {
+    static constexpr SceneStudy studies[] = {
         {"triangulation", "scene,curves,threshold,scheme,construction_edges,first_triangles,triangles,radius_ratio,rms",
          triangulation},
         {"premesh", "scene,curves,order,faces,construction_edges,triangles,radius_ratio,tree_bytes", premesh},
         {"layers", "scene,kind,triangles,kept,winged_bytes,float_bytes,half_bytes,rms,float_worst,half_worst", layers},
     };
-    for (const Study& study : studies) {
-        if (argc < 3 || std::strcmp(argv[1], study.name) != 0) continue;
-        std::printf("%s\n", study.header);
-        for (int i = 2; i < argc; ++i) {
-            const CheckedScene checked = load_scene({argv[i]}, {});
-            if (!checked.scene) return std::fprintf(stderr, "%s\n", checked.scene.error().message.c_str()), 3;
-            const std::string path = argv[i];
-            const std::string name = path.substr(path.rfind('/') + 1, path.rfind('.') - path.rfind('/') - 1);
-            study.run(name.c_str(), *checked.scene);
-            std::fflush(stdout);
-        }
-        return 0;
-    }
-    return std::fprintf(stderr, "usage: %s triangulation|premesh|layers SCENE.obj...\n", argv[0]), 2;
+    return studies;
 }
+
+}  // namespace exitance

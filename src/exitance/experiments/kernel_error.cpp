@@ -1,25 +1,16 @@
+#include "exitance/experiments/kernel_error.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <queue>
 #include <string>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
-#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/growing_cells/kernel_network.hpp"
 
-// exitance-kernel-error SCENE [SEEDS] [UNITS,...] [PAIRS]: how well so many basis functions hold the kernel, as CSV.
-//
-// Pairs that touch are measured with the first seed alone. Pairs whose source emits: relative L2 of G V M over x of all
-// surfaces and y of emitters, both uniform in area. Pairs that touch (neither emits; the square of G has no integral
-// there): relative L1 of G V over pairs of reflecting surfaces. Rows: links of hierarchical radiosity (constants G V on
-// pairs of quadtree elements, the pair of the largest B F refined first, its larger element cut [Hanrahan91]; V by 16
-// rays), growing cells as published (delta rule), the same with weights by least squares, and visibility learned by
-// linear maps times the analytic kernel.
 namespace exitance {
 namespace {
 
@@ -197,15 +188,14 @@ class LinkedKernel {
 };
 
 void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t>& counts, std::size_t pair_count,
-           bool of_emitters, const std::string& scene) {
+           bool of_emitters, const std::string& scene, CsvText& out, const StopRequest& stop) {
     const std::vector<Pair> pairs = make_pairs(stage, pair_count, of_emitters, seed + 1000);
     const auto emission = [&](const Pair& p) {
         return of_emitters ? stage.scene.material(p.y.region).exitance : Spectrum(1);
     };
     const auto tell = [&](const char* row, std::size_t n, double error, std::size_t bytes, double seconds) {
-        std::printf("%s,%s,%s,%llu,%zu,%.5g,%zu,%.3f\n", scene.c_str(), of_emitters ? "light" : "touching", row,
-                    static_cast<unsigned long long>(seed), n, error, bytes, seconds);
-        std::fflush(stdout);
+        out.print("%s,%s,%s,%llu,%zu,%.5g,%zu,%.3f\n", scene.c_str(), of_emitters ? "light" : "touching", row,
+                  static_cast<unsigned long long>(seed), n, error, bytes, seconds);
     };
     LinkedKernel links(stage, of_emitters, seed);
     for (const std::size_t n : counts) {
@@ -231,7 +221,6 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
                               light);
         network.restrict_to([&](const PoolPoint& p) { return of_emitters || !emits(p); },
                             [&](const PoolPoint& p) { return emits(p) == of_emitters; });
-        const StopRequest stop;
         double grown = 0;
         for (const std::size_t n : counts) {
             Stopwatch watch;
@@ -256,27 +245,14 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
 }
 
 }  // namespace
-}  // namespace exitance
 
-int main(int argc, char** argv) {
-    using namespace exitance;
-    if (argc < 2) return std::fprintf(stderr, "usage: exitance-kernel-error SCENE [SEEDS] [UNITS,...] [PAIRS]\n"), 2;
-    const int seeds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 5;
-    std::vector<std::size_t> counts;
-    for (std::string list = argc > 3 ? argv[3] : "16,64,256,1024"; !list.empty();) {
-        counts.push_back(std::strtoul(list.c_str(), nullptr, 10));
-        const std::size_t comma = list.find(',');
-        list = comma == std::string::npos ? "" : list.substr(comma + 1);
-    }
-    const std::size_t pairs = argc > 4 ? std::strtoul(argv[4], nullptr, 10) : 100000;
-    const CheckedScene scene = load_scene({argv[1]}, {});
-    if (!scene.scene) return std::fprintf(stderr, "error: %s\n", scene.scene.error().message.c_str()), 3;
-    const Stage stage(*scene.scene);
-    std::string name = argv[1];
-    name = name.substr(name.find_last_of('/') + 1);
-    std::puts("scene,pairs,row,seed,functions,relative_error,bytes,seconds");
-    for (int seed = 1; seed <= seeds; ++seed)
+void measure_kernel_error(const std::string& name, const Scene& scene, const KernelErrorOptions& options, CsvText& out,
+                          const StopRequest& stop) {
+    const Stage stage(scene);
+    for (std::uint64_t seed = 1; seed <= options.seeds; ++seed)
         for (const bool of_emitters : {true, false})
-            if (of_emitters || seed == 1)
-                study(stage, static_cast<std::uint64_t>(seed), counts, pairs, of_emitters, name);
+            if ((of_emitters || seed == 1) && !stop.requested())
+                study(stage, seed, options.counts, options.pairs, of_emitters, name, out, stop);
 }
+
+}  // namespace exitance

@@ -1,31 +1,19 @@
-// The thesis's structures for visibility [Gatenby95] beside ours, as CSV:
-//
-//     exitance-thesis-visibility candidates|volumes|rays SCENE.obj...
-//
-// candidates     share of the polygons that may hide the source: of BSP nodes, by front-to-back orderings, all and
-// those
-//                alone that face the source; of the same fragments, and of points on them, by shafts
-// volumes        polygons that survive shadow volumes (chains of SVBSP planes), and shafts, for pairs of a source and a
-//                polygon; looks at planes, microseconds
-// rays           10^6 rays through the BSP tree and through Embree: rays per second, and how many meet the same
+#include "exitance/experiments/thesis/thesis_studies.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <string>
 #include <vector>
 
 #include "exitance/core/random.hpp"
-#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/visibility/bsp/shadow_volume.hpp"
 #include "exitance/visibility/bsp/source_orderings.hpp"
 #include "exitance/visibility/shaft.hpp"
 
+namespace exitance {
 namespace {
-
-using namespace exitance;
 
 double cpu_seconds() {
     timespec t;
@@ -60,7 +48,7 @@ void add_points(const Occluders& occluders, std::span<const Point> outline, cons
     }
 }
 
-void candidates(const char* name, const Scene& scene) {
+void candidates(const char* name, const Scene& scene, CsvText& out) {
     const Occluders occluders(scene);
     const BspTree tree(occluders);
     constexpr std::size_t most_nodes = 400;
@@ -115,16 +103,16 @@ void candidates(const char* name, const Scene& scene) {
     }
     const std::size_t pieces = occluders.pieces().size();
     for (int list = 0; list < lists; ++list)
-        std::printf("%s,%zu,%zu,%zu,%zu,%zu,%s,%zu,%.4f,%.4f,%.4f,%.4f\n", name, pieces, tree.nodes().size(),
-                    tree.fragments().size(), tree.depth(), split_near_root,
-                    list == penumbra ? "penumbra" : "penumbra+umbra", bsp[list].count, bsp[list].share(pieces),
-                    facing[list].share(pieces), shaft_list[list].share(pieces), points.share(pieces));
+        out.print("%s,%zu,%zu,%zu,%zu,%zu,%s,%zu,%.4f,%.4f,%.4f,%.4f\n", name, pieces, tree.nodes().size(),
+                  tree.fragments().size(), tree.depth(), split_near_root,
+                  list == penumbra ? "penumbra" : "penumbra+umbra", bsp[list].count, bsp[list].share(pieces),
+                  facing[list].share(pieces), shaft_list[list].share(pieces), points.share(pieces));
 }
 
 // ---------------------------------------------------------------------------------------------- shadow volumes
 
 /// Survivors among all polygons for every pair of a source and a polygon that light may reach.
-void volumes(const char* name, const Scene& scene) {
+void volumes(const char* name, const Scene& scene, CsvText& out) {
     const Occluders occluders(scene);
     const auto& pieces = occluders.pieces();
     constexpr std::size_t most_emitters = 4;
@@ -168,16 +156,16 @@ void volumes(const char* name, const Scene& scene) {
         }
     }
     const double each = pairs > 0 ? 1.0 / static_cast<double>(pairs) : 0;
-    std::printf("%s,%zu,%zu,%zu,%.2f,%.2f,%.1f,%zu,%zu,%.2f,%.2f,%.2f\n", name, pieces.size(), pairs, made,
-                each * static_cast<double>(survivors), each * static_cast<double>(of_shafts),
-                each * static_cast<double>(tests), umbra, hidden,
-                1e6 * making / static_cast<double>(std::max<std::size_t>(1, made)), 1e6 * each * testing,
-                1e6 * each * shaft_seconds);
+    out.print("%s,%zu,%zu,%zu,%.2f,%.2f,%.1f,%zu,%zu,%.2f,%.2f,%.2f\n", name, pieces.size(), pairs, made,
+              each * static_cast<double>(survivors), each * static_cast<double>(of_shafts),
+              each * static_cast<double>(tests), umbra, hidden,
+              1e6 * making / static_cast<double>(std::max<std::size_t>(1, made)), 1e6 * each * testing,
+              1e6 * each * shaft_seconds);
 }
 
 // ------------------------------------------------------------------------------------------------------- rays
 
-void rays(const char* name, const Scene& scene) {
+void rays(const char* name, const Scene& scene, CsvText& out) {
     constexpr std::size_t count = 1'000'000;
     const Occluders occluders(scene);
     double begin = cpu_seconds();
@@ -210,46 +198,29 @@ void rays(const char* name, const Scene& scene) {
         same += none ||
                 (near && !hits[i].piece.is_none() && occluders.pieces()[hits[i].piece].region == expected[i].region);
     }
-    std::printf("%s,%zu,%zu,%zu,%.3f,%.3g,%.3g,%zu,%zu\n", name, occluders.pieces().size(), tree.fragments().size(),
-                tree.memory_bytes(), built, static_cast<double>(count) / bsp, static_cast<double>(count) / embree,
-                count - same, count - same_distance);
+    out.print("%s,%zu,%zu,%zu,%.3f,%.3g,%.3g,%zu,%zu\n", name, occluders.pieces().size(), tree.fragments().size(),
+              tree.memory_bytes(), built, static_cast<double>(count) / bsp, static_cast<double>(count) / embree,
+              count - same, count - same_distance);
 }
-
-struct Study {
-    const char* name;
-    const char* header;
-    void (*run)(const char*, const Scene&);
-};
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    const Study studies[] = {
+std::span<const SceneStudy> thesis_visibility_studies() {
+    static constexpr SceneStudy studies[] = {
         {"candidates",
          "scene,polygons,nodes,fragments,depth,source_splits_to_depth_3,lists,count,bsp_share,bsp_facing_share,shaft_"
-         "share",
+         "share,shaft_share_of_points",
          candidates},
         {"volumes",
-         "scene,polygons,pairs,volumes,volume_survivors,shaft_survivors,plane_tests,umbra_by_volume,hidden_by_shaft,"
-         "us_a_volume,us_testing,us_a_shaft",
+         "scene,polygons,pairs,volumes,volume_survivors,shaft_survivors,plane_tests,umbra_by_volume,hidden_by_shaft,us_"
+         "a_volume,us_testing,us_a_shaft",
          volumes},
         {"rays",
          "scene,polygons,fragments,bytes,build_seconds,bsp_rays_per_second,embree_rays_per_second,other_hits,other_"
          "distances",
          rays},
     };
-    for (const Study& study : studies) {
-        if (argc < 3 || std::strcmp(argv[1], study.name) != 0) continue;
-        std::printf("%s\n", study.header);
-        for (int i = 2; i < argc; ++i) {
-            const CheckedScene checked = load_scene({argv[i]}, {});
-            if (!checked.scene) return std::fprintf(stderr, "%s\n", checked.scene.error().message.c_str()), 3;
-            const std::string path = argv[i];
-            const std::string name = path.substr(path.rfind('/') + 1, path.rfind('.') - path.rfind('/') - 1);
-            study.run(name.c_str(), *checked.scene);
-            std::fflush(stdout);
-        }
-        return 0;
-    }
-    return std::fprintf(stderr, "usage: %s candidates|volumes|rays SCENE.obj...\n", argv[0]), 2;
+    return studies;
 }
+
+}  // namespace exitance

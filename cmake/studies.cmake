@@ -1,0 +1,25 @@
+# The studies in experiments/*.toml become a part of the program.
+
+file(GLOB study_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/experiments/*.toml)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${study_files})
+set(studies "")
+foreach(path IN LISTS study_files)
+    get_filename_component(name ${path} NAME_WE)
+    file(READ ${path} text)
+    string(APPEND studies "    {\"${name}\", R\"toml(${text})toml\"},\n")
+endforeach()
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/built_in_studies.cpp @ONLY CONTENT [[
+// Made by cmake/studies.cmake.
+#include "exitance/experiments/study/study.hpp"
+
+namespace exitance {
+
+std::span<const BuiltInStudy> built_in_studies() {
+    static constexpr BuiltInStudy studies[] = {
+@studies@    };
+    return studies;
+}
+
+}  // namespace exitance
+]])
+target_sources(exitance PRIVATE ${PROJECT_BINARY_DIR}/built_in_studies.cpp)

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exitance/core/progress.hpp"
+#include "exitance/experiments/study/study.hpp"
+#include "exitance/experiments/study/table.hpp"
+
+namespace exitance {
+
+struct StudyOptions {
+    std::string folder;   ///< Where everything is written; what is finished there is not repeated.
+    std::string program;  ///< The path of `exitance`.
+    bool quick = false;
+    std::vector<std::string> methods;  ///< Rows whose label, or a word of whose options, is one of these; empty: all.
+    int threads = 0;                   ///< Of all that runs at the same time; 0: all cores.
+};
+
+/// Columns of results.csv, in their order; all others are in details.csv.
+extern const std::vector<std::string> result_columns;
+
+/// Runs a study's solves, one process each, and measures every solution and those on the way against the study's
+/// reference. A row of the table is a solution: the columns of results.csv, and
+///
+///     row              the label
+///     initial_links, iterations, polygons, processor_seconds, wall_seconds, points, noise, is_last (0 or 1), command
+///
+/// `status` is "done", "not reached" (the error asked for), "time limit", "memory limit", "not run: ..." or
+/// "failed: ...". References and finished runs stay in the folder. A stop leaves what is finished.
+/// Error: usage or bad_input, where a scene cannot be made; cannot_write.
+Result<Table> run_study(const Study& study, const StudyOptions& options, Progress& progress, const StopRequest& stop);
+
+/// For every scene, parameter and setting: the time in which the first row finished, and the error that each row had
+/// then, by interpolation between solutions on the way (both as logarithms). Rows without one by then are left out.
+Table equal_time_table(const Table& results);
+
+}  // namespace exitance

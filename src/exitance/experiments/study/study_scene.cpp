@@ -1,0 +1,124 @@
+#include "exitance/experiments/study/study_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "exitance/core/random.hpp"
+#include "exitance/io/files/reference_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/obj_writer.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/reconstruct/error/area_samples.hpp"
+#include "exitance/reconstruct/error/path_reference.hpp"
+#include "exitance/scene/families/generate.hpp"
+
+namespace exitance {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t points_seed = 7, paths_seed = 11;
+
+Result<void> make_scene(const std::vector<std::string>& words, const std::string& path) {
+    std::map<std::string, std::string> parameters;
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const std::size_t equals = words[i].find('=');
+        if (equals == std::string::npos || equals == 0)
+            return Error{ErrorCode::usage, fmt::format("'{}' is not of the form name=value", words[i]), "generate", ""};
+        parameters[words[i].substr(0, equals)] = words[i].substr(equals + 1);
+    }
+    const Result<SceneDescription> scene = generate_scene(words.empty() ? "" : words[0], parameters);
+    if (!scene) return scene.error();
+    return write_obj(*scene, path);
+}
+
+/// Light by paths, read again where it was made before.
+Result<ReferencePoints> path_reference(const Scene& scene, const StudyReference& asked, const std::string& path,
+                                       bool quick, Progress& progress, const StopRequest& stop) {
+    if (fs::exists(path)) return load_reference_points(path);
+    const std::size_t count = quick ? asked.quick_points : asked.points;
+    const std::size_t paths = quick ? asked.quick_paths : asked.paths;
+    ReferencePoints out{points_uniform_in_area(scene, count, points_seed), {}, {}};
+    for (const ReferenceLight& light : reference_light(scene, out.points, paths, paths_seed, progress, stop))
+        out.irradiance.push_back(light.irradiance), out.standard_errors.push_back(light.standard_error);
+    if (stop.requested()) return Error{ErrorCode::limit, "was stopped", "reference", ""};
+    if (const Result<void> written = write_reference_points(path, out); !written) return written.error();
+    return out;
+}
+
+}  // namespace
+
+std::vector<std::string> split_words(const std::string& text) {
+    std::vector<std::string> words;
+    bool in_word = false;
+    char quote = 0;
+    for (const char c : text) {
+        const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+        if (quote == 0 && blank) {
+            in_word = false;
+            continue;
+        }
+        if (!in_word) words.emplace_back(), in_word = true;
+        if (quote == 0 && (c == '"' || c == '\''))
+            quote = c;
+        else if (c == quote)
+            quote = 0;
+        else
+            words.back() += c;
+    }
+    return words;
+}
+
+std::string filled_in(std::string text, const std::vector<std::pair<std::string, std::string>>& values) {
+    for (const auto& [name, value] : values) {
+        const std::string mark = "{" + name + "}";
+        for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + value.size()))
+            text.replace(at, mark.size(), value);
+    }
+    return text;
+}
+
+std::uint64_t key_of(std::string_view text) {
+    std::uint64_t key = text.size();
+    for (const char c : text) key = hash(key, static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+    return key;
+}
+
+Result<StudyStage> prepare_scene(const Study& study, const StudyScene& scene, double value, const StudyOptions& options,
+                                 Progress& progress, const StopRequest& stop) {
+    const fs::path folder = options.folder;
+    const std::vector<std::pair<std::string, std::string>> values{{"value", fmt::format("{:g}", value)}};
+    StudyStage stage;
+    if (scene.file.empty()) {
+        stage.words = filled_in(scene.generate, values);
+        stage.path = (folder / "scenes" / fmt::format("{}_{:g}.obj", scene.name, value)).string();
+        if (const Result<void> made = make_scene(split_words(stage.words), stage.path); !made) return made.error();
+    } else {
+        stage.words = filled_in(scene.file, values);
+        stage.path = fs::absolute(fs::path(study.folder) / stage.words).lexically_normal().string();
+    }
+    const Result<std::string> content = read_whole_file(stage.path);
+    if (!content) return content.error();
+    const CheckedScene checked = load_scene({stage.path}, {});
+    if (!checked.scene) return checked.scene.error();
+    stage.polygons = checked.scene->surfaces().size();
+    const StudyReference& asked = study.reference;
+    stage.key = hash(key_of(*content), key_of(filled_in(asked.file, values)), asked.points, asked.paths,
+                     options.quick ? asked.quick_points : 0, options.quick ? asked.quick_paths : 0);
+    if (!asked.file.empty()) {
+        Result<ReferencePoints> known =
+            load_reference_points((fs::path(study.folder) / filled_in(asked.file, values)).string());
+        if (!known) return known.error();
+        stage.reference = std::move(*known);
+    } else if (asked.points > 0) {
+        Result<ReferencePoints> traced = path_reference(
+            *checked.scene, asked, (folder / "references" / fmt::format("{:016x}.csv", stage.key)).string(),
+            options.quick, progress, stop);
+        if (!traced) return traced.error();
+        stage.reference = std::move(*traced);
+    }
+    return stage;
+}
+
+}  // namespace exitance

@@ -1,0 +1,178 @@
+#include "exitance/experiments/study/study_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "exitance/experiments/cie171.hpp"
+#include "exitance/experiments/flatland/kernel_terms.hpp"
+#include "exitance/experiments/kernel_error.hpp"
+#include "exitance/experiments/study/study_scene.hpp"
+#include "exitance/experiments/task_schedules.hpp"
+#include "exitance/experiments/thesis/thesis_studies.hpp"
+#include "exitance/io/files/text_table.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+
+namespace exitance {
+namespace {
+
+Result<StudyTables> flatland_tables(const Study&, const StudyOptions& options, Progress& progress,
+                                    const StopRequest& stop) {
+    using namespace flatland;
+    const int levels = options.quick ? 6 : 8;
+    std::vector<std::size_t> counts;
+    for (std::size_t m = 1; m <= std::size_t(1) << (2 * levels); m *= 2) counts.push_back(m);
+    Table table;
+    progress.phase("flatland");
+    for (const bool step : {false, true})
+        for (const double h : {1.0, 0.2, 0.1, 0.05, 0.02})
+            for (const LineBasis basis : line_bases)
+                for (const Decomposition way : {Decomposition::standard, Decomposition::non_standard}) {
+                    if (stop.requested()) break;
+                    const KernelTerms terms(basis, way, levels, [&](double x, double y) {
+                        return step && x <= y ? 0.0 : 1 / ((x - y) * (x - y) + h * h);
+                    });
+                    const std::vector<double> errors = terms.errors(counts);
+                    const std::string decomposition = way == Decomposition::standard ? "standard" : "non-standard";
+                    for (std::size_t i = 0; i < counts.size(); ++i) {
+                        table.add_row();
+                        table.set("kernel", fmt::format("{}, h = {:g}", step ? "step" : "smooth", h));
+                        table.set("h", field(h)), table.set("basis", std::string(name_of(basis)));
+                        table.set("decomposition", decomposition);
+                        table.set("terms", std::to_string(terms.size())), table.set("m", std::to_string(counts[i]));
+                        table.set("relative_l2_error", field(errors[i]));
+                    }
+                }
+    return StudyTables{{"results", std::move(table)}};
+}
+
+Result<StudyTables> cie171_tables(const Study&, const StudyOptions& options, Progress& progress,
+                                  const StopRequest& stop) {
+    Cie171Options asked;
+    asked.quick = options.quick, asked.threads = options.threads;
+    const Result<std::vector<Cie171Row>> rows = run_cie171(asked, progress, stop);
+    if (!rows) return rows.error();
+    Table table, summary;
+    for (const Cie171Row& row : *rows) {
+        table.add_row();
+        table.set("study", row.study), table.set("scene", row.scene), table.set("parameter", row.parameter);
+        table.set("point", row.point);
+        for (const auto& [name, value] : {std::pair("x", row.x.x), std::pair("y", row.x.y), std::pair("z", row.x.z),
+                                          std::pair("nx", row.n.x), std::pair("ny", row.n.y), std::pair("nz", row.n.z)})
+            table.set(name, field(value));
+        table.set("exact", field(row.exact)), table.set("computed", field(row.computed));
+        table.set("relative_error", field(row.relative_error));
+    }
+    for (const Cie171Summary& entry : summarize(*rows)) {
+        summary.add_row();
+        summary.set("study", entry.study), summary.set("points", std::to_string(entry.points));
+        summary.set("mean", field(entry.mean)), summary.set("largest", field(entry.largest));
+        summary.set("worst", entry.worst);
+    }
+    return StudyTables{{"results", std::move(table)}, {"summary", std::move(summary)}};
+}
+
+/// Calls use(name, value, scene) for the scenes of a study, values in their order.
+template <class Use>
+Result<void> for_scenes(const Study& study, const StudyOptions& options, Progress& progress, const StopRequest& stop,
+                        const Use& use) {
+    std::error_code failed;
+    for (const char* folder : {"scenes", "references"})
+        std::filesystem::create_directories(std::filesystem::path(options.folder) / folder, failed);
+    progress.phase(study.table);
+    for (const StudyScene& scene : study.scenes)
+        for (const double value : options.quick ? scene.quick_values : scene.values) {
+            if (stop.requested()) return {};
+            const Result<StudyStage> stage = prepare_scene(study, scene, value, options, progress, stop);
+            if (!stage) return stage.error();
+            const CheckedScene checked = load_scene({stage->path}, {});
+            if (!checked.scene) return checked.scene.error();
+            progress.advance(0, stage->words);
+            use(scene.name, value, *checked.scene);
+        }
+    return {};
+}
+
+double argument(const Study& study, const std::string& name, double otherwise) {
+    const auto at = study.arguments.find(name);
+    return at == study.arguments.end() ? otherwise : parse_number(at->second).value_or(otherwise);
+}
+
+/// One of the tables about the thesis's structures, its scenes named after their values where there are several.
+Result<StudyTables> scene_tables(std::span<const SceneStudy> known, const Study& study, const StudyOptions& options,
+                                 Progress& progress, const StopRequest& stop) {
+    CsvText text;
+    for (const SceneStudy& part : known) {
+        if (part.name != study.table) continue;
+        text.print("%s\n", std::string(part.header).c_str());
+        const Result<void> done =
+            for_scenes(study, options, progress, stop, [&](const std::string& name, double value, const Scene& scene) {
+                part.run(fmt::format("{} {:g}", name, value).c_str(), scene, text);
+            });
+        if (!done) return done.error();
+    }
+    Result<Table> table = parse_csv(text.text(), study.table);
+    if (!table) return table.error();
+    return StudyTables{{"results", std::move(*table)}};
+}
+
+Result<StudyTables> mesh_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                const StopRequest& stop) {
+    return scene_tables(thesis_mesh_studies(), study, options, progress, stop);
+}
+
+Result<StudyTables> visibility_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                      const StopRequest& stop) {
+    return scene_tables(thesis_visibility_studies(), study, options, progress, stop);
+}
+
+Result<StudyTables> kernel_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                  const StopRequest& stop) {
+    KernelErrorOptions asked;
+    if (options.quick) asked = {.seeds = 2, .counts = {16, 64, 256}, .pairs = 20'000};
+    CsvText text;
+    text.print("%s\n", kernel_error_header);
+    const Result<void> done =
+        for_scenes(study, options, progress, stop, [&](const std::string& name, double, const Scene& scene) {
+            measure_kernel_error(name, scene, asked, text, stop);
+        });
+    if (!done) return done.error();
+    Result<Table> table = parse_csv(text.text(), study.table);
+    if (!table) return table.error();
+    return StudyTables{{"results", std::move(*table)}};
+}
+
+/// `threshold_W`, `min_area_m2` and `repeats` are arguments.
+Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                    const StopRequest& stop) {
+    CsvText text, graphs;
+    text.print("%s\n", schedules_header), graphs.print("%s\n", task_graphs_header);
+    const double threshold = argument(study, "threshold_W", 0), least = argument(study, "min_area_m2", 0);
+    const int repeats = options.quick ? 1 : static_cast<int>(argument(study, "repeats", 3));
+    const auto given = [](double value) { return value > 0 ? std::optional(value) : std::nullopt; };
+    const Result<void> done =
+        for_scenes(study, options, progress, stop, [&](const std::string& name, double value, const Scene& scene) {
+            measure_schedules(fmt::format("{} {:g}", name, value), scene, given(threshold), given(least), repeats, text,
+                              graphs, stop);
+        });
+    if (!done) return done.error();
+    Result<Table> table = parse_csv(text.text(), study.table), of_graphs = parse_csv(graphs.text(), study.table);
+    if (!table) return table.error();
+    if (!of_graphs) return of_graphs.error();
+    return StudyTables{{"results", std::move(*table)}, {"graphs", std::move(*of_graphs)}};
+}
+
+}  // namespace
+
+std::span<const StudyTableMaker> study_table_makers() {
+    static constexpr StudyTableMaker makers[] = {
+        {"candidates", visibility_tables}, {"cie171", cie171_tables},      {"flatland", flatland_tables},
+        {"kernel", kernel_tables},         {"layers", mesh_tables},        {"premesh", mesh_tables},
+        {"rays", visibility_tables},       {"schedules", schedule_tables}, {"triangulation", mesh_tables},
+        {"volumes", visibility_tables},
+    };
+    return makers;
+}
+
+}  // namespace exitance

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace exitance {
+
+/// Lines of CSV, written as printf writes them.
+class CsvText {
+  public:
+    [[gnu::format(printf, 2, 3)]] void print(const char* format, ...);
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,124 @@
+#include "exitance/io/files/child_process.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_output = std::size_t{16} << 20;
+constexpr double grace = 2;      // seconds between being asked to end and being made to
+constexpr int first_glance = 1;  // milliseconds between looks at a child, at first and later
+constexpr int last_glance = 50;
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+double seconds_of(const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+std::string content(std::FILE* file) {
+    std::rewind(file);
+    std::string text;
+    std::array<char, 65536> block;
+    for (std::size_t n = 0; text.size() < most_output && (n = std::fread(block.data(), 1, block.size(), file)) > 0;)
+        text.append(block.data(), n);
+    return text;
+}
+
+}  // namespace
+
+ChildProcess::~ChildProcess() {
+    if (process_ > 0) end();
+}
+
+bool ChildProcess::start(const std::vector<std::string>& words, int in, int out, int err, const std::string& folder) {
+    std::vector<std::string> copies = words;
+    std::vector<char*> pointers;
+    for (std::string& word : copies) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    const pid_t parent = ::getpid();
+    process_ = ::fork();
+    if (process_ > 0) ::setpgid(process_, process_);  // as the child does itself: whoever comes first
+    if (process_ != 0) return process_ > 0;
+    // Nothing but system calls from here on: other threads may have held any lock.
+    ::setpgid(0, 0);
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) ::signal(signal, SIG_DFL);
+    if (::getppid() != parent || ::dup2(in, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0 ||
+        (!folder.empty() && ::chdir(folder.c_str()) != 0))
+        ::_exit(126);
+    ::execvp(pointers[0], pointers.data());
+    ::_exit(127);
+}
+
+bool ChildProcess::has_ended() {
+    if (process_ <= 0) return true;
+    rusage used{};
+    if (::wait4(process_, &status_, WNOHANG, &used) != process_) return false;
+    process_ = -1;
+    processor_seconds_ = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
+    peak_bytes_ = static_cast<std::size_t>(used.ru_maxrss) << 10;
+    return true;
+}
+
+void ChildProcess::ask_to_end() {
+    if (process_ > 0) ::kill(process_, SIGTERM);
+}
+
+int ChildProcess::status() const {
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : 1000 + WTERMSIG(status_);
+}
+
+void ChildProcess::end() {
+    ::kill(-process_, SIGKILL), ::kill(process_, SIGKILL);
+    ::waitpid(process_, &status_, 0);
+    process_ = -1;
+}
+
+bool is_program(const std::string& name) {
+    if (name.find('/') != std::string::npos) return ::access(name.c_str(), X_OK) == 0;
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path ? path : "");
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (!folder.empty() && ::access((folder + "/" + name).c_str(), X_OK) == 0) return true;
+    return false;
+}
+
+ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
+                       const StopRequest& stop) {
+    ProgramRun run;
+    const File in(std::fopen("/dev/null", "r"), &std::fclose);
+    const File out(std::tmpfile(), &std::fclose), err(std::tmpfile(), &std::fclose);
+    ChildProcess child;
+    const Stopwatch watch;
+    if (!in || !out || !err ||
+        !child.start(words, ::fileno(in.get()), ::fileno(out.get()), ::fileno(err.get()), folder))
+        return run;
+    double asked_at = -1;
+    bool ended = false;
+    for (int glance = first_glance; !(ended = child.has_ended()); glance = std::min(2 * glance, last_glance)) {
+        run.stopped |= stop.requested();
+        run.out_of_time |= watch.seconds() > most_seconds;
+        if (asked_at < 0 && (run.stopped || run.out_of_time)) child.ask_to_end(), asked_at = watch.seconds();
+        if (asked_at >= 0 && watch.seconds() > asked_at + grace) break;
+        ::poll(nullptr, 0, glance);
+    }
+    run.seconds = watch.seconds();
+    run.status = ended ? child.status() : 1000 + SIGKILL;
+    run.processor_seconds = child.processor_seconds(), run.peak_bytes = child.peak_bytes();
+    run.out = content(out.get()), run.err = content(err.get());
+    return run;
+}
+
+}  // namespace exitance

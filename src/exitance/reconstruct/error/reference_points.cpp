@@ -1,0 +1,22 @@
+#include "exitance/reconstruct/error/reference_points.hpp"
+
+#include "exitance/scene/locator.hpp"
+
+namespace exitance {
+
+std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points) {
+    std::vector<Spectrum> out;
+    out.reserve(points.size());
+    for (const Light& light : RadiosityFunction(solution).at(points)) out.push_back(light.irradiance);
+    return out;
+}
+
+ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference) {
+    const Locator locator(solution.scene);
+    std::vector<SurfaceId> surfaces;
+    for (const ProbePoint& point : reference.points) surfaces.push_back(locator.find(point.x, point.n));
+    const std::vector<Spectrum> irradiance = irradiance_at(solution, reference.points);
+    return measure_error({irradiance, reference.irradiance, reference.standard_errors, surfaces}, solution.scene);
+}
+
+}  // namespace exitance

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/reconstruct/error/compare.hpp"
+#include "exitance/reconstruct/radiosity_function.hpp"
+
+namespace exitance {
+
+/// What a solution is held against.
+struct ReferencePoints {
+    std::vector<ProbePoint> points;
+    std::vector<Spectrum> irradiance;       ///< W/m^2
+    std::vector<Spectrum> standard_errors;  ///< W/m^2; empty: exact.
+};
+
+/// E of a solution at points, W/m^2.
+std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points);
+
+/// The error of what `probe` evaluates.
+ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference);
+
+}  // namespace exitance
