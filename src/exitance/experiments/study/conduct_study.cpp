@@ -26,11 +26,14 @@ Result<StudyTables> make_tables(const Study& study, const StudyOptions& options,
         return Error{ErrorCode::bad_input, fmt::format("there is no table '{}'", study.table), study.name,
                      fmt::format("there are {}", fmt::join(names, ", "))};
     }
-    Result<Table> results = run_study(study, options, progress, stop);
-    if (!results) return results.error();
-    StudyTables tables;
-    if (study.equal_time) tables["equal_time"] = equal_time_table(*results);
-    tables["results"] = std::move(*results);
+    Result<StudyTables> tables = run_study(study, options, progress, stop);
+    if (!tables) return tables.error();
+    if (study.equal_time) (*tables)["equal_time"] = equal_time_table((*tables)["results"]);
+    if (!study.lines.empty()) {
+        Result<Table> profiles = profile_table(study, options, progress, stop);
+        if (!profiles) return profiles.error();
+        (*tables)["profiles"] = std::move(*profiles);
+    }
     return tables;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -31,10 +32,11 @@ struct StudyRow {
     std::vector<std::string> scenes;                        ///< Empty: all.
 };
 
-/// Light that errors are measured against: unbiased paths at points uniform in area. Where nothing reflects it is
-/// exact.
+/// Light that errors are measured against, at points uniform in area: a careful solve, held against unbiased paths in
+/// the table `references`; or those paths alone, which are exact where nothing reflects; or what a file holds.
 struct StudyReference {
-    std::size_t points = 0, paths = 0;  ///< 0 points: no errors are measured.
+    std::string options, quick_options;  ///< Of the careful solve; empty: paths alone.
+    std::size_t points = 0, paths = 0;   ///< 0 points: no errors are measured.
     std::size_t quick_points = 0, quick_paths = 0;
     std::string file;  ///< A probe CSV in place of paths, with "{value}" replaced.
 };
@@ -54,11 +56,25 @@ struct StudyPlot {
     bool checkpoints = false;  ///< Take solutions on the way, too?
 };
 
+/// Which of a study's solutions; what is empty, or NaN, fits all.
+struct ChosenSolution {
+    std::string row, scene, setting;
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< Of the parameter.
+};
+
+/// Light along a line, for the table `profiles`.
+struct StudyLine {
+    ChosenSolution of;
+    std::string name;
+    std::array<double, 3> from{}, to{}, normal{};  ///< Metres.
+    std::size_t points = 200;
+};
+
 /// Light, the method's mesh, or the left half of one beside the right half of the other, of one solution.
 struct StudyPicture {
-    std::string row, scene, setting, caption;
+    ChosenSolution of;
+    std::string caption;
     std::string options;  ///< Of `render`.
-    double value = std::numeric_limits<double>::quiet_NaN();
     enum class Shows : std::uint8_t { light, mesh, halves } shows = Shows::light;
 };
 
@@ -100,6 +116,7 @@ struct Study {
     StudyReference reference;
     std::vector<StudyPlot> plots;
     std::vector<StudyPicture> pictures;
+    std::vector<StudyLine> lines;
     std::vector<StudyConclusion> conclusions;
     std::string text;    ///< As it was read.
     std::string folder;  ///< That file names are relative to.

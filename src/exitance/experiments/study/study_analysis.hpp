@@ -1,12 +1,8 @@
 #pragma once
 
-#include "exitance/experiments/study/study.hpp"
-#include "exitance/experiments/study/table.hpp"
+#include "exitance/experiments/study/study_run.hpp"
 
 namespace exitance {
-
-/// Tables by name: "results", "equal_time", and those that a part of the program makes.
-using StudyTables = std::map<std::string, Table>;
 
 /// The rows that a filter lets through; `last_only`: of those with the column `is_last`, the last solutions alone.
 std::vector<std::size_t> chosen_rows(const Table& table, const RowFilter& where, bool last_only);

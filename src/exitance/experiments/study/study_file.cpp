@@ -171,11 +171,31 @@ void read_plot(Keys& keys, StudyPlot& plot) {
         keys.fail(keys.table(), fmt::format("'{}' has blanks or slashes: files are named after plots", plot.name));
 }
 
+void read_chosen(Keys& keys, ChosenSolution& of) {
+    keys.need("row", of.row);
+    keys.take("scene", of.scene);
+    keys.take("setting", of.setting);
+    keys.take("value", of.value);
+}
+
+void read_line(Keys& keys, StudyLine& line) {
+    read_chosen(keys, line.of);
+    keys.need("name", line.name);
+    keys.take("points", line.points);
+    for (const auto& [key, target] :
+         {std::pair("from", &line.from), std::pair("to", &line.to), std::pair("normal", &line.normal)}) {
+        std::vector<double> numbers;
+        keys.need(key, numbers);
+        if (numbers.size() != 3) keys.fail(*keys.find(key), fmt::format("'{}' is not [x, y, z]", key));
+        std::copy(numbers.begin(), numbers.end(), target->begin());
+    }
+    const auto& n = line.normal;
+    if (!(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0)) keys.fail(keys.table(), "the normal has no length");
+    if (line.points < 2) keys.fail(keys.table(), "a line has two points at least");
+}
+
 void read_picture(Keys& keys, StudyPicture& picture) {
-    keys.need("row", picture.row);
-    keys.take("scene", picture.scene);
-    keys.take("setting", picture.setting);
-    keys.take("value", picture.value);
+    read_chosen(keys, picture.of);
     keys.take("caption", picture.caption);
     keys.take("options", picture.options);
     std::string shows = "light";
@@ -215,6 +235,9 @@ void read_conclusion(Keys& keys, StudyConclusion& conclusion) {
 
 void read_reference(Keys& keys, StudyReference& reference) {
     keys.take("file", reference.file);
+    keys.take("options", reference.options);
+    reference.quick_options = reference.options;
+    keys.take("quick_options", reference.quick_options);
     keys.take("points", reference.points);
     keys.take("paths", reference.paths);
     reference.quick_points = reference.points, reference.quick_paths = reference.paths;
@@ -245,6 +268,7 @@ Study read_study(const toml::table& table, const std::string& file) {
     take_list(keys, "row", study.rows, read_row);
     take_list(keys, "plot", study.plots, read_plot);
     take_list(keys, "picture", study.pictures, read_picture);
+    take_list(keys, "line", study.lines, read_line);
     take_list(keys, "conclusion", study.conclusions, read_conclusion);
     if (const toml::node* reference = keys.find("reference")) {
         if (!reference->is_table()) keys.fail(*reference, "'reference' is not a table: [reference]");

@@ -153,23 +153,6 @@ std::string machine(const StudyPage& page) {
                        page.quick ? "quick" : "in full", page.seconds);
 }
 
-/// The solution of a picture's run, by the name of its record.
-std::string solution_of(const StudyPicture& p, const std::string& folder) {
-    std::error_code failed;
-    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / "runs", failed)) {
-        if (entry.path().extension() != ".h5") continue;
-        const Result<Table> record = read_csv(fs::path(entry.path()).replace_extension(".csv").string());
-        if (!record || record->rows.empty()) continue;
-        const std::size_t last = record->rows.size() - 1;
-        const bool fits = record->text(last, "row") == p.row &&
-                          (p.scene.empty() || record->text(last, "scene") == p.scene) &&
-                          (p.setting.empty() || record->text(last, "level") == p.setting) &&
-                          (std::isnan(p.value) || record->number(last, "parameter") == p.value);
-        if (fits) return entry.path().string();
-    }
-    return "";
-}
-
 }  // namespace
 
 std::vector<DrawnPicture> draw_pictures(const Study& study, const StudyOptions& options, const Table& results,
@@ -181,9 +164,9 @@ std::vector<DrawnPicture> draw_pictures(const Study& study, const StudyOptions& 
     fs::create_directories(folder, failed);
     for (std::size_t i = 0; i < study.pictures.size() && !stop.requested(); ++i) {
         const StudyPicture& p = study.pictures[i];
-        const std::string solution = solution_of(p, options.folder);
+        const std::string solution = kept_solution(p.of, options.folder);
         if (solution.empty()) continue;
-        DrawnPicture out{&p, p.caption.empty() ? p.row : p.caption, {}};
+        DrawnPicture out{&p, p.caption.empty() ? p.of.row : p.caption, {}};
         for (const bool mesh : {false, true}) {
             if (mesh ? p.shows == StudyPicture::Shows::light : p.shows == StudyPicture::Shows::mesh) continue;
             const std::string file = (folder / fmt::format("{}_{}.png", i + 1, mesh ? "mesh" : "light")).string();

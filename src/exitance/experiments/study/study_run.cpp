@@ -168,6 +168,20 @@ class Runner {
     std::optional<Error> failure_;
 };
 
+/// How far references that are careful solves are from paths.
+Table reference_table(const Prepared& prepared) {
+    Table table{{"scene", "parameter", "against_paths", "noise_of_paths", "points"}, {}};
+    for (const auto& [key, stage] : prepared) {
+        if (!stage.check) continue;
+        table.add_row();
+        table.set("scene", key.first), table.set("parameter", field(key.second));
+        table.set("against_paths", field(stage.check->relative_rms_error));
+        table.set("noise_of_paths", field(stage.check->reference_noise));
+        table.set("points", std::to_string(stage.check->points));
+    }
+    return table;
+}
+
 }  // namespace
 
 const std::vector<std::string> result_columns{"study",
@@ -189,7 +203,8 @@ const std::vector<std::string> result_columns{"study",
                                               "element_bytes",
                                               "peak_bytes"};
 
-Result<Table> run_study(const Study& study, const StudyOptions& options, Progress& progress, const StopRequest& stop) {
+Result<StudyTables> run_study(const Study& study, const StudyOptions& options, Progress& progress,
+                              const StopRequest& stop) {
     std::error_code failed;
     for (const char* folder : {"scenes", "references", "runs", "work"}) {
         fs::create_directories(fs::path(options.folder) / folder, failed);
@@ -205,9 +220,13 @@ Result<Table> run_study(const Study& study, const StudyOptions& options, Progres
     }
     const Result<Prepared> prepared = prepare(study, chains, options, progress, stop);
     if (!prepared) return prepared.error();
-    Result<Table> table = Runner(study, options, std::move(chains), *prepared, progress, stop).run();
+    Result<Table> results = Runner(study, options, std::move(chains), *prepared, progress, stop).run();
     fs::remove_all(fs::path(options.folder) / "work", failed);
-    return table;
+    if (!results) return results.error();
+    StudyTables tables{{"results", std::move(*results)}};
+    if (Table references = reference_table(*prepared); !references.rows.empty())
+        tables["references"] = std::move(references);
+    return tables;
 }
 
 }  // namespace exitance

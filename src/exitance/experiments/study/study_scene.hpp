@@ -17,6 +17,7 @@ struct StudyStage {
     std::uint64_t key = 0;  ///< Of what runs depend on: its content and its reference.
     std::size_t polygons = 0;
     std::optional<ReferencePoints> reference;
+    std::optional<ErrorMeasure> check;  ///< Of a reference that is a careful solve, against paths.
 };
 
 /// Words between blanks; those in quotation marks of either kind are one.

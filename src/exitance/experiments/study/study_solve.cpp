@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -51,13 +52,15 @@ std::string status_of(const StudySolve& run, const ProgramRun& program) {
     return "failed: " + first_error(program.err);
 }
 
-/// Is there a picture of this run?
+/// Is there a picture of this run, or a line through it?
 bool is_shown(const StudySolve& run) {
-    for (const StudyPicture& p : run.study.pictures)
-        if (p.row == run.row.label && (p.scene.empty() || p.scene == run.scene.name) &&
-            (p.setting.empty() || p.setting == run.setting) && (std::isnan(p.value) || p.value == run.value))
-            return true;
-    return false;
+    const auto fits = [&](const ChosenSolution& of) {
+        return of.row == run.row.label && (of.scene.empty() || of.scene == run.scene.name) &&
+               (of.setting.empty() || of.setting == run.setting) && (std::isnan(of.value) || of.value == run.value);
+    };
+    const Study& study = run.study;
+    return std::any_of(study.pictures.begin(), study.pictures.end(), [&](const auto& p) { return fits(p.of); }) ||
+           std::any_of(study.lines.begin(), study.lines.end(), [&](const auto& l) { return fits(l.of); });
 }
 
 std::string get(const Facts& facts, const std::string& key) {
@@ -65,7 +68,17 @@ std::string get(const Facts& facts, const std::string& key) {
     return at == facts.end() ? "" : at->second;
 }
 
-void add_error(Table& table, const StudySolve& run, const Solution& solution) {
+/// The share of the leaf elements that lie on what emits.
+double emitter_share(const Solution& solution) {
+    const ElementTree& tree = solution.indirect.tree;
+    const std::vector<ElementId> leaves = tree.leaves();
+    const auto emits = [&](ElementId e) { return solution.scene.material(tree.region(e)).emits(); };
+    const auto count = std::count_if(leaves.begin(), leaves.end(), emits);
+    return leaves.empty() ? 0 : static_cast<double>(count) / static_cast<double>(leaves.size());
+}
+
+void add_measures(Table& table, const StudySolve& run, const Solution& solution) {
+    table.set("emitter_share", field(emitter_share(solution)));
     if (!run.stage.reference) return;
     const ErrorMeasure error = error_against(solution, *run.stage.reference);
     table.set("relative_rms_error", field(error.relative_rms_error));
@@ -96,7 +109,7 @@ void add_checkpoint(Table& table, const StudySolve& run, std::size_t number, con
     count("elements", s.leaf_elements), count("links", s.links), count("rays", s.rays);
     count("link_bytes", s.link_memory_bytes), count("iterations", s.iterations);
     table.set("status", "on the way"), table.set("is_last", "0");
-    add_error(table, run, solution);
+    add_measures(table, run, solution);
 }
 
 void add_last(Table& table, const StudySolve& run, std::size_t number, const ProgramRun& program, const Facts& facts,
@@ -112,7 +125,10 @@ void add_last(Table& table, const StudySolve& run, std::size_t number, const Pro
     table.set("processor_seconds", classical ? get(facts, "processor_seconds") : field(program.processor_seconds));
     if (facts.contains("coefficient_memory_bytes")) copy("element_bytes", "coefficient_memory_bytes");
     const std::size_t row = table.rows.size() - 1;
-    table.set("memory_bytes", field(table.number(row, "link_bytes") + table.number(row, "element_bytes")));
+    // Columns that shooting keeps for later shots are a cache of ours, which the papers had not.
+    const bool shoots = get(facts, "method") == "progressive" || get(facts, "method") == "substructuring";
+    const double links = shoots ? 0 : table.number(row, "link_bytes");
+    table.set("memory_bytes", field(links + table.number(row, "element_bytes")));
     table.set("peak_bytes", std::to_string(program.peak_bytes));
     table.set("wall_seconds", field(program.seconds));
     table.set("status", status_of(run, program)), table.set("is_last", "1"), table.set("command", command);
@@ -135,7 +151,7 @@ Table measured(const StudySolve& run, const std::string& stem, const ProgramRun&
     }
     add_last(table, run, number, program, facts_of_json(program.out), command);
     if (const Result<Solution> solution = load_solution(stem + ".h5")) {
-        add_error(table, run, *solution);
+        add_measures(table, run, *solution);
         if (is_shown(run))
             fs::rename(stem + ".h5", fs::path(run.options.folder) / "runs" / (run_name(run) + ".h5"), ignored);
     } else if (program.status == 0) {
