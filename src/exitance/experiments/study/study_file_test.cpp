@@ -32,12 +32,12 @@ TEST(StudyFile, HoldsScenesAndRows) {
 TEST(StudyFile, TellsWhereItIsWrong) {
     expect_error("title = \n", "s.toml:1", "");
     expect_error("titel = \"T\"\n", "s.toml:1", "'title' is missing");
-    expect_error(smallest + "colour = 1\n", "s.toml:9", "'colour' is not known here");
-    expect_error(smallest + "most = \"x\"\n", "s.toml:9", "'most' is not a number");
+    expect_error(smallest + "colour = 1\n", "s.toml:10", "'colour' is not known here");
+    expect_error(smallest + "most = \"x\"\n", "s.toml:10", "'most' is not a number");
     expect_error(smallest + "[[row]]\nlabel = \"Haar\"\noptions = \"\"\n", "s.toml:1", "two rows are called 'Haar'");
-    expect_error(smallest + "[[conclusion]]\nsays = \"\"\ny = \"links\"\nmeasure = \"slop\"\n", "s.toml:12",
+    expect_error(smallest + "[[conclusion]]\nsays = \"\"\ny = \"links\"\nmeasure = \"slop\"\n", "s.toml:13",
                  "'slop' is not one of");
-    expect_error(smallest + "[reference]\npoints = 10\n", "s.toml:9", "a reference has");
+    expect_error(smallest + "[reference]\npoints = 10\n", "s.toml:10", "a reference has");
     expect_error("title = \"T\"\n", "s.toml:1", "a study has");
 }
 
