@@ -30,6 +30,27 @@ TEST(ProgramCompare, ASolutionAgreesWithItsOwnProbesAndWithAFinerOne) {
     EXPECT_LT(difference["relative_rms_error"], 0.15);  // the two demands together, and a little
 }
 
+TEST(ProgramCompare, DrawsWhereTheErrorLies) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder), coarse = folder / "coarse.h5", fine = folder / "fine.h5";
+    ASSERT_EQ(run_program({"solve", scene, "-o", coarse, "--error", "0.2", "-q"}).status, 0);
+    ASSERT_EQ(run_program({"solve", scene, "-o", fine, "--error", "0.05", "-q"}).status, 0);
+    const auto map = [&](const std::string& reference, const std::string& picture) {
+        return run_program({"compare", coarse, reference, "--map", picture, "--size", "64x40", "--json"});
+    };
+    EXPECT_EQ(map(fine, folder / "a.png").status, 0);
+    ASSERT_EQ(run_program({"probe", fine, "--points", "-", "-o", folder / "own.csv"},
+                          "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n3,2,0,0,0,1\n")
+                  .status,
+              0);
+    EXPECT_EQ(map(folder / "own.csv", folder / "b.png").status, 0);
+    EXPECT_NE(read_text(folder / "a.png"), read_text(folder / "b.png"));
+    EXPECT_EQ(map(fine, folder / "a.jpg").status, 2);
+    const Json function = Json::parse(run_program({"compare", coarse, fine, "--json"}).out);
+    const Json drawn = Json::parse(run_program({"compare", coarse, fine, "--interpolant", "--json"}).out);
+    EXPECT_GT(drawn["relative_rms_error"], function["relative_rms_error"]);
+}
+
 TEST(ProgramCompare, AReferenceWithoutLightIsBadInput) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";

@@ -60,11 +60,6 @@ struct ProbeArguments : CommonArguments {
     int threads = 0;
 };
 
-struct CompareArguments : CommonArguments {
-    std::string solution, reference;
-    int threads = 0;
-};
-
 struct StatsArguments : CommonArguments {
     std::string solution;
 };
@@ -93,6 +88,14 @@ struct RenderArguments : CommonArguments {
     bool mesh = false;         ///< With the elements' edges.
     bool shadow_classes = false;
     std::string path;  ///< A camera a row, for numbered pictures; empty: one picture.
+    int threads = 0;
+};
+
+struct CompareArguments : CommonArguments {
+    std::string solution, reference;
+    bool interpolant = false;
+    std::string map;       ///< Picture to write of where the error lies; empty: none.
+    RenderArguments view;  ///< Of which camera, size and scale count.
     int threads = 0;
 };
 

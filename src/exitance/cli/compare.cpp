@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/reference_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"
+#include "exitance/reconstruct/pictures/error_picture.hpp"
 
 namespace exitance {
 namespace {
@@ -33,11 +37,36 @@ std::string report(const ErrorMeasure& error) {
         percent(error.median_relative_error), percent(error.p95_relative_error));
 }
 
+/// The picture of where the error lies.
+Result<void> write_map(const CompareArguments& arguments, const Solution& solution, const ReferencePoints& reference) {
+    const RadiosityFunction light(solution);
+    const Result<Camera> camera = choose_camera(arguments.view, light);
+    if (!camera) return camera.error();
+    const Scene& scene = solution.scene;
+    const SeenPlaces places = seen_places(scene, light.stage().tracer, *camera, arguments.view.size);
+    std::vector<Spectrum> known;
+    if (arguments.reference.ends_with(".h5")) {
+        const Result<Solution> other = load_solution(arguments.reference);
+        if (!other) return other.error();
+        known = irradiance_at(*other, places.points);
+    } else {
+        known = nearest_reference(places, reference, scene);
+    }
+    const Evaluated what = arguments.interpolant ? Evaluated::interpolant : Evaluated::function;
+    const Picture picture = error_picture(places, irradiance_at(solution, places.points, what), known);
+    const ColourScale scale = make_colour_scale(picture, Quantity::irradiance, arguments.view.scale);
+    Image image = false_colour_image(picture, Quantity::irradiance, scale);
+    draw_legend(image, "error of irradiance, W/m2", scale);
+    return write_png(arguments.map, image, {{"Software", "exitance"}, {"Camera", describe(*camera)}});
+}
+
 }  // namespace
 
 /// exitance compare SOLUTION REFERENCE
 ExitCode run(const CompareArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
+    if (!arguments.map.empty() && ending(arguments.map) != ".png")
+        return terminal.fail({ErrorCode::usage, "is written as .png", "--map", "exitance compare ... --map error.png"});
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
     const Result<ReferencePoints> reference = arguments.reference.ends_with(".h5")
@@ -45,7 +74,11 @@ ExitCode run(const CompareArguments& arguments, Terminal& terminal) {
                                                   : load_reference_points(arguments.reference);
     if (!reference) return terminal.fail(reference.error());
 
-    const ErrorMeasure error = error_against(*solution, *reference);
+    const Evaluated what = arguments.interpolant ? Evaluated::interpolant : Evaluated::function;
+    const ErrorMeasure error = error_against(*solution, *reference, what);
+    if (!arguments.map.empty())
+        if (const Result<void> written = write_map(arguments, *solution, *reference); !written)
+            return terminal.fail(written.error());
     terminal.print(arguments.json ? error_json(error) : report(error));
     return ExitCode::done;
 }

@@ -127,6 +127,24 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
 void declare(CLI::App& app, CompareArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
     app.add_option("REFERENCE", arguments.reference, "Probe CSV with E_*, or another solution")->required();
+    app.add_flag("--interpolant", arguments.interpolant, "Measure what export writes, not the full function");
+    app.add_option(
+           "--map", arguments.map,
+           "Picture (.png) of where the error lies: |E - E_ref| in false colours; of a CSV at its nearest point "
+           "on the surface")
+        ->type_name("FILE");
+    app.add_option_function<std::string>(
+           "--camera", [&arguments](const std::string& w) { read_camera(w, arguments.view); },
+           "Of the map; as of render")
+        ->type_name("CAMERA");
+    app.add_option_function<std::string>(
+           "--size", [&arguments](const std::string& w) { arguments.view.size = read_size(w); },
+           "Pixels of the map; default 640x400")
+        ->type_name("WxH");
+    app.add_option_function<std::string>(
+           "--scale", [&arguments](const std::string& w) { read_scale(w, arguments.view.scale); },
+           "Range of the map's colours, W/m^2: 0,5")
+        ->type_name("LO,HI[,log]");
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }

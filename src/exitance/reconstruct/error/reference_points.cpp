@@ -4,18 +4,20 @@
 
 namespace exitance {
 
-std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points) {
+std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points, Evaluated what) {
+    const RadiosityFunction function(solution);
     std::vector<Spectrum> out;
     out.reserve(points.size());
-    for (const Light& light : RadiosityFunction(solution).at(points)) out.push_back(light.irradiance);
+    for (const Light& light : what == Evaluated::interpolant ? function.interpolant_at(points) : function.at(points))
+        out.push_back(light.irradiance);
     return out;
 }
 
-ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference) {
+ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference, Evaluated what) {
     const Locator locator(solution.scene);
     std::vector<SurfaceId> surfaces;
     for (const ProbePoint& point : reference.points) surfaces.push_back(locator.find(point.x, point.n));
-    const std::vector<Spectrum> irradiance = irradiance_at(solution, reference.points);
+    const std::vector<Spectrum> irradiance = irradiance_at(solution, reference.points, what);
     return measure_error({irradiance, reference.irradiance, reference.standard_errors, surfaces}, solution.scene);
 }
 

@@ -14,10 +14,14 @@ struct ReferencePoints {
     std::vector<Spectrum> standard_errors;  ///< W/m^2; empty: exact.
 };
 
-/// E of a solution at points, W/m^2.
-std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points);
+/// What of a solution is measured: the function that `probe` evaluates, or what `export` writes.
+enum class Evaluated : std::uint8_t { function, interpolant };
 
-/// The error of what `probe` evaluates.
-ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference);
+/// E of a solution at points, W/m^2.
+std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points,
+                                    Evaluated what = Evaluated::function);
+
+ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference,
+                           Evaluated what = Evaluated::function);
 
 }  // namespace exitance
