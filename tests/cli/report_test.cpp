@@ -94,4 +94,31 @@ TEST(ProgramReport, RefusesWhatCannotBeDone) {
     EXPECT_FALSE(std::filesystem::exists(page));
 }
 
+TEST(ProgramReport, LuxAreWattsByTheEfficacy) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", points = "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const auto last = [&](std::vector<std::string> more, double* bands) {
+        std::vector<std::string> words{"probe", solution, "--points", "-"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Finished run = run_program(words, points);
+        EXPECT_EQ(run.status, 0) << run.err;
+        const std::string row = run.out.substr(run.out.find('\n') + 1);
+        EXPECT_EQ(std::sscanf(row.c_str(), "1,1,0,0,0,1,%lf,%lf,%lf", bands, bands + 1, bands + 2), 3) << row;
+        return std::stod(row.substr(row.rfind(',') + 1));
+    };
+    double E[3];
+    const double lux = last({"--unit", "lux"}, E);
+    const double expected = 0.265 * E[0] + 0.670 * E[1] + 0.065 * E[2];
+    EXPECT_NEAR(lux, 179 * expected, 1e-6 * lux);
+    EXPECT_NEAR(last({"--unit", "lux", "--efficacy", "100"}, E), 100 * expected, 1e-6 * lux);
+    EXPECT_NEAR(last({"--unit", "w"}, E), (E[0] + E[1] + E[2]) / 3, 1e-6 * lux);
+    EXPECT_EQ(run_program({"probe", solution, "--points", "-", "--efficacy", "100"}, points).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "a.png", "--unit", "lux"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "a.png", "--unit", "lux", "--false-colour", "irradiance",
+                           "--size", "16x10", "-q"})
+                  .status,
+              0);
+}
+
 }  // namespace exitance::test

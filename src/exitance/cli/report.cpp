@@ -6,10 +6,12 @@
 
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/isolux.hpp"
+#include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/reconstruct/surface_levels.hpp"
 
@@ -38,12 +40,13 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     tones.curve = ToneCurve::filmic, tones.scale = automatic_exposure(picture);
     content.pictures.push_back({fmt::format("Radiosity times {:.4g}, toned by a filmic curve", tones.scale),
                                 describe(camera), display_image(picture, tones)});
-    const bool lux = arguments.unit == ReportUnit::lux;
+    const bool lux = content.unit.is_lux();
     const Quantity quantity = lux ? Quantity::illuminance : Quantity::irradiance;
-    const ColourScale scale = make_colour_scale(picture, quantity);
-    Image image = false_colour_image(picture, quantity, scale);
-    if (lux) draw_isolux(image, picture, scale, title(quantity, light.solution().scene.is_photometric()));
-    draw_legend(image, title(quantity, light.solution().scene.is_photometric()), scale);
+    const Picture shown = in_unit(picture, content.unit);
+    const ColourScale scale = make_colour_scale(shown, quantity);
+    Image image = false_colour_image(shown, quantity, scale);
+    if (lux) draw_isolux(image, shown, scale, title(quantity, lux));
+    draw_legend(image, title(quantity, lux), scale);
     content.pictures.push_back(
         {lux ? "Illuminance in lx" : "Irradiance in W/m^2, mean of the bands", describe(camera), std::move(image)});
 }
@@ -96,7 +99,7 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
     const RadiosityFunction light(*solution);
-    content.solution = &*solution, content.unit = arguments.unit;
+    content.solution = &*solution, content.unit = unit_of(arguments.unit, solution->scene, terminal);
     content.statistics = statistics_json(solution->statistics);
     std::vector<Camera> cameras;
     for (const RenderArguments& view : views(arguments, solution->scene)) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double plan_width = 640;  ///< Of the longer side, in the picture's own units.
 
-Quantity quantity(ReportUnit unit) {
-    return unit == ReportUnit::lux ? Quantity::illuminance : Quantity::irradiance;
+Quantity quantity(const LightUnit& unit) {
+    return unit.is_lux() ? Quantity::illuminance : Quantity::irradiance;
 }
 
 Pixel lit(const Spectrum& irradiance) {
@@ -22,12 +22,12 @@ Pixel lit(const Spectrum& irradiance) {
 }
 
 /// The points of a grid as a picture of one pixel each, the first row at the bottom.
-Picture picture_of_points(const GridLight& light) {
+Picture picture_of_points(const GridLight& light, const std::vector<double>& values) {
     Picture picture{{light.columns, light.rows}, {}};
     for (int row = light.rows - 1; row >= 0; --row)
         for (int column = 0; column < light.columns; ++column) {
             const auto i = static_cast<std::size_t>(row * light.columns + column);
-            picture.pixels.push_back(light.is_open[i] ? lit(light.irradiance[i]) : Pixel());
+            picture.pixels.push_back(light.is_open[i] ? lit(Spectrum(values[i])) : Pixel());
         }
     return picture;
 }
@@ -67,8 +67,8 @@ struct Segment {
 /// Lines of equal light in a picture that fills a plan: marching squares, [Lorensen87] in the plane.
 class Contours {
   public:
-    Contours(const Picture& picture, ReportUnit unit, Vec2 plan)
-        : picture_(picture), unit_(unit), cell_{plan.x / picture.size.width, plan.y / picture.size.height} {}
+    Contours(const Picture& picture, Vec2 plan)
+        : picture_(picture), cell_{plan.x / picture.size.width, plan.y / picture.size.height} {}
 
     std::vector<Segment> at(double level) const {
         std::vector<Segment> out;
@@ -81,7 +81,7 @@ class Contours {
     const Pixel& pixel(const int* at) const {
         return picture_.pixels[static_cast<std::size_t>(at[1] * picture_.size.width + at[0])];
     }
-    double value(const int* at) const { return in_unit(pixel(at).irradiance, unit_); }
+    double value(const int* at) const { return mean(pixel(at).irradiance); }
 
     void add(int x, int y, double level, std::vector<Segment>& out) const {
         const int corner[4][2] = {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}};
@@ -101,7 +101,6 @@ class Contours {
     }
 
     const Picture& picture_;
-    ReportUnit unit_;
     Vec2 cell_;
 };
 
@@ -136,7 +135,7 @@ std::string values(const ReportFigures::Grid& grid, Vec2 cell) {
     return svg;
 }
 
-std::string legend(const ColourScale& scale, ReportUnit unit) {
+std::string legend(const ColourScale& scale, const LightUnit& unit) {
     std::string html;
     const std::vector<std::string> names = scale.names();
     for (std::size_t band = 0; band < scale.band_count(); ++band) {
@@ -152,9 +151,9 @@ std::string legend(const ColourScale& scale, ReportUnit unit) {
 
 }  // namespace
 
-std::string grid_plan(const ReportFigures::Grid& grid, ReportUnit unit) {
+std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit) {
     const GridLight& light = *grid.light;
-    const Picture points = picture_of_points(light);
+    const Picture points = picture_of_points(light, grid.values);
     const ColourScale scale = make_colour_scale(points, quantity(unit));
     constexpr int picture_width = 480, contour_width = 160;
     const Result<std::string> picture =
@@ -169,7 +168,7 @@ std::string grid_plan(const ReportFigures::Grid& grid, ReportUnit unit) {
         "aria-label=\"plan of the light\"><image href=\"{2}\" width=\"{3:.1f}\" height=\"{4:.1f}\" "
         "preserveAspectRatio=\"none\"/>{5}{6}</svg>{7}",
         plan.x + 2, plan.y + 2, picture ? *picture : "", plan.x, plan.y, values(grid, cell),
-        lines(Contours(coarse, unit, plan), scale), legend(scale, unit));
+        lines(Contours(coarse, plan), scale), legend(scale, unit));
 }
 
 }  // namespace exitance

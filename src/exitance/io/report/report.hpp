@@ -11,15 +11,9 @@
 #include "exitance/reconstruct/measuring_grid.hpp"
 #include "exitance/reconstruct/pictures/camera.hpp"
 #include "exitance/reconstruct/surface_levels.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
-
-/// What numbers of light mean: the mean of the bands in W/m^2, or their luminous mean in lx (and lm/m^2) for scenes
-/// whose emitters are given in cd/m^2.
-enum class ReportUnit : std::uint8_t { watt, lux };
-
-constexpr std::array<std::pair<ReportUnit, std::string_view>, 2> report_unit_names{
-    {{ReportUnit::watt, "watt"}, {ReportUnit::lux, "lux"}}};
 
 struct ReportPicture {
     std::string caption, camera;  ///< The camera as `render --camera` takes it.
@@ -29,7 +23,7 @@ struct ReportPicture {
 /// What a report tells. Its solution must outlive it.
 struct ReportContent {
     const Solution* solution = nullptr;
-    ReportUnit unit = ReportUnit::watt;
+    LightUnit unit;  ///< Of all numbers of light.
     std::vector<ReportPicture> pictures;
     std::vector<GridLight> grids;
     std::vector<SurfacePoints> surfaces;

@@ -20,8 +20,8 @@ ReportFigures::Face face_figures(const ReportContent& content, const SurfacePoin
     face.group = scene.groups()[surface.group], face.material = scene.material(points.surface).name;
     std::vector<double> values;
     for (const Light& light : points.light) {
-        values.push_back(in_unit(light.irradiance, content.unit));
-        face.radiosity += in_unit(light.radiosity, content.unit) / static_cast<double>(points.light.size());
+        values.push_back(content.unit(light.irradiance));
+        face.radiosity += content.unit(light.radiosity) / static_cast<double>(points.light.size());
     }
     face.irradiance = levels_of(values);
     return face;
@@ -99,12 +99,8 @@ std::string list(const Items& items, const Text& text) {
 
 }  // namespace
 
-double in_unit(const Spectrum& light, ReportUnit unit) {
-    return unit == ReportUnit::lux ? luminous_mean(light) : mean(light);
-}
-
-const char* symbol(ReportUnit unit) {
-    return unit == ReportUnit::lux ? "lx" : "W/m\xc2\xb2";
+const char* symbol(const LightUnit& unit) {
+    return unit.is_lux() ? "lx" : "W/m\xc2\xb2";
 }
 
 std::string figure(double value) {
@@ -125,7 +121,7 @@ ReportFigures find_figures(const ReportContent& content) {
         ReportFigures::Grid grid{&light, {}, {}, 0};
         std::vector<double> open;
         for (std::size_t i = 0; i < light.points.size(); ++i) {
-            grid.values.push_back(in_unit(light.irradiance[i], content.unit));
+            grid.values.push_back(content.unit(light.irradiance[i]));
             if (light.is_open[i]) open.push_back(grid.values.back());
         }
         grid.levels = levels_of(open);
@@ -138,7 +134,7 @@ ReportFigures find_figures(const ReportContent& content) {
 
 std::string report_json(const ReportContent& content, const ReportFigures& figures) {
     const Scene& scene = content.solution->scene;
-    const bool lux = content.unit == ReportUnit::lux;
+    const bool lux = content.unit.is_lux();
     const Vec3 size = scene.box().size();
     return fmt::format(
         "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"unit\": \"{}\",\n"

@@ -35,10 +35,8 @@ struct ReportFigures {
 
 ReportFigures find_figures(const ReportContent& content);
 
-/// A spectrum as one number in the unit of a report.
-double in_unit(const Spectrum& light, ReportUnit unit);
 /// "W/m²" or "lx".
-const char* symbol(ReportUnit unit);
+const char* symbol(const LightUnit& unit);
 
 /// A number as pages and files show it: five significant digits.
 std::string figure(double value);
@@ -47,7 +45,7 @@ std::string figure(double value);
 std::string report_json(const ReportContent& content, const ReportFigures& figures);
 
 /// A plan of a grid in false colours with lines of equal light (SVG), and what the colours mean (HTML).
-std::string grid_plan(const ReportFigures::Grid& grid, ReportUnit unit);
+std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit);
 
 /// A canvas that shows the scene with its light maps, and the script that turns it (HTML); empty without maps.
 Result<std::string> report_viewer(const ReportContent& content);

@@ -70,9 +70,8 @@ std::string overview(const ReportContent& content, const ReportFigures& figures)
     rows += fact("Error", s.relative_error_estimate
                               ? fmt::format("{} (relative RMS, estimated)", percent(*s.relative_error_estimate))
                               : "not known");
-    rows += fact("Numbers", content.unit == ReportUnit::lux
-                                ? "illuminance in lx, radiosity in lm/m² (weighted means of the bands)"
-                                : "irradiance and radiosity in W/m² (means of the bands)");
+    rows += fact("Numbers", content.unit.is_lux() ? "illuminance in lx, radiosity in lm/m²"
+                                                  : "irradiance and radiosity in W/m² (means of the bands)");
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
