@@ -15,6 +15,7 @@
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/classical/classical_options.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/reconstruct/working_plane.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/solve/solve_options.hpp"
 
@@ -117,6 +118,10 @@ struct ReportArguments : CommonArguments {
     std::string solution, output;
     std::vector<RenderArguments> views;  ///< Of which the camera counts; empty: automatic ones.
     std::vector<MeasuringPlane> planes;
+    std::vector<PlaneRequest> working_planes;
+    double maintenance = 1;
+    std::vector<std::string> observers;  ///< In words.
+    std::string tables;                  ///< Folder for them; empty: none.
     PictureSize size{960, 600};
     UnitArguments unit;
     int threads = 0;

@@ -7,6 +7,7 @@
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/light_unit.hpp"
+#include "exitance/cli/standards_arguments.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/pictures/display.hpp"
@@ -77,6 +78,25 @@ void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal
     if (maps) content.viewer = std::move(*maps);
 }
 
+Result<void> add_working_planes(const ReportArguments& arguments, const Scene& scene, std::vector<GridLight>& grids) {
+    for (const PlaneRequest& request : arguments.working_planes) {
+        Result<std::vector<GridLight>> planes = make_working_planes(scene, request);
+        if (!planes) return planes.error();
+        for (GridLight& plane : *planes) grids.push_back(std::move(plane));
+    }
+    return {};
+}
+
+Result<std::vector<Observer>> all_observers(const ReportArguments& arguments, const Scene& scene) {
+    std::vector<Observer> out;
+    for (const std::string& words : arguments.observers) {
+        const Result<std::vector<Observer>> some = find_observers(words, scene);
+        if (!some) return some.error();
+        out.insert(out.end(), some->begin(), some->end());
+    }
+    return out;
+}
+
 std::optional<Error> find_misuse(const ReportArguments& arguments) {
     const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
     if (page) return std::nullopt;
@@ -98,6 +118,10 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
+    if (const Result<void> added = add_working_planes(arguments, solution->scene, content.grids); !added)
+        return terminal.fail(added.error());
+    const Result<std::vector<Observer>> observers = all_observers(arguments, solution->scene);
+    if (!observers) return terminal.fail(observers.error());
     const RadiosityFunction light(*solution);
     content.solution = &*solution, content.unit = unit_of(arguments.unit, solution->scene, terminal);
     content.statistics = statistics_json(solution->statistics);
@@ -110,6 +134,11 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     content.view = cameras.front();
     for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
     for (GridLight& grid : content.grids) measure(light, grid, terminal.progress(), stop);
+    content.maintenance = arguments.maintenance;
+    const LightUnit lux(UnitChoice::lux, solution->scene.is_photometric(),
+                        arguments.unit.efficacy.value_or(daylight_efficacy));
+    for (const Observer& observer : *observers)
+        content.observers.push_back({observer, find_glare(light, observer, lux)});
     constexpr std::size_t surface_points = 50000, error_points = 400;
     constexpr unsigned error_rays = 2048;
     const std::vector<SurfaceId> faces = largest_faces(solution->scene, content.surfaces_left_out);
@@ -117,7 +146,8 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     content.error = find_error_percentile(light, error_points, error_rays, terminal.progress(), stop);
     add_viewer(light, content, terminal, stop);
     terminal.progress().finish();
-    const Result<void> written = write_report(content, arguments.output);
+    Result<void> written = write_report(content, arguments.output);
+    if (written && !arguments.tables.empty()) written = write_report_tables(content, arguments.tables);
     return written ? ExitCode::done : terminal.fail(written.error());
 }
 

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/standards_arguments.hpp"
 
 namespace exitance {
 namespace {
@@ -270,6 +271,7 @@ void declare(CLI::App& app, ReportArguments& arguments) {
            "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 960x600")
         ->type_name("WxH");
     declare_unit(app, arguments.unit);
+    declare_standards(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }
 

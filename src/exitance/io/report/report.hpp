@@ -7,6 +7,7 @@
 
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/reconstruct/error/error_percentile.hpp"
+#include "exitance/reconstruct/glare.hpp"
 #include "exitance/reconstruct/light_maps/light_map.hpp"
 #include "exitance/reconstruct/measuring_grid.hpp"
 #include "exitance/reconstruct/pictures/camera.hpp"
@@ -20,12 +21,20 @@ struct ReportPicture {
     Image image;
 };
 
+/// Somebody in the room, and how glaring it is there.
+struct ObserverGlare {
+    Observer observer;
+    Glare glare;
+};
+
 /// What a report tells. Its solution must outlive it.
 struct ReportContent {
     const Solution* solution = nullptr;
     LightUnit unit;  ///< Of all numbers of light.
     std::vector<ReportPicture> pictures;
     std::vector<GridLight> grids;
+    double maintenance = 1;  ///< What values of grids are multiplied by.
+    std::vector<ObserverGlare> observers;
     std::vector<SurfacePoints> surfaces;
     std::size_t surfaces_left_out = 0;  ///< Smaller faces than those above.
     ErrorPercentile error;
@@ -37,5 +46,12 @@ struct ReportContent {
 /// Writes the page, which refers to nothing outside of itself, and beside it its numbers as JSON (report.html,
 /// report.json). Each appears whole or not at all.
 Result<void> write_report(const ReportContent& content, const std::string& path);
+
+/// Writes, into a folder that is made where it is missing:
+///     planes.csv           a row a measuring plane: name, kind, place, Em, U0, Ud, ...
+///     plane_1.csv, ...     a row a point: place, normal, value
+///     plane_1.svg, .pdf    a plan to scale with lines of equal light
+///     observers.csv        a row an observer: place, line of sight, UGR, background, sources (where there are any)
+Result<void> write_report_tables(const ReportContent& content, const std::string& folder);
 
 }  // namespace exitance

@@ -44,6 +44,12 @@ std::string figure(double value);
 /// The numbers as JSON.
 std::string report_json(const ReportContent& content, const ReportFigures& figures);
 
+/// The observers of a report as items of a JSON array, and as a part of the page (empty without any).
+std::string observer_json(const ObserverGlare& observer);
+std::string observers_html(const ReportContent& content);
+/// Text within HTML.
+std::string escaped(const std::string& text);
+
 /// A plan of a grid in false colours with lines of equal light (SVG), and what the colours mean (HTML).
 std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit);
 
