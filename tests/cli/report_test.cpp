@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "cli/small_scene.hpp"
@@ -92,6 +95,87 @@ TEST(ProgramReport, RefusesWhatCannotBeDone) {
     EXPECT_EQ(run_program({"report", solution, "-o", page, "--camera", "nowhere"}).status, 2);
     EXPECT_EQ(run_program({"report", folder / "absent.h5", "-o", page}).status, 3);
     EXPECT_FALSE(std::filesystem::exists(page));
+}
+
+TEST(ProgramReport, LuxAreWattsByTheEfficacy) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", points = "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const auto last = [&](std::vector<std::string> more, double* bands) {
+        std::vector<std::string> words{"probe", solution, "--points", "-"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Finished run = run_program(words, points);
+        EXPECT_EQ(run.status, 0) << run.err;
+        const std::string row = run.out.substr(run.out.find('\n') + 1);
+        EXPECT_EQ(std::sscanf(row.c_str(), "1,1,0,0,0,1,%lf,%lf,%lf", bands, bands + 1, bands + 2), 3) << row;
+        return std::stod(row.substr(row.rfind(',') + 1));
+    };
+    double E[3];
+    const double lux = last({"--unit", "lux"}, E);
+    const double expected = 0.265 * E[0] + 0.670 * E[1] + 0.065 * E[2];
+    EXPECT_NEAR(lux, 179 * expected, 1e-6 * lux);
+    EXPECT_NEAR(last({"--unit", "lux", "--efficacy", "100"}, E), 100 * expected, 1e-6 * lux);
+    EXPECT_NEAR(last({"--unit", "w"}, E), (E[0] + E[1] + E[2]) / 3, 1e-6 * lux);
+    EXPECT_EQ(run_program({"probe", solution, "--points", "-", "--efficacy", "100"}, points).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "a.png", "--unit", "lux"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "a.png", "--unit", "lux", "--false-colour", "irradiance",
+                           "--size", "16x10", "-q"})
+                  .status,
+              0);
+}
+
+TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const auto report = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"report", solution, "-o", folder / "r.html", "--size", "16x10", "-q"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_program(words);
+    };
+    const Finished run = report({"--unit", "lux", "--plane", "0.75", "--plane", "floor,border=0.2,spacing=0.5",
+                                 "--cylindrical", "1.2,spacing=1", "--maintenance", "0.8", "--observers", "auto",
+                                 "--observers", "0.2,1.5,1.2 1,0,0", "--tables", folder / "t"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto json = nlohmann::json::parse(read_text(folder / "r.json"));
+    ASSERT_EQ(json["grids"].size(), 3u);
+    const auto& plane = json["grids"][0];
+    // 4 x 3 m less 0.5 m on every side: 3 x 2 m, p = 0.2 x 5^log10(3) = 0.431 m, so 7 x 5 points.
+    EXPECT_EQ(plane["columns"], 7);
+    EXPECT_EQ(plane["rows"], 5);
+    EXPECT_EQ(plane["name"], "0.75 m above floor");
+    EXPECT_EQ(json["grids"][2]["kind"], "cylindrical");
+    double sum = 0, least = 1e9;
+    for (const double v : plane["values"]) sum += v / 35, least = std::min(least, v);
+    EXPECT_NEAR(plane["mean"], sum, 1e-4 * sum);
+    EXPECT_NEAR(plane["uniformity"], least / sum, 1e-4);
+    // The same points by `probe`, in watts, with the factor.
+    const auto& p = plane["points"][9];
+    const Finished probe =
+        run_program({"probe", solution, "--points", "-", "--unit", "lux"},
+                    "x,y,z,nx,ny,nz\n" + p[0].dump() + "," + p[1].dump() + "," + p[2].dump() + ",0,0,1\n");
+    EXPECT_NEAR(plane["values"][9], 0.8 * std::stod(probe.out.substr(probe.out.rfind(',') + 1)), 1e-3 * sum);
+    ASSERT_EQ(json["observers"].size(), 5u);
+    const auto& observer = json["observers"][4];
+    ASSERT_EQ(observer["sources"].size(), 1u);
+    const auto& source = observer["sources"][0];
+    EXPECT_NEAR(source["luminance"], 10 * 179, 0.1);
+    const double term = std::pow(source["luminance"].get<double>() / source["position"].get<double>(), 2) *
+                        source["solid_angle"].get<double>();
+    EXPECT_NEAR(observer["ugr"], 8 * std::log10(0.25 * term / observer["background"].get<double>()), 1e-2);
+    const std::string table = read_text(folder / "t/planes.csv");
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
+    EXPECT_TRUE(read_text(folder / "t/plane_1.svg").starts_with("<svg xmlns"));
+    EXPECT_TRUE(read_text(folder / "t/plane_3.pdf").starts_with("%PDF"));
+    EXPECT_NE(read_text(folder / "t/observers.csv").find("\"along u\""), std::string::npos);
+    EXPECT_NE(read_text(folder / "r.html").find("<section id=\"glare\">"), std::string::npos);
+    for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{{"--plane", "chair"},
+                                                                                       {"--plane", "0.7,size=3"},
+                                                                                       {"--cylindrical", "floor"},
+                                                                                       {"--observers", "1,2,3 0,0,0"},
+                                                                                       {"--maintenance", "1.2"}})
+        EXPECT_EQ(report(wrong).status, 2) << wrong[1];
+    EXPECT_EQ(report({"--observers", folder / "none.csv"}).status, 3);
 }
 
 }  // namespace exitance::test

@@ -15,6 +15,8 @@
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/classical/classical_options.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/reconstruct/working_plane.hpp"
+#include "exitance/scene/photometric_units.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
@@ -50,11 +52,18 @@ struct SolveArguments : CommonArguments {
     std::string sky, epw;             ///< A sky in words, and a weather file for it; empty: none.
 };
 
+/// In what unit a verb tells light.
+struct UnitArguments {
+    UnitChoice choice = UnitChoice::scene;
+    std::optional<double> efficacy;  ///< lm/W of light in watts; none: Radiance's 179.
+};
+
 struct ProbeArguments : CommonArguments {
     std::string solution, points;
     std::string output = "-";
     bool interpolant = false;
     Component component = Component::total;
+    UnitArguments unit;
     std::size_t reference_paths = 0;  ///< 0: evaluate the solution; N: N unbiased paths a point instead.
     std::uint64_t seed = 1;
     int threads = 0;
@@ -82,6 +91,7 @@ struct RenderArguments : CommonArguments {
     std::optional<Quantity> false_colour;
     ScaleChoice scale;       ///< Of false colours and of isolux lines.
     bool has_scale = false;  ///< Was any of it asked for?
+    UnitArguments unit;
     bool isolux = false;
     std::size_t samples = 16;  ///< Rays a pixel.
     std::size_t gather = 0;    ///< Rays of a final gather at each of them.
@@ -111,8 +121,12 @@ struct ReportArguments : CommonArguments {
     std::string solution, output;
     std::vector<RenderArguments> views;  ///< Of which the camera counts; empty: automatic ones.
     std::vector<MeasuringPlane> planes;
+    std::vector<PlaneRequest> working_planes;
+    double maintenance = 1;
+    std::vector<std::string> observers;  ///< In words.
+    std::string tables;                  ///< Folder for them; empty: none.
     PictureSize size{960, 600};
-    ReportUnit unit = ReportUnit::watt;
+    UnitArguments unit;
     int threads = 0;
 };
 

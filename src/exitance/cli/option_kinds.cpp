@@ -14,6 +14,9 @@ constexpr std::array<std::pair<ProgressStyle, std::string_view>, 5> progress_nam
     {ProgressStyle::none, "none"},
 }};
 
+constexpr std::array<std::pair<UnitChoice, std::string_view>, 3> unit_names{
+    {{UnitChoice::lux, "lux"}, {UnitChoice::watt, "w"}, {UnitChoice::watt, "watt"}}};
+
 }  // namespace
 
 double read_number(const std::string& option, const std::string& word) {
@@ -67,6 +70,14 @@ void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
     add_count(app, "--threads", threads, 1, "Threads to use; default all. The result does not depend on it");
     add_choice(app, "--progress", progress_names, arguments.progress,
                "auto: a bar on a terminal, a line every ten seconds otherwise");
+}
+
+void declare_unit(CLI::App& app, UnitArguments& unit) {
+    CLI::Option* named =
+        add_choice(app, "--unit", unit_names, unit.choice,
+                   "Light in lx (of W/m^2 by 179 lm/W and weights 0.265, 0.670, 0.065 of R, G, B) or in W/m^2 (mean of "
+                   "the bands); default: what the scene's light is in, which is never converted twice");
+    add_positive(app, "--efficacy", unit.efficacy, "LM/W", "In place of 179 lm/W")->needs(named);
 }
 
 void declare_scene(CLI::App& app, SceneArguments& scene) {

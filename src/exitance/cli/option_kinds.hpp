@@ -89,6 +89,8 @@ void declare_common(CLI::App& app, CommonArguments& arguments);
 void declare_json(CLI::App& app, CommonArguments& arguments);
 void declare_work(CLI::App& app, CommonArguments& arguments, int& threads);
 void declare_scene(CLI::App& app, SceneArguments& scene);
+/// --unit and --efficacy
+void declare_unit(CLI::App& app, UnitArguments& unit);
 
 // All options of a verb.
 void declare(CLI::App& app, SolveArguments& arguments);

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/probe_file.hpp"
@@ -67,8 +68,10 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     Result<ProbeReader> reader = ProbeReader::open(arguments.points);
     if (!reader) return terminal.fail(reader.error());
     const bool by_paths = arguments.reference_paths > 0;
-    Result<ProbeWriter> writer =
-        ProbeWriter::create(arguments.output, {.standard_errors = by_paths, .lux = solution->scene.is_photometric()});
+    const LightUnit unit = unit_of(arguments.unit, solution->scene, terminal);
+    const bool told = unit.is_lux() || arguments.unit.choice != UnitChoice::scene;
+    Result<ProbeWriter> writer = ProbeWriter::create(
+        arguments.output, {.standard_errors = by_paths, .unit = told ? std::optional(unit) : std::nullopt});
     if (!writer) return terminal.fail(writer.error());
 
     const Result<void> written = by_paths

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exitance/cli/camera_choice.hpp"
+#include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -12,6 +13,7 @@
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/linear_image.hpp"
 #include "exitance/io/pictures/mesh_colours.hpp"
+#include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -29,6 +31,8 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
                      "name the output something.png");
     if (a.has_scale && !a.false_colour && !a.isolux)
         return usage("has nothing to colour", "--scale, --bands, --palette", "they go with --false-colour or --isolux");
+    if (a.unit.choice != UnitChoice::scene && !a.false_colour && !a.isolux)
+        return usage("has no numbers to tell", "--unit", "it goes with --false-colour or --isolux");
     if (end != ".png" && (a.false_colour || a.isolux || a.mesh || a.shadow_classes))
         return usage(fmt::format("{} holds radiance, and nothing is drawn into it", end), a.output,
                      "--false-colour, --isolux, --mesh and --shadow-classes go with .png");
@@ -71,26 +75,29 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     ImageTexts texts{{"Software", "exitance"}, {"Camera", describe(camera)}};
     const SixNodeMesh& mesh = light.solution().discontinuity;
     const Scene& scene = light.solution().scene;
+    const LightUnit unit = unit_of(arguments.unit, scene, terminal);
+    const bool is_converted = arguments.unit.choice != UnitChoice::scene;
+    const Picture shown = is_converted ? in_unit(picture, unit) : picture;
     MeshView view;
     std::vector<KeyEntry> key;
     if (!mesh.empty() && (arguments.mesh || arguments.shadow_classes))
         view = view_mesh(mesh, scene, light.stage().tracer, camera, arguments.size);
     if (arguments.shadow_classes) key = shadow_class_key();
-    Image image =
-        arguments.shadow_classes ? shadow_class_image(mesh, scene, view) : develop(arguments, picture, texts, terminal);
+    Image image = arguments.shadow_classes
+                      ? shadow_class_image(mesh, scene, view)
+                      : develop(arguments, arguments.false_colour ? shown : picture, texts, terminal);
     if (arguments.mesh && !mesh.empty()) {
         draw_ordered_edges(image, mesh_edges(mesh, view));
         for (const KeyEntry& entry : edge_order_key()) key.push_back(entry);
     } else if (arguments.mesh)
         draw_edges(image, element_edges(light.solution(), light.stage().tracer, camera, arguments.size));
     if (!key.empty()) draw_key(image, key);
-    const bool photometric = scene.is_photometric();
     if (arguments.isolux)
-        draw_isolux(image, picture, make_colour_scale(picture, Quantity::illuminance, arguments.scale),
-                    title(Quantity::illuminance, photometric));
+        draw_isolux(image, shown, make_colour_scale(shown, Quantity::illuminance, arguments.scale),
+                    title(Quantity::illuminance, unit.is_lux()));
     if (arguments.false_colour)
-        draw_legend(image, title(*arguments.false_colour, photometric),
-                    make_colour_scale(picture, *arguments.false_colour, arguments.scale));
+        draw_legend(image, title(*arguments.false_colour, unit.is_lux()),
+                    make_colour_scale(shown, *arguments.false_colour, arguments.scale));
     return write_png(arguments.output, image, texts);
 }
 

@@ -6,10 +6,13 @@
 
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/light_unit.hpp"
+#include "exitance/cli/standards_arguments.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/isolux.hpp"
+#include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/reconstruct/surface_levels.hpp"
 
@@ -38,12 +41,13 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     tones.curve = ToneCurve::filmic, tones.scale = automatic_exposure(picture);
     content.pictures.push_back({fmt::format("Radiosity times {:.4g}, toned by a filmic curve", tones.scale),
                                 describe(camera), display_image(picture, tones)});
-    const bool lux = arguments.unit == ReportUnit::lux;
+    const bool lux = content.unit.is_lux();
     const Quantity quantity = lux ? Quantity::illuminance : Quantity::irradiance;
-    const ColourScale scale = make_colour_scale(picture, quantity);
-    Image image = false_colour_image(picture, quantity, scale);
-    if (lux) draw_isolux(image, picture, scale, title(quantity, light.solution().scene.is_photometric()));
-    draw_legend(image, title(quantity, light.solution().scene.is_photometric()), scale);
+    const Picture shown = in_unit(picture, content.unit);
+    const ColourScale scale = make_colour_scale(shown, quantity);
+    Image image = false_colour_image(shown, quantity, scale);
+    if (lux) draw_isolux(image, shown, scale, title(quantity, lux));
+    draw_legend(image, title(quantity, lux), scale);
     content.pictures.push_back(
         {lux ? "Illuminance in lx" : "Irradiance in W/m^2, mean of the bands", describe(camera), std::move(image)});
 }
@@ -74,6 +78,25 @@ void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal
     if (maps) content.viewer = std::move(*maps);
 }
 
+Result<void> add_working_planes(const ReportArguments& arguments, const Scene& scene, std::vector<GridLight>& grids) {
+    for (const PlaneRequest& request : arguments.working_planes) {
+        Result<std::vector<GridLight>> planes = make_working_planes(scene, request);
+        if (!planes) return planes.error();
+        for (GridLight& plane : *planes) grids.push_back(std::move(plane));
+    }
+    return {};
+}
+
+Result<std::vector<Observer>> all_observers(const ReportArguments& arguments, const Scene& scene) {
+    std::vector<Observer> out;
+    for (const std::string& words : arguments.observers) {
+        const Result<std::vector<Observer>> some = find_observers(words, scene);
+        if (!some) return some.error();
+        out.insert(out.end(), some->begin(), some->end());
+    }
+    return out;
+}
+
 std::optional<Error> find_misuse(const ReportArguments& arguments) {
     const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
     if (page) return std::nullopt;
@@ -95,8 +118,12 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
+    if (const Result<void> added = add_working_planes(arguments, solution->scene, content.grids); !added)
+        return terminal.fail(added.error());
+    const Result<std::vector<Observer>> observers = all_observers(arguments, solution->scene);
+    if (!observers) return terminal.fail(observers.error());
     const RadiosityFunction light(*solution);
-    content.solution = &*solution, content.unit = arguments.unit;
+    content.solution = &*solution, content.unit = unit_of(arguments.unit, solution->scene, terminal);
     content.statistics = statistics_json(solution->statistics);
     std::vector<Camera> cameras;
     for (const RenderArguments& view : views(arguments, solution->scene)) {
@@ -107,6 +134,11 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     content.view = cameras.front();
     for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
     for (GridLight& grid : content.grids) measure(light, grid, terminal.progress(), stop);
+    content.maintenance = arguments.maintenance;
+    const LightUnit lux(UnitChoice::lux, solution->scene.is_photometric(),
+                        arguments.unit.efficacy.value_or(daylight_efficacy));
+    for (const Observer& observer : *observers)
+        content.observers.push_back({observer, find_glare(light, observer, lux)});
     constexpr std::size_t surface_points = 50000, error_points = 400;
     constexpr unsigned error_rays = 2048;
     const std::vector<SurfaceId> faces = largest_faces(solution->scene, content.surfaces_left_out);
@@ -114,7 +146,8 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     content.error = find_error_percentile(light, error_points, error_rays, terminal.progress(), stop);
     add_viewer(light, content, terminal, stop);
     terminal.progress().finish();
-    const Result<void> written = write_report(content, arguments.output);
+    Result<void> written = write_report(content, arguments.output);
+    if (written && !arguments.tables.empty()) written = write_report_tables(content, arguments.tables);
     return written ? ExitCode::done : terminal.fail(written.error());
 }
 

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/standards_arguments.hpp"
 
 namespace exitance {
 namespace {
@@ -118,6 +119,7 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
         ->type_name("FILE");
     app.add_flag("--interpolant", arguments.interpolant, "Evaluate what export writes, not the full function");
     add_choice(app, "--component", component_names, arguments.component, "Default total");
+    declare_unit(app, arguments.unit);
     add_count(app, "--reference", arguments.reference_paths, 1,
               "N unbiased paths a point in place of the solution, with their standard errors");
     add_count(app, "--seed", arguments.seed, 0, "Of the paths; default 1");
@@ -224,6 +226,7 @@ void declare(CLI::App& app, RenderArguments& arguments) {
         ->group("PNG")
         ->each([&arguments](const std::string&) { arguments.has_scale = true; });
     app.add_flag("--isolux", arguments.isolux, "Draw lines of equal illuminance, with their values")->group("PNG");
+    declare_unit(app, arguments.unit);
     app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges; those of a discontinuity mesh coloured by order")
         ->group("PNG");
     app.add_flag("--shadow-classes", arguments.shadow_classes,
@@ -285,8 +288,8 @@ void declare(CLI::App& app, ReportArguments& arguments) {
     app.add_option_function<std::string>(
            "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 960x600")
         ->type_name("WxH");
-    add_choice(app, "--unit", report_unit_names, arguments.unit,
-               "watt (default): W/m^2, mean of the bands; lux: lx, where emitters are given in cd/m^2");
+    declare_unit(app, arguments.unit);
+    declare_standards(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }
 

@@ -89,14 +89,6 @@ Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, 
     return beams_.empty() ? sum : sum + beams_.irradiance(at);
 }
 
-std::vector<Spectrum> DirectLight::distant_light(const Point& x, const Normal& n, RegionId own,
-                                                 Workspace& scratch) const {
-    const Receiver at = receiver(x, n, own);
-    std::vector<Spectrum> out;
-    for (std::size_t i = first_distant_; i < emitters_.size(); ++i) out.push_back(light_of(emitters_[i], at, scratch));
-    return out;
-}
-
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
                           Workspace& scratch) const {
     light.n = n, light.own = own;

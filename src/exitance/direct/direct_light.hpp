@@ -51,9 +51,6 @@ class DirectLight {
     /// caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
-    /// The same of each of the sky's facets by itself, in the order of `distant_facets`.
-    std::vector<Spectrum> distant_light(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
-
     /// A convex piece of an emitter.
     struct SourceName {
         std::uint32_t emitter = 0;

@@ -60,7 +60,7 @@ TEST(DistantLight, OpenGroundHasTheIrradianceOfEverySky) {
         const SkyModel sky = type == 0    ? overcast_sky()
                              : type == 16 ? perez_sky({90, 700, 100}, sun)
                                           : cie_sky(type, sun);
-        const Scene scene = under({{{sky, Spectrum(100.0)}}, {}, {}}, {ground});
+        const Scene scene = under({{{sky, Spectrum(100.0)}}, {}}, {ground});
         const Stage stage(scene);
         EXPECT_NEAR(light_at(stage, {1, 2, 0}, {0, 0, 1}, first), 100, 0.1) << type;
         EXPECT_NEAR(light_at(stage, {1, 2, 3}, {0, 0, 1}, RegionId()), 100, 0.1) << type;
@@ -70,7 +70,7 @@ TEST(DistantLight, OpenGroundHasTheIrradianceOfEverySky) {
 TEST(DistantLight, AWallSeesHalfOfAUniformSkyAndTheGroundHidesItsGlow) {
     SkyModel below = uniform_sky();
     below.below = true;
-    const Scene scene = under({{{uniform_sky(), Spectrum(100.0)}, {below, Spectrum(30.0)}}, {}, {}}, {ground});
+    const Scene scene = under({{{uniform_sky(), Spectrum(100.0)}, {below, Spectrum(30.0)}}, {}}, {ground});
     const Stage stage(scene);
     EXPECT_NEAR(light_at(stage, {0, 0, 1}, {0, 0, -1}, RegionId()),
                 30 * (1 - 4 / pi * (5 / std::sqrt(26.0) * std::atan(5 / std::sqrt(26.0)))), 1e-9);
@@ -99,7 +99,7 @@ TEST(DistantLight, ThroughAnOpeningItIsThatOfTheReference) {
                            {1, {2, 1.75, 0}, {0, 0, 1}, 429.385904561},
                            {12, {2, 0, 2.25}, {0, 1, 0}, 375.695655703},
                            {12, {2, 0, 1.25}, {0, 1, 0}, 460.939166455}}) {
-        const Scene scene = under({{{cie_sky(k.type, sun), Spectrum(10000.0)}}, {}, {}}, room);
+        const Scene scene = under({{{cie_sky(k.type, sun), Spectrum(10000.0)}}, {}}, room);
         const Stage stage(scene);
         RegionId own;
         for (const RegionId r : scene.regions().ids())
@@ -113,7 +113,7 @@ TEST(DistantLight, ThroughAnOpeningItIsThatOfTheReference) {
 TEST(DistantLight, TheSunThrowsUmbraAndPenumbra) {
     // A half plane, nearly, 4 m above the ground, its edge along y at x = 0; the sun at the zenith.
     const double E = 800, h = 4, radius = std::tan(sun_half_angle);
-    const Scene scene = under({{}, {{{0, 0, 1}, sun_half_angle, Spectrum(E)}}, {}},
+    const Scene scene = under({{}, {{{0, 0, 1}, sun_half_angle, Spectrum(E)}}},
                               {ground, {{{-4, -5, h}, {0, -5, h}, {0, 5, h}, {-4, 5, h}}}});
     const Stage stage(scene);
     EXPECT_EQ(light_at(stage, {-1.01 * radius * h, 0, 0}, {0, 0, 1}, first), 0);
@@ -126,7 +126,7 @@ TEST(DistantLight, TheSunThrowsUmbraAndPenumbra) {
 
 TEST(DistantLight, ALowSunIsCutByTheHorizon) {
     const double E = 500;
-    const Scene scene = under({{}, {{{1, 0, 0}, sun_half_angle, Spectrum(E)}}, {}}, {ground});
+    const Scene scene = under({{}, {{{1, 0, 0}, sun_half_angle, Spectrum(E)}}}, {ground});
     const Stage stage(scene);
     // Half of the disc is above: E times the mean of the height, 4 r / (3 pi), times half.
     EXPECT_NEAR(light_at(stage, {0, 0, 0}, {0, 0, 1}, first), 0.5 * E * 4 * std::sin(sun_half_angle) / (3 * pi),

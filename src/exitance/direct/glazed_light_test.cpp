@@ -53,7 +53,7 @@ TEST(GlazedLight, AWidePaneLetsTheDiffuseShareOfASkyThrough) {
     Spectrum tint;
     for (std::size_t b = 0; b < bands; ++b) tint[b] = 0.96 - 0.2 * static_cast<double>(b);
     const Pane wide = pane(square(1000, 0.5), tint);
-    const Scene scene = ground_under({{{uniform_sky(), Spectrum(100.0)}}, {}, {}}, {wide});
+    const Scene scene = ground_under({{{uniform_sky(), Spectrum(100.0)}}, {}}, {wide});
     const Stage stage(scene);
     DirectLight::Workspace workspace;
     const Spectrum E = stage.direct.irradiance({0.1, 0.2, 0}, {0, 0, 1}, own, workspace);
@@ -89,7 +89,7 @@ TEST(GlazedLight, RaysPassInTheSameShare) {
 
 TEST(GlazedLight, TheSunThroughOnePaneOfTwo) {
     const Normal sun = sky_direction(50, 90);  // +x
-    const DistantLight light{{}, {{sun, sun_half_angle, Spectrum(700.0)}}, {}};
+    const DistantLight light{{}, {{sun, sun_half_angle, Spectrum(700.0)}}};
     const Pane low = pane(square(0.5, 0.2), Spectrum(0.8)), high = pane(square(0.3, 0.4), Spectrum(0.6));
     const Scene scene = ground_under(light, {low, high});
     const Stage stage(scene);

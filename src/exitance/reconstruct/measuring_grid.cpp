@@ -8,6 +8,19 @@
 #include "exitance/reconstruct/open_points.hpp"
 
 namespace exitance {
+namespace {
+
+/// Horizontal directions all around.
+std::vector<Normal> around() {
+    std::vector<Normal> out;
+    for (int i = 0; i < cylinder_planes; ++i) {
+        const double a = 2 * pi * i / cylinder_planes;
+        out.push_back({std::cos(a), std::sin(a), 0});
+    }
+    return out;
+}
+
+}  // namespace
 
 double en_12464_spacing(double length, double width) {
     const double longer = std::max(length, width), shorter = std::min(length, width);
@@ -53,19 +66,28 @@ void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress
     std::vector<std::uint8_t> open(count);
     const Locator locator(light.solution().scene);
     parallel_for(count, 32, [&](std::size_t i) {
+        if (!grid.counts.empty() && !grid.counts[i]) return;
         const SurfaceId s = locator.find(grid.points[i], grid.n);
         const RegionId region = s.is_none() ? RegionId() : light.solution().scene.surfaces()[s].region;
         open[i] = is_in_open(light.stage(), grid.points[i], grid.n, region);
     });
     std::copy(open.begin(), open.end(), grid.is_open.begin());
-    std::vector<ProbePoint> points;
-    constexpr std::size_t slice = 2048;
-    for (std::size_t first = 0; first < count && !stop.requested(); first += slice) {
-        progress.advance(static_cast<double>(first) / static_cast<double>(count));
-        points.clear();
-        for (std::size_t i = first; i < std::min(first + slice, count); ++i) points.push_back({grid.points[i], grid.n});
+    const std::vector<Normal> normals = grid.is_cylindrical ? around() : std::vector<Normal>{grid.n};
+    const std::size_t slice = 2048 / normals.size();
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i < count; ++i)
+        if (grid.counts.empty() || grid.counts[i]) chosen.push_back(i);
+    for (std::size_t first = 0; first < chosen.size() && !stop.requested(); first += slice) {
+        progress.advance(static_cast<double>(first) / static_cast<double>(chosen.size()));
+        const std::span<const std::size_t> part =
+            std::span(chosen).subspan(first, std::min(slice, chosen.size() - first));
+        std::vector<ProbePoint> points;
+        for (const std::size_t i : part)
+            for (const Normal& n : normals) points.push_back({grid.points[i], n});
         const std::vector<Light> found = light.at(points);
-        for (std::size_t i = 0; i < found.size(); ++i) grid.irradiance[first + i] = found[i].irradiance;
+        for (std::size_t k = 0; k < found.size(); ++k)
+            grid.irradiance[part[k / normals.size()]] +=
+                normals.size() > 1 ? found[k].irradiance / static_cast<double>(normals.size()) : found[k].irradiance;
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "exitance/core/progress.hpp"
@@ -30,6 +31,9 @@ struct GridLight {
     std::vector<Spectrum> irradiance;  ///< Of every point, W/m^2.
     /// Which of them lie in the open, and not below something that stands there: only these count.
     std::vector<bool> is_open;
+    std::vector<bool> counts;     ///< Of every point: does it belong to what is measured? Empty: all do.
+    bool is_cylindrical = false;  ///< E_z at the points: the mean over vertical planes of all directions.
+    std::string name;             ///< Empty: none.
 };
 
 /// Where a plane is measured. Errors of code `usage`: a plane without area, a margin that leaves nothing, more than
@@ -37,7 +41,10 @@ struct GridLight {
 Result<GridLight> make_grid(const MeasuringPlane& plane);
 
 /// Fills in the light, as `probe` gives it: exact direct light, indirect light from the elements on surfaces, from rays
-/// in free space (about 1 ms a point there).
+/// in free space (about 1 ms a point there). Points that do not count have none, and are not open.
+/// Cylindrical illuminance is the mean of `cylinder_planes` vertical planes: what light from one place comes to is off
+/// by at most 8e-4, from all around much less.
+constexpr int cylinder_planes = 25;  // odd: what is off is of the order of the square of twice as many
 void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress, const StopRequest& stop);
 
 /// Mean, least and largest of some values, and their uniformity, as lighting standards define it.

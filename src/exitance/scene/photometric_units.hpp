@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "exitance/core/spectrum.hpp"
 
 namespace exitance {
@@ -22,6 +24,31 @@ struct LuminousWeights {
     double operator()(const Spectrum& light) const {
         return photometric ? luminous_mean(light) : efficacy * radiance_weighted_mean(light);
     }
+};
+
+/// In what unit light is told: that of the scene, or another.
+enum class UnitChoice : std::uint8_t { scene, watt, lux };
+
+/// Light as one number: E in lx or W/m^2, M and B in lm/m^2 or W/m^2, by what the scene's own light is in. Light that
+/// is in lumens is not converted to lumens again.
+class LightUnit {
+  public:
+    LightUnit() = default;
+    LightUnit(UnitChoice choice, bool photometric, double efficacy = daylight_efficacy)
+        : is_lux_(choice == UnitChoice::lux || (choice == UnitChoice::scene && photometric)),
+          weights_{photometric, efficacy} {}
+
+    bool is_lux() const { return is_lux_; }
+    /// Does the efficacy have a part in it?
+    bool is_converted() const { return is_lux_ != weights_.photometric; }
+    double operator()(const Spectrum& light) const {
+        if (is_lux_) return weights_(light);
+        return weights_.photometric ? luminous_mean(light) / weights_.efficacy : mean(light);
+    }
+
+  private:
+    bool is_lux_ = false;
+    LuminousWeights weights_;
 };
 
 }  // namespace exitance

@@ -381,7 +381,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     const LeafNumbering numbering(*tree);
     const RayRows rows(stage, *tree, numbering, *locator, {.average = 24, .least = 16, .most = 256}, seed);
     const DistantLight& outside = stage.scene.distant();
-    const bool has_sky = !outside.domes.empty() || !outside.facets.empty();
+    const bool has_sky = !outside.domes.empty();
     const std::vector<Part> parts = RoomFinder(rows, *tree, numbering, seed, has_sky).find(stop);
     LightRooms out;
     out.lost_.resize(tree->size());

@@ -149,7 +149,7 @@ Result<ProbeWriter> ProbeWriter::create(const std::string& path, Columns columns
     add("E_");
     if (columns.radiosity) add("B_");
     if (columns.standard_errors) add("se_");
-    if (columns.lux) names.push_back("lux");
+    if (columns.unit) names.push_back(columns.unit->is_lux() ? "lux" : "watt");
     std::string header;
     for (const std::string& name : names) header += (header.empty() ? "" : ",") + name;
     file->write(header + "\n");
@@ -165,7 +165,7 @@ void ProbeWriter::add(const Point& x, const Normal& n, const Spectrum& irradianc
         for (std::size_t b = 0; b < bands; ++b) radiosity ? row.rounded((*radiosity)[b]) : row.empty();
     if (columns_.standard_errors)
         for (double value : standard_error.value) row.rounded(value);
-    if (columns_.lux) row.rounded(luminous_mean(irradiance));
+    if (columns_.unit) row.rounded((*columns_.unit)(irradiance));
     file_.write(row.line());
 }
 

@@ -8,6 +8,7 @@
 #include "exitance/geometry/vec.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/text_table.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 
@@ -59,7 +60,8 @@ class ProbeWriter {
     struct Columns {
         bool radiosity = true;
         bool standard_errors = false;
-        bool lux = false;  ///< Illuminance, the weighted mean of the bands, in a last column.
+        /// Irradiance as one number in a last column, `lux` or `watt`.
+        std::optional<LightUnit> unit = {};
     };
     static Result<ProbeWriter> create(const std::string& path, Columns columns);
 

@@ -7,31 +7,34 @@
 
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/reconstruct/error/error_percentile.hpp"
+#include "exitance/reconstruct/glare.hpp"
 #include "exitance/reconstruct/light_maps/light_map.hpp"
 #include "exitance/reconstruct/measuring_grid.hpp"
 #include "exitance/reconstruct/pictures/camera.hpp"
 #include "exitance/reconstruct/surface_levels.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
-
-/// What numbers of light mean: the mean of the bands in W/m^2, or their luminous mean in lx (and lm/m^2) for scenes
-/// whose emitters are given in cd/m^2.
-enum class ReportUnit : std::uint8_t { watt, lux };
-
-constexpr std::array<std::pair<ReportUnit, std::string_view>, 2> report_unit_names{
-    {{ReportUnit::watt, "watt"}, {ReportUnit::lux, "lux"}}};
 
 struct ReportPicture {
     std::string caption, camera;  ///< The camera as `render --camera` takes it.
     Image image;
 };
 
+/// Somebody in the room, and how glaring it is there.
+struct ObserverGlare {
+    Observer observer;
+    Glare glare;
+};
+
 /// What a report tells. Its solution must outlive it.
 struct ReportContent {
     const Solution* solution = nullptr;
-    ReportUnit unit = ReportUnit::watt;
+    LightUnit unit;  ///< Of all numbers of light.
     std::vector<ReportPicture> pictures;
     std::vector<GridLight> grids;
+    double maintenance = 1;  ///< What values of grids are multiplied by.
+    std::vector<ObserverGlare> observers;
     std::vector<SurfacePoints> surfaces;
     std::size_t surfaces_left_out = 0;  ///< Smaller faces than those above.
     ErrorPercentile error;
@@ -43,5 +46,12 @@ struct ReportContent {
 /// Writes the page, which refers to nothing outside of itself, and beside it its numbers as JSON (report.html,
 /// report.json). Each appears whole or not at all.
 Result<void> write_report(const ReportContent& content, const std::string& path);
+
+/// Writes, into a folder that is made where it is missing:
+///     planes.csv           a row a measuring plane: name, kind, place, Em, U0, Ud, ...
+///     plane_1.csv, ...     a row a point: place, normal, value
+///     plane_1.svg, .pdf    a plan to scale with lines of equal light
+///     observers.csv        a row an observer: place, line of sight, UGR, background, sources (where there are any)
+Result<void> write_report_tables(const ReportContent& content, const std::string& folder);
 
 }  // namespace exitance

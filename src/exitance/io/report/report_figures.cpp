@@ -20,8 +20,8 @@ ReportFigures::Face face_figures(const ReportContent& content, const SurfacePoin
     face.group = scene.groups()[surface.group], face.material = scene.material(points.surface).name;
     std::vector<double> values;
     for (const Light& light : points.light) {
-        values.push_back(in_unit(light.irradiance, content.unit));
-        face.radiosity += in_unit(light.radiosity, content.unit) / static_cast<double>(points.light.size());
+        values.push_back(content.unit(light.irradiance));
+        face.radiosity += content.unit(light.radiosity) / static_cast<double>(points.light.size());
     }
     face.irradiance = levels_of(values);
     return face;
@@ -73,12 +73,14 @@ std::string grid_json(const ReportFigures::Grid& grid) {
         values += fmt::format("{}{}", i > 0 ? ", " : "", light.is_open[i] ? figure(grid.values[i]) : "null");
     }
     return fmt::format(
-        "{{\"origin\": {}, \"u\": {}, \"v\": {}, \"normal\": {}, \"margin\": {}, \"columns\": {}, \"rows\": {}, "
+        "{{\"name\": {}, \"kind\": \"{}\", \"origin\": {}, \"u\": {}, \"v\": {}, \"normal\": {}, \"margin\": {}, "
+        "\"columns\": {}, \"rows\": {}, "
         "\"spacing\": [{}, {}], {}, \"diversity\": {}, \"hidden\": {},\n     \"points\": [{}],\n     \"values\": "
         "[{}]}}",
-        point(light.plane.origin), point(light.plane.u), point(light.plane.v), point(light.n),
-        figure(light.plane.margin), light.columns, light.rows, figure(light.step_u), figure(light.step_v),
-        levels(grid.levels), figure(grid.levels.diversity()), grid.hidden, points, values);
+        json_text(light.name), light.is_cylindrical ? "cylindrical" : "plane", point(light.plane.origin),
+        point(light.plane.u), point(light.plane.v), point(light.n), figure(light.plane.margin), light.columns,
+        light.rows, figure(light.step_u), figure(light.step_v), levels(grid.levels), figure(grid.levels.diversity()),
+        grid.hidden, points, values);
 }
 
 std::string face_json(const ReportFigures::Face& face) {
@@ -99,12 +101,8 @@ std::string list(const Items& items, const Text& text) {
 
 }  // namespace
 
-double in_unit(const Spectrum& light, ReportUnit unit) {
-    return unit == ReportUnit::lux ? luminous_mean(light) : mean(light);
-}
-
-const char* symbol(ReportUnit unit) {
-    return unit == ReportUnit::lux ? "lx" : "W/m\xc2\xb2";
+const char* symbol(const LightUnit& unit) {
+    return unit.is_lux() ? "lx" : "W/m\xc2\xb2";
 }
 
 std::string figure(double value) {
@@ -125,11 +123,11 @@ ReportFigures find_figures(const ReportContent& content) {
         ReportFigures::Grid grid{&light, {}, {}, 0};
         std::vector<double> open;
         for (std::size_t i = 0; i < light.points.size(); ++i) {
-            grid.values.push_back(in_unit(light.irradiance[i], content.unit));
+            grid.values.push_back(content.maintenance * content.unit(light.irradiance[i]));
             if (light.is_open[i]) open.push_back(grid.values.back());
+            grid.hidden += !light.is_open[i] && (light.counts.empty() || light.counts[i]);
         }
         grid.levels = levels_of(open);
-        grid.hidden = light.points.size() - open.size();
         out.grids.push_back(std::move(grid));
     }
     for (const Surface& surface : content.solution->scene.surfaces()) out.area += surface.area;
@@ -138,14 +136,15 @@ ReportFigures find_figures(const ReportContent& content) {
 
 std::string report_json(const ReportContent& content, const ReportFigures& figures) {
     const Scene& scene = content.solution->scene;
-    const bool lux = content.unit == ReportUnit::lux;
+    const bool lux = content.unit.is_lux();
     const Vec3 size = scene.box().size();
     return fmt::format(
         "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"unit\": \"{}\",\n"
         "  \"scene\": {{\"file\": {}, \"surfaces\": {}, \"area\": {}, \"size\": {}, \"emitters\": {}, \"lights\": "
         "{}}},\n"
         "  \"error\": {{\"median\": {}, \"error_p99\": {}, \"check_noise\": {}, \"check_points\": {}}},\n"
-        "  \"pictures\": {},\n  \"grids\": {},\n  \"materials\": {},\n  \"surfaces\": {},\n"
+        "  \"pictures\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  \"observers\": {},\n  \"materials\": {},\n  "
+        "\"surfaces\": {},\n"
         "  \"surfaces_left_out\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
         EXITANCE_VERSION, lux ? "lx" : "W/m^2", json_text(scene.file()), scene.surfaces().size(), figure(figures.area),
         point(size), scene.emitters().size(), scene.lights().size(), figure(content.error.median),
@@ -154,7 +153,7 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
              [](const ReportPicture& p) {
                  return fmt::format("{{\"caption\": {}, \"camera\": {}}}", json_text(p.caption), json_text(p.camera));
              }),
-        list(figures.grids, grid_json),
+        list(figures.grids, grid_json), figure(content.maintenance), list(content.observers, observer_json),
         list(figures.materials,
              [](const ReportFigures::MaterialUse& m) {
                  return fmt::format(

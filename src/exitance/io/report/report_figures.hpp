@@ -35,10 +35,8 @@ struct ReportFigures {
 
 ReportFigures find_figures(const ReportContent& content);
 
-/// A spectrum as one number in the unit of a report.
-double in_unit(const Spectrum& light, ReportUnit unit);
 /// "W/m²" or "lx".
-const char* symbol(ReportUnit unit);
+const char* symbol(const LightUnit& unit);
 
 /// A number as pages and files show it: five significant digits.
 std::string figure(double value);
@@ -46,8 +44,14 @@ std::string figure(double value);
 /// The numbers as JSON.
 std::string report_json(const ReportContent& content, const ReportFigures& figures);
 
+/// The observers of a report as items of a JSON array, and as a part of the page (empty without any).
+std::string observer_json(const ObserverGlare& observer);
+std::string observers_html(const ReportContent& content);
+/// Text within HTML.
+std::string escaped(const std::string& text);
+
 /// A plan of a grid in false colours with lines of equal light (SVG), and what the colours mean (HTML).
-std::string grid_plan(const ReportFigures::Grid& grid, ReportUnit unit);
+std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit);
 
 /// A canvas that shows the scene with its light maps, and the script that turns it (HTML); empty without maps.
 Result<std::string> report_viewer(const ReportContent& content);

@@ -27,25 +27,6 @@ th { border-bottom: 1px solid #999; } td.text, th.text { text-align: left; overf
 @media print { body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
 )css";
 
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '&')
-            out += "&amp;";
-        else if (c == '"')
-            out += "&quot;";
-        else if (static_cast<unsigned char>(c) < 0x20)
-            out += ' ';
-        else
-            out += c;
-    }
-    return out;
-}
-
 std::string percent(double share) {
     return fmt::format("{:.3g}%", 100 * share);
 }
@@ -70,9 +51,8 @@ std::string overview(const ReportContent& content, const ReportFigures& figures)
     rows += fact("Error", s.relative_error_estimate
                               ? fmt::format("{} (relative RMS, estimated)", percent(*s.relative_error_estimate))
                               : "not known");
-    rows += fact("Numbers", content.unit == ReportUnit::lux
-                                ? "illuminance in lx, radiosity in lm/m² (weighted means of the bands)"
-                                : "irradiance and radiosity in W/m² (means of the bands)");
+    rows += fact("Numbers", content.unit.is_lux() ? "illuminance in lx, radiosity in lm/m²"
+                                                  : "irradiance and radiosity in W/m² (means of the bands)");
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
@@ -113,7 +93,8 @@ std::string grids(const ReportContent& content, const ReportFigures& figures) {
     for (std::size_t i = 0; i < figures.grids.size(); ++i) {
         const ReportFigures::Grid& grid = figures.grids[i];
         const GridLight& light = *grid.light;
-        html += fmt::format("<h3>Plane {}</h3>\n<table class=\"facts\">\n", i + 1);
+        html += fmt::format("<h3>Plane {}{}</h3>\n<table class=\"facts\">\n", i + 1,
+                            light.name.empty() ? "" : ": " + escaped(light.name));
         html += fact("Where", fmt::format("from {} along {} and {} m, seen from {}", place(light.plane.origin),
                                           place(light.plane.u), place(light.plane.v), place(light.n)));
         html += fact(
@@ -123,11 +104,14 @@ std::string grids(const ReportContent& content, const ReportFigures& figures) {
                 figure(light.step_v), figure(light.plane.margin),
                 grid.hidden > 0 ? fmt::format("; {} of them below or within something, left out", grid.hidden) : ""));
         const char* unit = symbol(content.unit);
-        html += fact("Mean", figure(grid.levels.mean) + " " + unit);
+        html +=
+            fact(light.is_cylindrical ? "Mean E_z" : "Mean E_m",
+                 figure(grid.levels.mean) + " " + unit +
+                     (content.maintenance < 1 ? fmt::format(" (maintained: factor {:.3g})", content.maintenance) : ""));
         html += fact("Minimum", figure(grid.levels.least) + " " + unit);
         html += fact("Maximum", figure(grid.levels.most) + " " + unit);
-        html += fact("Uniformity", figure(grid.levels.uniformity()) + " (minimum / mean)");
-        html += fact("Diversity", figure(grid.levels.diversity()) + " (minimum / maximum)");
+        html += fact("Uniformity U_0", figure(grid.levels.uniformity()) + " (minimum / mean)");
+        html += fact("Diversity U_d", figure(grid.levels.diversity()) + " (minimum / maximum)");
         html += "</table>\n<figure>" + grid_plan(grid, content.unit) +
                 "<figcaption>u runs to the right, v upwards.</figcaption></figure>\n" + grid_table(grid);
     }
@@ -251,6 +235,7 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
         overview(content, figures) + section("pictures", "Pictures", *shown) +
         (viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>") +
         section("grids", "Measuring planes", grids(content, figures)) +
+        section("glare", "Glare", observers_html(content)) +
         section("materials", "Materials", materials(content, figures)) +
         section("surfaces", "Surfaces", surfaces(content, figures)) +
         section("energy", "Energy balance", energy_part(s.energy)) + section("error", "Error", error_part(content)) +

@@ -76,7 +76,7 @@ TEST(Daylight, InTheOpenItIsThatOfTheWeather) {
 TEST(Daylight, OfARoomItIsThatOfASolveUnderTheSameSky) {
     SkyModel below = uniform_sky();
     below.below = true;
-    const Scene lit = scene(true, {{{overcast_sky(), Spectrum(100.0)}, {below, Spectrum(20.0)}}, {}, {}});
+    const Scene lit = scene(true, {{{overcast_sky(), Spectrum(100.0)}, {below, Spectrum(20.0)}}, {}});
     const Solution solution = solved(lit, {.error = 0.03});
     const std::vector<ProbePoint> sensors{
         {{1.5, 1, 0.8}, {0, 0, 1}}, {{1.5, 3, 0.8}, {0, 0, 1}}, {{0.7, 2, 0}, {0, 0, 1}}};

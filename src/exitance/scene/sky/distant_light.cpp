@@ -112,7 +112,6 @@ std::vector<DistantFacet> distant_facets(const DistantLight& light) {
         if (max(dome.irradiance) > 0) add_dome(dome, out);
     for (const DistantLight::Disc& disc : light.discs)
         if (max(disc.irradiance) > 0) out.push_back(facet_of(disc));
-    out.insert(out.end(), light.facets.begin(), light.facets.end());
     return out;
 }
 

@@ -33,9 +33,8 @@ struct DistantLight {
     };
     std::vector<Dome> domes;
     std::vector<Disc> discs;
-    std::vector<DistantFacet> facets;  ///< Given one by one: patches of the sky. In memory only, no file has them.
 
-    bool empty() const { return domes.empty() && discs.empty() && facets.empty(); }
+    bool empty() const { return domes.empty() && discs.empty(); }
     void append(const DistantLight& more);
     /// What is seen in a direction w of length 1, times pi, W/m^2: discs too, if asked for.
     Spectrum radiosity(const Vec3& w, bool with_discs) const;
@@ -44,7 +43,7 @@ struct DistantLight {
 constexpr double widest_disc = 75 * pi / 180;
 
 /// What stands for it: a cube about the point that is lit, each face cut up, of which every point of the scene is the
-/// middle; regular polygons of the discs' solid angles; the facets. `light` must outlive what is returned.
+/// middle; regular polygons of the discs' solid angles. `light` must outlive what is returned.
 std::vector<DistantFacet> distant_facets(const DistantLight& light);
 
 }  // namespace exitance

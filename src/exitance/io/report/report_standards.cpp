@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "exitance/io/export/glb_nodes.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/report/isolux_plan.hpp"
+
+namespace exitance {
+namespace {
+
+std::string triple(const Vec3& v, const char* between) {
+    return fmt::format("{:.6g}{}{:.6g}{}{:.6g}", v.x, between, v.y, between, v.z);
+}
+
+/// A number of a table; nothing where there is none.
+std::string cell(double value) {
+    return std::isfinite(value) ? figure(value) : "";
+}
+
+/// A field of a table.
+std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + "\"";
+}
+
+std::string planes_csv(const ReportContent& content, const ReportFigures& figures) {
+    std::string text =
+        "plane,name,kind,unit,x,y,z,nx,ny,nz,border,columns,rows,spacing_u,spacing_v,points,hidden,Em,Emin,Emax,U0,Ud,"
+        "maintenance\n";
+    for (std::size_t i = 0; i < figures.grids.size(); ++i) {
+        const ReportFigures::Grid& grid = figures.grids[i];
+        const GridLight& light = *grid.light;
+        const Levels& l = grid.levels;
+        const bool known = l.count > 0;
+        text += fmt::format("{},{},{},{},{},{},{:.6g},{},{},{:.6g},{:.6g},{},{},", i + 1, quoted(light.name),
+                            light.is_cylindrical ? "cylindrical" : "plane", content.unit.is_lux() ? "lx" : "W/m^2",
+                            triple(light.plane.origin, ","), triple(light.n, ","), light.plane.margin, light.columns,
+                            light.rows, light.step_u, light.step_v, l.count, grid.hidden);
+        text += known ? fmt::format("{},{},{},{},{}", figure(l.mean), figure(l.least), figure(l.most),
+                                    figure(l.uniformity()), figure(l.diversity()))
+                      : ",,,,";
+        text += fmt::format(",{:.6g}\n", content.maintenance);
+    }
+    return text;
+}
+
+std::string points_csv(const ReportFigures::Grid& grid, const LightUnit& unit) {
+    std::string text = fmt::format("x,y,z,nx,ny,nz,{}\n", unit.is_lux() ? "lux" : "watt");
+    const GridLight& light = *grid.light;
+    for (std::size_t i = 0; i < light.points.size(); ++i) {
+        if (!light.counts.empty() && !light.counts[i]) continue;
+        text += fmt::format("{},{},{}\n", triple(light.points[i], ","), triple(light.n, ","),
+                            light.is_open[i] ? figure(grid.values[i]) : "");
+    }
+    return text;
+}
+
+std::string observers_csv(const ReportContent& content) {
+    std::string text = "name,x,y,z,dx,dy,dz,UGR,background,sources,large_source\n";
+    for (const auto& [observer, glare] : content.observers)
+        text += fmt::format("{},{},{},{},{},{},{}\n", quoted(observer.name), triple(observer.eye, ","),
+                            triple(observer.view, ","), cell(glare.rating()), figure(glare.background),
+                            glare.sources.size(), glare.has_large_source() ? 1 : 0);
+    return text;
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '&')
+            out += "&amp;";
+        else if (c == '"')
+            out += "&quot;";
+        else if (static_cast<unsigned char>(c) < 0x20)
+            out += ' ';
+        else
+            out += c;
+    }
+    return out;
+}
+
+std::string observer_json(const ObserverGlare& o) {
+    std::string sources;
+    for (const GlareSource& s : o.glare.sources)
+        sources += fmt::format("{}{{\"name\": {}, \"luminance\": {}, \"solid_angle\": {}, \"position\": {}}}",
+                               sources.empty() ? "" : ", ", json_text(s.name), figure(s.luminance),
+                               figure(s.solid_angle), figure(s.position));
+    return fmt::format(
+        "{{\"name\": {}, \"eye\": [{}], \"view\": [{}], \"ugr\": {}, \"background\": {}, \"large_source\": {},\n     "
+        "\"sources\": [{}]}}",
+        json_text(o.observer.name), triple(o.observer.eye, ", "), triple(o.observer.view, ", "),
+        figure(o.glare.rating()), figure(o.glare.background), o.glare.has_large_source(), sources);
+}
+
+std::string observers_html(const ReportContent& content) {
+    if (content.observers.empty()) return "";
+    std::string html =
+        "<div class=\"wide\"><table>\n<thead><tr><th class=\"text\">Observer</th><th>Eye m</th><th>Looks "
+        "along</th><th>UGR</th><th>Background cd/m²</th><th>Sources in view</th><th class=\"text\">Worst source"
+        "</th></tr></thead>\n";
+    bool large = false;
+    for (const auto& [observer, glare] : content.observers) {
+        const double rating = glare.rating();
+        const GlareSource* worst = glare.sources.empty() ? nullptr : &glare.sources.front();
+        large |= glare.has_large_source();
+        html += fmt::format(
+            "<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+            "class=\"text\">{}</td></tr>\n",
+            escaped(observer.name), triple(observer.eye, ", "), triple(observer.view, ", "),
+            std::isfinite(rating) ? fmt::format("{:.1f}", rating) : "-", figure(glare.background), glare.sources.size(),
+            worst ? fmt::format("{}: {} cd/m², {} sr, p {:.3g}", escaped(worst->name), figure(worst->luminance),
+                                figure(worst->solid_angle), worst->position)
+                  : "none");
+    }
+    html +=
+        "</table></div>\n<p class=\"note\">Unified glare rating of all luminaires in view, by CIE 117; light as it is "
+        "new.</p>\n";
+    if (large)
+        html +=
+            "<p class=\"note\">A source of more than 0.1 sr is in view: that is beyond what the rating was made "
+            "for.</p>\n";
+    return html;
+}
+
+Result<void> write_report_tables(const ReportContent& content, const std::string& folder) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    const auto in = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
+    const ReportFigures figures = find_figures(content);
+    if (const Result<void> written = write_file(in("planes.csv"), planes_csv(content, figures)); !written)
+        return written;
+    for (std::size_t i = 0; i < figures.grids.size(); ++i) {
+        const ReportFigures::Grid& grid = figures.grids[i];
+        const Drawing plan = isolux_plan(grid, content.unit, content.solution->scene);
+        const std::string name = fmt::format("plane_{}", i + 1);
+        for (const Result<void>& written :
+             {write_file(in(name + ".csv"), points_csv(grid, content.unit)),
+              write_file(in(name + ".svg"), svg_of(plan)), write_file(in(name + ".pdf"), pdf_of(plan))})
+            if (!written) return written;
+    }
+    return content.observers.empty() ? Result<void>() : write_file(in("observers.csv"), observers_csv(content));
+}
+
+}  // namespace exitance

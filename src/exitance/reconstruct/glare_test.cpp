@@ -1,0 +1,99 @@
+#include "exitance/reconstruct/glare.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/sample_solution.hpp"
+
+namespace exitance {
+namespace {
+
+/// A room of 8 x 6 x 3 m, every surface reflecting half, with lamps of 0.2 x 0.2 m that look down from 2.7 m with 5000
+/// cd/m^2. Its indirect illuminance is 200 lx on every surface, so that 100 lm/m^2 come from everywhere.
+Solution lamp_room(const std::vector<Vec2>& lamps) {
+    SceneDescription d;
+    d.photometric = true;
+    d.materials = {{"wall", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(0.5), exitance_of_radiance(Spectrum(5000))}};
+    for (const double z : {0.0, 3.0}) d.points.insert(d.points.end(), {{0, 0, z}, {8, 0, z}, {8, 6, z}, {0, 6, z}});
+    d.groups = {"room"};
+    for (const std::vector<std::uint32_t>& f : std::vector<std::vector<std::uint32_t>>{
+             {0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}})
+        d.faces.push_back({f, 0, 0, 0});
+    for (const Vec2& at : lamps) {
+        const auto first = static_cast<std::uint32_t>(d.points.size());
+        for (const Vec2& o : {Vec2{-0.1, -0.1}, Vec2{-0.1, 0.1}, Vec2{0.1, 0.1}, Vec2{0.1, -0.1}})
+            d.points.push_back({at.x + o.x, at.y + o.y, 2.7});
+        d.faces.push_back(
+            {{first, first + 1, first + 2, first + 3}, 1, static_cast<std::uint32_t>(d.groups.size()), 0});
+        d.groups.push_back("lamp " + std::to_string(d.groups.size()));
+    }
+    CheckedScene made = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(made.scene));
+    Solution s;
+    s.scene = std::move(*made.scene);
+    s.indirect = sample_function(s.scene, 1, 0);
+    for (auto& value : s.indirect.values) value.fill(200.0F);
+    s.interpolant = s.indirect;
+    return s;
+}
+
+TEST(Guth, PositionIndexIsThatOfTheTable) {
+    // CIE 117, table of position indices by T/R (aside) and H/R (above), which the formula follows within a few
+    // percent.
+    const Normal view{1, 0, 0};
+    EXPECT_NEAR(guth_position(view, {1, 0, 0}), 1, 1e-12);
+    for (const auto& [h, p] : {std::pair{0.2, 1.53}, {0.5, 2.86}, {0.8, 5.00}, {1.0, 7.00}})
+        EXPECT_NEAR(guth_position(view, {1, 0, h}), p, 0.1 * p) << h;
+    // By hand: tau 53.13, sigma 51.34 degrees.
+    EXPECT_NEAR(guth_position(view, {2, 2, 1.5}), 5.17503, 1e-4);
+    EXPECT_NEAR(guth_position(view, {2, -2, 1.5}), 5.17503, 1e-4);
+    EXPECT_NEAR(guth_position(view, {1, 0, -0.5}), 1.4, 1e-12);
+    EXPECT_NEAR(guth_position(view, {1, 0, -1}), 2.2, 1e-12);
+}
+
+TEST(Glare, OfARoomWorkedOutByHandIsThatToThePrintedDigits) {
+    // Eye at (1, 3, 1.2), looking along x. Per lamp omega = A h / r^3, A = 0.04 m^2, h = 1.5 m:
+    //   offset       r^2    omega      p        L^2 omega / p^2
+    //   (2, 0)       6.25   0.0038400  4.65672  4427.1
+    //   (4, 0)       18.25  0.00076959 2.19730  3984.9
+    //   (2, 2)       10.25  0.0018284  5.17503  1706.8
+    //   (4, -2)      22.25  0.00057169 2.36056  2564.9     sum 12683.7
+    // L_b = 100 / pi = 31.831 cd/m^2; UGR = 8 log10(0.25 x 12683.7 / 31.831) = 16.0
+    const Solution s = lamp_room({{3, 3}, {5, 3}, {3, 5}, {5, 1}});
+    const RadiosityFunction light(s);
+    const Glare glare = find_glare(light, {"", {1, 3, 1.2}, {1, 0, 0}}, LightUnit(UnitChoice::lux, true));
+    ASSERT_EQ(glare.sources.size(), 4u);
+    const GlareSource& worst = glare.sources.front();
+    EXPECT_EQ(worst.name, "lamp 1");
+    EXPECT_NEAR(worst.luminance, 5000, 1e-6);
+    EXPECT_NEAR(worst.solid_angle / 0.00384, 1, 3e-3);
+    EXPECT_NEAR(worst.position, 4.65672, 1e-4);
+    EXPECT_NEAR(glare.background, 31.831, 0.02 * 31.831);
+    EXPECT_NEAR(glare.rating(), 15.99, 0.05);
+    EXPECT_FALSE(glare.has_large_source());
+}
+
+TEST(Glare, LuminairesBehindOrTurnedAwayDoNotCount) {
+    const Solution s = lamp_room({{3, 3}, {5, 3}});
+    const RadiosityFunction light(s);
+    const LightUnit lux(UnitChoice::lux, true);
+    EXPECT_EQ(find_glare(light, {"", {1, 3, 1.2}, {-1, 0, 0}}, lux).sources.size(), 0u);
+    EXPECT_FALSE(std::isfinite(find_glare(light, {"", {1, 3, 1.2}, {-1, 0, 0}}, lux).rating()));
+    EXPECT_EQ(find_glare(light, {"", {4, 3, 1.2}, {1, 0, 0}}, lux).sources.size(), 1u);
+    EXPECT_EQ(find_glare(light, {"", {1, 3, 2.8}, {1, 0, 0}}, lux).sources.size(), 0u);  // above the lamps
+}
+
+TEST(Glare, ALightWithoutExtentCountsAsASmallSource) {
+    // L^2 omega = 200 I^2 / r^2.
+    Solution s = sample_solution();
+    const RadiosityFunction light(s);
+    const LightUnit lux(UnitChoice::lux, true);
+    const Glare glare = find_glare(light, {"", {0.3, 0.2, 0.1}, {0, 0, 1}}, lux);
+    const auto spot = std::find_if(glare.sources.begin(), glare.sources.end(),
+                                   [](const GlareSource& source) { return source.name == "spot"; });
+    ASSERT_NE(spot, glare.sources.end());
+    const double intensity = lux(s.scene.lights()[0].intensity);
+    EXPECT_NEAR(spot->term(), 200 * intensity * intensity / 0.64, 1e-9 * spot->term());
+}
+
+}  // namespace
+}  // namespace exitance
