@@ -1,8 +1,6 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/option_kinds.hpp"
 
 namespace exitance {
 
