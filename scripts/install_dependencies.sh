@@ -8,6 +8,7 @@ packages=(
     libtinygltf-dev libjpeg-dev                                              # scenes as glTF, and their textures
     libfmt-dev libcli11-dev nlohmann-json3-dev                               # the program
     libcpp-httplib-dev                                                       # the viewer's server
+    libopenmpi-dev openmpi-bin                                               # several processes
     libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers
     libbenchmark-dev                                                         # the benchmarks
 )

@@ -66,6 +66,7 @@ std::string statistics_json(const SolveStatistics& s) {
         {"method", s.method},
         {"basis", s.basis},
         {"threads", s.threads},
+        {"processes", s.figures.contains("processes") ? static_cast<int>(s.figures.at("processes")) : 1},
         {"schedule", s.schedule},
         {"surfaces", s.surfaces},
         {"elements", s.elements},
@@ -104,7 +105,8 @@ std::string statistics_json(const SolveStatistics& s) {
         json["faces"] = {{"lit", d->lit}, {"penumbra", d->penumbra}, {"umbra", d->umbra}};
         json["triangles"] = d->triangles, json["mean_radius_ratio"] = d->mean_radius_ratio;
     }
-    for (const auto& [name, value] : s.figures) json[name] = value;
+    for (const auto& [name, value] : s.figures)
+        if (!json.contains(name)) json[name] = value;
     return dump(json, 2);
 }
 

@@ -28,6 +28,7 @@
 #include "exitance/reconstruct/quick_function.hpp"
 #include "exitance/reconstruct/unlit_sides.hpp"
 #include "exitance/solve/direct_share.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -74,7 +75,7 @@ class Solver {
         // another run may go on: its light is not to depend on how long this one had.
         constexpr double coarse = 0.08;
         constexpr double near = 30;  // seconds
-        const bool deadline = stop.seconds_left() < near && !checkpoints_;
+        const bool deadline = seconds_left(stop) < near && !checkpoints_;
         const double error = deadline ? std::max(coarse, options.error_target()) : options.error_target();
         stage_.leave_out(find_unlit_sides(stage_, options.seed, stop));
         const std::vector<Piece> lit = stage_.lit_pieces();
@@ -202,7 +203,7 @@ class Solver {
             constexpr double aim = 0.7;
             const Tightened finer = tightened(knobs_, error_parts(), aim * *demand, options_);
             // One that cannot end in time would only be thrown away.
-            if (stop_.seconds_left() < watch.seconds() * finer.work) return stop_early("time limit");
+            if (as_first(seconds_left(stop_) < watch.seconds() * finer.work)) return stop_early("time limit");
             progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}",
                                        100 * certificate_.largest(), 100 * *demand,
                                        finer.method ? "" : ", on the light that the method found"));
