@@ -40,6 +40,7 @@ const std::vector<Door> doors{
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view_server.cpp"}},
+    {"MPI", std::regex("mpi\\.h"), {"transport/distributed.cpp"}},
     {"nlohmann-json",
      std::regex("nlohmann/.*"),
      {"cli/json_output.cpp", "experiments/study/run_facts.cpp", "io/export/viewer_data.cpp"}},

@@ -56,6 +56,7 @@ class RunningProgram {
     }
 
     void send(int signal) { kill(process_, signal); }
+    pid_t process() const { return process_; }
 
     /// Waits until the error stream holds `text` or the program has ended; false in the latter case.
     bool wait_for(const std::string& text) {

@@ -63,7 +63,8 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     EXPECT_EQ(keys(json), statistics_keys);
     EXPECT_EQ(keys(json["energy"]), (std::vector<std::string>{"emitted", "absorbed", "escaped", "defect"}));
     EXPECT_EQ(keys(json["seconds"]),
-              (std::vector<std::string>{"total", "read", "mesh", "link", "solve", "certify", "reconstruct", "write"}));
+              (std::vector<std::string>{"total", "read", "mesh", "direct", "link", "visibility", "form_factors",
+                                        "solve", "gather", "certify", "reconstruct", "write"}));
     EXPECT_EQ(json["surfaces"], 7);
     EXPECT_LE(json["relative_error_estimate"], 0.1);
     EXPECT_GT(json["seconds"]["total"], 0);

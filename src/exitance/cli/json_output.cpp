@@ -50,9 +50,11 @@ Json to_json(const std::vector<Finding>& findings, Finding::Kind kind) {
 
 std::string statistics_json(const SolveStatistics& s) {
     Json seconds;
-    for (const char* phase : {"total", "read", "mesh", "link", "solve", "certify", "reconstruct", "write"}) {
+    for (const char* phase : {"total", "read", "mesh", "direct", "link", "visibility", "form_factors", "solve",
+                              "gather", "certify", "reconstruct", "write"}) {
         const auto at = s.seconds.find(phase);
-        seconds[phase] = at == s.seconds.end() ? 0.0 : at->second;
+        const bool is_part = phase == std::string_view("visibility") || phase == std::string_view("form_factors");
+        seconds[phase] = at != s.seconds.end() ? Json(at->second) : is_part ? Json(nullptr) : Json(0.0);
     }
     Json rooms = Json::array();
     for (const RoomError& room : s.rooms)
@@ -66,6 +68,7 @@ std::string statistics_json(const SolveStatistics& s) {
         {"method", s.method},
         {"basis", s.basis},
         {"threads", s.threads},
+        {"processes", s.figures.contains("processes") ? static_cast<int>(s.figures.at("processes")) : 1},
         {"schedule", s.schedule},
         {"surfaces", s.surfaces},
         {"elements", s.elements},
@@ -98,13 +101,13 @@ std::string statistics_json(const SolveStatistics& s) {
         {"warnings", s.warnings},
     };
     if (const auto& d = s.discontinuity) {
-        json["seconds"]["direct"] = s.seconds.contains("direct") ? s.seconds.at("direct") : 0.0;
         json["curves"] = {{"d0", d->d0}, {"d1", d->d1}, {"d2", d->d2}, {"eee", d->eee}, {"left_out", d->left_out}};
         json["wedges"] = d->wedges;
         json["faces"] = {{"lit", d->lit}, {"penumbra", d->penumbra}, {"umbra", d->umbra}};
         json["triangles"] = d->triangles, json["mean_radius_ratio"] = d->mean_radius_ratio;
     }
-    for (const auto& [name, value] : s.figures) json[name] = value;
+    for (const auto& [name, value] : s.figures)
+        if (!json.contains(name)) json[name] = value;
     return dump(json, 2);
 }
 

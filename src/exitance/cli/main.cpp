@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -7,11 +8,12 @@
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/terminal.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/transport/distributed.hpp"
 
-int main(int argc, char** argv) {
-    using namespace exitance;
-    leave_at_signals();
-    const std::vector<std::string> arguments(argv + 1, argv + std::max(argc, 1));
+namespace exitance {
+namespace {
+
+int run_program(const std::vector<std::string>& arguments) {
     const auto parsed = parse_arguments(arguments);
     if (!parsed) return static_cast<int>(Terminal({}).fail(parsed.error()));
     if (const auto* information = std::get_if<Information>(&*parsed)) {
@@ -20,10 +22,26 @@ int main(int argc, char** argv) {
         return static_cast<int>(terminal.finish(ExitCode::done));
     }
     const ExitCode code = std::visit(
-        [](const auto& command) {
+        []<class Arguments>(const Arguments& command) {
             Terminal terminal(command);
+            if (processes() > 1 && !std::is_same_v<Arguments, SolveArguments>)
+                return terminal.fail({ErrorCode::usage, "starts several processes, which only `solve` works with",
+                                      "mpirun", "run the other verbs by themselves"});
             return terminal.finish(run(command, terminal));
         },
         std::get<Command>(*parsed));
     return static_cast<int>(code);
+}
+
+}  // namespace
+}  // namespace exitance
+
+int main(int argc, char** argv) {
+    using namespace exitance;
+    leave_at_signals();
+    if (const Result<void> joined = join_processes(); !joined)
+        return static_cast<int>(Terminal({}).fail(joined.error()));
+    const int status = run_program({argv + 1, argv + std::max(argc, 1)});
+    leave_processes();
+    return status;
 }

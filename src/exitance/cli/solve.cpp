@@ -7,6 +7,7 @@
 
 #include "exitance/cli/classical_solve.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/task_engine_check.hpp"
@@ -24,6 +25,7 @@
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/scene/findings.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -148,19 +150,27 @@ CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     return facts;
 }
 
-/// The checkpoint beside the output, where it is to be written or read; empty otherwise.
-Result<std::optional<CheckpointFile>> open_checkpoint(const SolveArguments& arguments, const Scene& scene,
-                                                      Terminal& terminal) {
-    std::optional<CheckpointFile> file;
-    if (!arguments.checkpoint_every && !arguments.resume) return file;
+/// The checkpoint beside the output, where it is to be written or read; `file` stays empty otherwise.
+Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene, Terminal& terminal,
+                             std::optional<CheckpointFile>& file) {
+    if (!arguments.checkpoint_every && !arguments.resume) return {};
     const std::string path = arguments.output + ".checkpoint";
     file.emplace(path, facts_of(arguments, scene),
                  arguments.checkpoint_every.value_or(std::numeric_limits<double>::infinity()));
-    if (!arguments.resume) return file;
+    if (!arguments.resume) return {};
     const Result<bool> loaded = file->load();
     if (!loaded) return loaded.error();
     terminal.note(*loaded ? "going on from " + path : "there is no " + path + ": beginning at the beginning");
-    return file;
+    return {};
+}
+
+/// Reads what it has written, too, if asked for.
+Result<void> write_checked(const std::string& path, const Solution& solution, bool reads_back) {
+    if (const Result<void> written = write_solution(path, solution); !written || !reads_back) return written;
+    if (const Result<Solution> read_back = load_solution(path, Rehearsed::already); !read_back)
+        return Error{ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message, path,
+                     "please report the scene that it is of"};
+    return {};
 }
 
 /// Once a solve has come to its own end, the checkpoint goes.
@@ -184,14 +194,21 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     // The engine of tasks reads the threshold that classical forms read.
     if (given.options.task_engine)
         arguments.options.threshold = std::exchange(arguments.classical.threshold, std::nullopt);
+    // Growing cells are delivered as they are where nothing is gathered; their learning has no classical form.
+    if (given.options.method == Method::growing_cells && arguments.classical.gather) {
+        if (!*arguments.classical.gather) arguments.options.smoothing = false;
+        arguments.classical.gather.reset();
+    }
     if (const Result<void> engine = check_task_engine(arguments); !engine) return terminal.fail(engine.error());
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
     if (const Result<void> sky = read_sky(arguments); !sky) return terminal.fail(sky.error());
     if (const Result<void> obeyed = check_classical(arguments); !obeyed) return terminal.fail(obeyed.error());
+    if (const Result<void> shared = check_processes(arguments); !shared) return terminal.fail(shared.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
     if (const Result<void> ending = check_ending(arguments.output); !ending) return terminal.fail(ending.error());
-    if (const Result<void> output = check_output(arguments.output); !arguments.dry_run && !output)
+    if (const Result<void> output = by_first([&] { return check_output(arguments.output); });
+        !arguments.dry_run && !output)
         return terminal.fail(output.error());
     if (!arguments.trace.empty())
         if (const Result<void> output = check_output(arguments.trace); !output) return terminal.fail(output.error());
@@ -202,7 +219,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (arguments.time_limit) reading_stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
     arguments.scene.load.stop = &reading_stop;
     arguments.scene.load.photometric = arguments.photometric;
-    CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
+    CheckedScene checked = load_for_all(arguments.scene);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     const double read_seconds = reading.seconds();
@@ -213,19 +230,26 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
                               arguments.scene.files[0], "please report this file"});
     if (arguments.photometric) checked.scene->declare_photometric(*arguments.photometric);
     // From here on there is something to save.
-    StopRequest stop;
-    const SignalGuard signals(stop);
+    StopRequest asked, agreed;
+    const SignalGuard signals(asked);
+    const StopTogether together(asked, agreed);
+    const StopRequest& stop = processes() > 1 ? agreed : asked;
     if (arguments.time_limit)
-        stop.set_deadline(after(time_to_solve(*arguments.time_limit, run_time.seconds(), read_seconds)));
+        asked.set_deadline(after(time_to_solve(*arguments.time_limit, run_time.seconds(), read_seconds)));
 
-    Result<std::optional<CheckpointFile>> checkpoint = open_checkpoint(arguments, *checked.scene, terminal);
-    if (!checkpoint) return terminal.fail(checkpoint.error());
+    std::optional<CheckpointFile> checkpoint;  // of the first process
+    if (const Result<void> opened =
+            by_first([&] { return open_checkpoint(arguments, *checked.scene, terminal, checkpoint); });
+        !opened)
+        return terminal.fail(opened.error());
+    std::optional<SharedCheckpoints> checkpoints;
+    if (arguments.checkpoint_every || arguments.resume) checkpoints.emplace(checkpoint ? &*checkpoint : nullptr);
     const bool is_classical = arguments.classical.any();
     Result<Solution> solution = is_classical ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
                                              : solve_scene(*checked.scene, arguments.options, tracing.progress(), stop,
-                                                           *checkpoint ? &**checkpoint : nullptr);
+                                                           checkpoints ? &*checkpoints : nullptr);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
-    if (!solution && signals.received()) return *signals.received();
+    if (const auto signal = as_first(signals.received()); !solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
     SolveStatistics& statistics = solution->statistics;
@@ -234,20 +258,22 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     statistics.seconds["read"] = read_seconds;
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
+    record_processes(statistics);
+    // The processes have agreed on a stop, which the first of them knows the reason of.
+    if (processes() > 1 && statistics.stopped_by == "interrupt" && !asked.interrupted())
+        statistics.stopped_by = "time limit";
 
     tracing.progress().phase("write");
     Stopwatch writing;
-    if (const Result<void> written = write_solution(arguments.output, *solution); !written)
+    const bool reads_back = !stop.requested();
+    if (const Result<void> written = by_first([&] { return write_checked(arguments.output, *solution, reads_back); });
+        !written)
         return terminal.fail(written.error());
-    if (!stop.requested())
-        if (const Result<Solution> read_back = load_solution(arguments.output, Rehearsed::already); !read_back)
-            return terminal.fail({ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message,
-                                  arguments.output, "please report the scene that it is of"});
     statistics.seconds["write"] = writing.seconds();
     statistics.seconds["total"] = run_time.seconds();
-    statistics.peak_memory_bytes = peak_memory_bytes();
+    statistics.peak_memory_bytes = std::max(statistics.peak_memory_bytes, peak_memory_bytes());
     terminal.progress().finish();
-    close_checkpoint(*checkpoint, stopped, terminal);
+    close_checkpoint(checkpoint, stopped, terminal);
     if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
 
     if (arguments.json) {
@@ -255,7 +281,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     } else if (!arguments.quiet) {
         terminal.print(summary(statistics));
     }
-    return code_of(statistics, signals);
+    return as_first(code_of(statistics, signals));
 }
 
 }  // namespace exitance

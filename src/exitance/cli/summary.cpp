@@ -79,7 +79,10 @@ std::string summary(const SolveStatistics& s) {
     line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {}{} apart", s.energy.emitted, s.energy.absorbed,
                                s.energy.escaped > 0 ? fmt::format("{:.4g} escaped, ", s.energy.escaped) : "",
                                percent(s.energy.defect)));
-    line("time", fmt::format("{} on {} thread{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s"));
+    const auto processes = s.figures.find("processes");
+    line("time", fmt::format("{} on {} thread{}{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s",
+                             processes != s.figures.end() ? fmt::format(" of {} processes each", processes->second)
+                                                          : std::string()));
     line("memory", bytes(s.peak_memory_bytes) + " at most");
     for (const std::string& warning : s.warnings) line("warning", warning);
     return text;

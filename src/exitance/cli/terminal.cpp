@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "exitance/transport/distributed.hpp"
+
 namespace exitance {
 namespace {
 
@@ -16,11 +18,12 @@ std::string place(const Finding& finding) {
 }  // namespace
 
 Terminal::Terminal(const CommonArguments& arguments)
-    : quiet_(arguments.quiet), progress_(resolve(arguments.progress), arguments.quiet, arguments.verbose) {}
+    : quiet_(arguments.quiet || !is_first_process()),
+      progress_(is_first_process() ? resolve(arguments.progress) : ProgressStyle::none, quiet_, arguments.verbose) {}
 
 void Terminal::print(std::string_view text) {
     progress_.clear();
-    fmt::print(stdout, "{}{}", text, text.ends_with('\n') ? "" : "\n");
+    if (is_first_process()) fmt::print(stdout, "{}{}", text, text.ends_with('\n') ? "" : "\n");
 }
 
 void Terminal::note(std::string_view text) {
@@ -30,6 +33,7 @@ void Terminal::note(std::string_view text) {
 
 ExitCode Terminal::fail(const Error& error) {
     progress_.clear();
+    if (!is_first_process()) return exit_code(error.code);
     fmt::print(stderr, "error: {}{}{}\n", error.where, error.where.empty() ? "" : ": ", error.message);
     if (!error.hint.empty()) fmt::print(stderr, "hint: {}\n", error.hint);
     return exit_code(error.code);

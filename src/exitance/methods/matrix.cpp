@@ -72,7 +72,8 @@ GlobalLight solve_matrix(const MethodInput& input) {
         solve_linear(input, light);
     } else if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
-        const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed);
+        const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed,
+                        Dealing::by_element, RowsHeld::by_owner);
         if (options.bounces < 0) light.kept = F.kept();
         relax_constant_elements(input, F, light);
         light.rays = light.links = F.rays();

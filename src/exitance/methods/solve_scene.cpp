@@ -7,6 +7,7 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/phase_times.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
@@ -28,6 +29,7 @@
 #include "exitance/reconstruct/quick_function.hpp"
 #include "exitance/reconstruct/unlit_sides.hpp"
 #include "exitance/solve/direct_share.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -74,7 +76,7 @@ class Solver {
         // another run may go on: its light is not to depend on how long this one had.
         constexpr double coarse = 0.08;
         constexpr double near = 30;  // seconds
-        const bool deadline = stop.seconds_left() < near && !checkpoints_;
+        const bool deadline = seconds_left(stop) < near && !checkpoints_;
         const double error = deadline ? std::max(coarse, options.error_target()) : options.error_target();
         stage_.leave_out(find_unlit_sides(stage_, options.seed, stop));
         const std::vector<Piece> lit = stage_.lit_pieces();
@@ -202,7 +204,7 @@ class Solver {
             constexpr double aim = 0.7;
             const Tightened finer = tightened(knobs_, error_parts(), aim * *demand, options_);
             // One that cannot end in time would only be thrown away.
-            if (stop_.seconds_left() < watch.seconds() * finer.work) return stop_early("time limit");
+            if (as_first(seconds_left(stop_) < watch.seconds() * finer.work)) return stop_early("time limit");
             progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}",
                                        100 * certificate_.largest(), 100 * *demand,
                                        finer.method ? "" : ", on the light that the method found"));
@@ -541,6 +543,17 @@ class Solver {
     double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.
 };
 
+/// Direct light, links and gather apart from the mesh, the solve and the reconstruction that they are parts of.
+void part_times(const PhaseTimes& phases, std::map<std::string, double>& seconds) {
+    const auto move = [&](double part, const char* from, const char* to) {
+        const double moved = std::min(part, seconds[from]);
+        seconds[from] -= moved, seconds[to] += moved;
+    };
+    move(phases.seconds({"direct light"}), "mesh", "direct");
+    move(phases.seconds({"link", "refine", "look again", "correct", "check by rays"}), "solve", "link");
+    move(phases.seconds({"gather"}), "reconstruct", "gather");
+}
+
 }  // namespace
 
 Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
@@ -549,8 +562,11 @@ Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Pr
     set_schedule(options.schedule);
     if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);
     const Stopwatch watch;
-    Result<Solution> solution = Solver(scene, options, progress, stop, checkpoints).run();
+    PhaseTimes phases(progress);
+    Result<Solution> solution = Solver(scene, options, phases, stop, checkpoints).run();
     if (!solution) return solution;
+    phases.close();
+    part_times(phases, solution->statistics.seconds);
     solution->statistics.seconds["total"] = watch.seconds();
     solution->statistics.peak_memory_bytes = peak_memory_bytes();
     return solution;

@@ -5,6 +5,7 @@
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/reconstruct/continuous.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -27,17 +28,19 @@ class Interpolation {
         std::vector<ElementId> active = out_.tree.leaves();
         for (int round = 0;; ++round) {
             fitted_.resize(out_.tree.size());
-            parallel_ranges(active.size(), 8,
-                            [&](std::size_t begin, std::size_t end) {
-                                DirectFitRoom room;
-                                for (std::size_t i = begin; i < end; ++i) {
-                                    const ElementId e = active[i];
-                                    fitted_[e] = round > 0 && stop.requested()
-                                                     ? inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)])
-                                                     : fit(e, room);
-                                }
-                            },
-                            {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
+            shared_ranges(
+                active.size(), 8,
+                [&](std::size_t begin, std::size_t end) {
+                    DirectFitRoom room;
+                    for (std::size_t i = begin; i < end; ++i) {
+                        const ElementId e = active[i];
+                        fitted_[e] = round > 0 && stop.requested()
+                                         ? inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)])
+                                         : fit(e, room);
+                    }
+                },
+                [&](std::size_t i) -> DirectFit& { return fitted_[active[i]]; },
+                {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
             report.error = error();
             report.interrupted = stop.requested();
             const bool last =
@@ -91,10 +94,15 @@ class Interpolation {
         ElementFunction out = nearest_continuous(apart, stage_.scene, stage_.contacts);
         for (auto& value : out.values)  // all light together is nowhere below zero
             for (float& of_band : value) of_band = std::max(of_band, 0.0f);
-        parallel_for(apart.tree.size(), 64, [&](std::size_t i) {
-            const ElementId e(i);
-            if (apart.tree.is_leaf(e)) fitted_[e].misfit_squared += squared_step(apart, out, e);
-        });
+        shared_ranges(
+            apart.tree.size(), 64,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const ElementId e(i);
+                    if (apart.tree.is_leaf(e)) fitted_[e].misfit_squared += squared_step(apart, out, e);
+                }
+            },
+            [&](std::size_t i) -> double& { return fitted_[ElementId(i)].misfit_squared; }, {"interpolate"});
         return out;
     }
 

@@ -6,6 +6,7 @@
 #include "exitance/core/trace.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/reconstruct/continuous.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 
@@ -199,15 +200,16 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
         for (std::size_t first = std::exchange(begun, 0); first < active.size() && !stop.requested(); first += slice) {
             safe_points.pass([&](auto& a) { a(active, depth, first, report.rays); });
-            parallel_ranges(std::min(slice, active.size() - first), 1,
-                            [&](std::size_t begin, std::size_t end) {
-                                Workspace workspace;
-                                for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
-                                    sampled_[active[i]] =
-                                        sample(active[i], b, demand, depth < demand.max_depth, workspace),
-                                    note_touched("rays", sampled_[active[i]].rays);
-                            },
-                            {"gather", [&](std::size_t i) { return tree_.region(active[first + i]).value; }});
+            shared_ranges(
+                std::min(slice, active.size() - first), 1,
+                [&](std::size_t begin, std::size_t end) {
+                    Workspace workspace;
+                    for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
+                        sampled_[active[i]] = sample(active[i], b, demand, depth < demand.max_depth, workspace),
+                        note_touched("rays", sampled_[active[i]].rays);
+                },
+                [&](std::size_t i) -> SampledElement& { return sampled_[active[first + i]]; },
+                {"gather", [&](std::size_t i) { return tree_.region(active[first + i]).value; }});
             for (std::size_t i = first; i < std::min(first + slice, active.size()); ++i) {
                 const SampledElement& s = sampled_[active[i]];
                 spread_.quarters += tree_.area(active[i]) * s.quarters;

@@ -3,6 +3,7 @@
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -109,10 +110,15 @@ std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const Ele
     for (ElementId e : fitted) parts.push_back({e, e});
     for (int cuts = 0; !parts.empty(); ++cuts) {
         std::vector<StraightFit> fit(parts.size());
-        parallel_for(parts.size(), 64, [&](std::size_t i) {
-            const auto [part, whole] = parts[i];
-            fit[i] = straighten(out.tree, part, whole, sampled(whole), rho(whole));
-        });
+        shared_ranges(
+            parts.size(), 64,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const auto [part, whole] = parts[i];
+                    fit[i] = straighten(out.tree, part, whole, sampled(whole), rho(whole));
+                }
+            },
+            [&](std::size_t i) -> StraightFit& { return fit[i]; }, {"gather"});
         std::vector<StraightLeaf> smaller;
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const auto [part, whole] = parts[i];

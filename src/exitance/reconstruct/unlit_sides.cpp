@@ -7,6 +7,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/error/path_tracer.hpp"
 #include "exitance/scene/other_side.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -73,12 +74,18 @@ Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t
     constexpr double all = 1 << 18;
     const PathTracer tracer(stage);
     std::vector<std::uint8_t> unlit(sides.size());
-    parallel_for(sides.size(), 4, [&](std::size_t k) {
+    const auto look = [&](std::size_t k) {
         if (stop.requested()) return;
         const double share = std::sqrt(sides[k].area / stage.area / static_cast<double>(sides.size()));
         const double paths = std::clamp(all / places * share, 2.0, 16.0);
         unlit[k] = !is_lit(stage, tracer, sides[k], static_cast<unsigned>(paths), seed);
-    });
+    };
+    shared_ranges(
+        sides.size(), 4,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) look(k);
+        },
+        [&](std::size_t k) -> std::uint8_t& { return unlit[k]; }, {"unlit sides"});
     if (stop.requested()) return {};
     Field<RegionId, std::uint8_t> out(stage.scene.regions().size());
     std::size_t count = 0;

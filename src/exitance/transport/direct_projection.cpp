@@ -4,6 +4,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/direct/sampled_light.hpp"
 #include "exitance/mesh/adaptive.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -277,28 +278,29 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
     };
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
-        parallel_ranges(active.size(), 8,
-                        [&](std::size_t begin, std::size_t end) {
-                            if (options.may_give_up && stop.requested()) return;
-                            DirectFitRoom room;
-                            SampledLight sampled(stage.direct, stage.tracer, options.seed);
-                            for (std::size_t i = begin; i < end; ++i) {
-                                const ElementId e = active[i];
-                                DirectFit& fit = out.fit[e];
-                                if (stop.requested() && depth > 0)
-                                    fit = inherited_fit(out.tree, e, out.fit[out.tree.parent(e)]);
-                                else if (stop.requested())  // dark, where even rays would take too long
-                                    fit = stop.seconds_overdue() < time_for_rays
-                                              ? fit_by_rays(stage, out.tree, e, sampled)
-                                              : DirectFit();
-                                else if (many)
-                                    fit = fit_strong_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e),
-                                                           rays_of(e), sampled, room);
-                                else
-                                    fit = fit_direct_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), room);
-                            }
-                        },
-                        {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
+        shared_ranges(
+            active.size(), 8,
+            [&](std::size_t begin, std::size_t end) {
+                if (options.may_give_up && stop.requested()) return;
+                DirectFitRoom room;
+                SampledLight sampled(stage.direct, stage.tracer, options.seed);
+                for (std::size_t i = begin; i < end; ++i) {
+                    const ElementId e = active[i];
+                    DirectFit& fit = out.fit[e];
+                    if (stop.requested() && depth > 0)
+                        fit = inherited_fit(out.tree, e, out.fit[out.tree.parent(e)]);
+                    else if (stop.requested())  // dark, where even rays would take too long
+                        fit = stop.seconds_overdue() < time_for_rays ? fit_by_rays(stage, out.tree, e, sampled)
+                                                                     : DirectFit();
+                    else if (many)
+                        fit = fit_strong_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), rays_of(e),
+                                               sampled, room);
+                    else
+                        fit = fit_direct_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), room);
+                }
+            },
+            [&](std::size_t i) -> DirectFit& { return out.fit[active[i]]; },
+            {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
         if (options.may_give_up && stop.requested()) return {};
         if (depth == 0 && !many) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
         if (depth == 0) share_in = shares_by_room(stage, out, active, options.tolerance);

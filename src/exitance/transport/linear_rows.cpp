@@ -3,9 +3,12 @@
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
+
+constexpr std::size_t node_block = 16;  ///< The rows of so many nodes are one process's.
 
 std::uint16_t quantised(double t) {
     return static_cast<std::uint16_t>(std::clamp(t, 0.0, 1.0) * 65535 + 0.5);
@@ -45,15 +48,16 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
             for (int c = 0; c < tree.patch(e).corner_count(); ++c)
                 leaf.to_corner[static_cast<std::size_t>(c)][k] = static_cast<float>(fit.corner(c)[0]);
             const unsigned count = budget.rays(tree.area(e), mean_area);
-            nodes_.push_back({nodes[k].weight * tree.area(e), rays, rays + count});
-            rays += count;
+            const bool own = is_own(nodes_.size(), node_block);
+            nodes_.push_back({nodes[k].weight * tree.area(e), rays, rays + (own ? count : 0)});
+            rays += own ? count : 0, rays_ += count;
             place.push_back(tree.patch(e).at(nodes[k].uv));
             region.push_back(tree.region(e));
         }
         leaves_.push_back(leaf);
     }
     hits_.resize(rays);
-    parallel_ranges(nodes_.size(), 16, [&](std::size_t begin, std::size_t end) {
+    parallel_own_ranges(nodes_.size(), node_block, [&](std::size_t begin, std::size_t end) {
         std::vector<Vec3> directions;
         std::vector<RayHit> found;
         for (std::size_t k = begin; k < end; ++k) {
@@ -89,6 +93,15 @@ Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node)
     return sum / static_cast<double>(node.last_ray - node.first_ray);
 }
 
+void LinearRows::read_all(const std::vector<Corners>& corners, std::span<Spectrum> out) const {
+    shared_ranges(
+        nodes_.size(), node_block,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) out[k] = read(corners, nodes_[k]);
+        },
+        [&](std::size_t k) -> Spectrum& { return out[k]; }, {"solve"});
+}
+
 std::array<Spectrum, 4> LinearRows::corners(std::size_t leaf, std::span<const Spectrum> nodal) const {
     const Leaf& l = leaves_[leaf];
     Corners out{};
@@ -115,7 +128,7 @@ void LinearRows::gather(std::span<const Spectrum> nodal, std::span<Spectrum> out
         reflected[i] = corners(i, nodal);
         for (Spectrum& c : reflected[i]) c *= leaves_[i].reflectance;
     });
-    parallel_for(nodes_.size(), 64, [&](std::size_t k) { out[k] = read(reflected, nodes_[k]); });
+    read_all(reflected, out);
 }
 
 Spectrum LinearRows::gather_at(std::size_t node, std::span<const Spectrum> nodal) const {
@@ -140,7 +153,7 @@ std::vector<Spectrum> LinearRows::first_reflection(const DirectProjection& direc
         for (Spectrum& c : reflected[i]) c *= leaves_[i].reflectance;
     }
     std::vector<Spectrum> out(nodes_.size());
-    parallel_for(nodes_.size(), 64, [&](std::size_t k) { out[k] = read(reflected, nodes_[k]); });
+    read_all(reflected, out);
     return out;
 }
 

@@ -24,7 +24,8 @@ class LinearRows final : public TransportOperator {
     void gather(std::span<const Spectrum> nodal, std::span<Spectrum> out) const override;
     Spectrum gather_at(std::size_t node, std::span<const Spectrum> nodal) const override;
     std::size_t memory_bytes() const override { return sizeof(Hit) * hits_.size() + sizeof(Node) * nodes_.size(); }
-    std::size_t rays() const { return hits_.size(); }
+    /// Of all processes together; each has the rows of its own nodes.
+    std::size_t rays() const { return rays_; }
 
     /// H rho E_dir at every node, with E_dir as projected: what the emitters' light brings after one reflection, W/m^2.
     std::vector<Spectrum> first_reflection(const DirectProjection& direct) const;
@@ -55,6 +56,9 @@ class LinearRows final : public TransportOperator {
     };
     using Corners = std::array<Spectrum, 4>;
     Spectrum read(const std::vector<Corners>& corners, const Node& node) const;
+    void read_all(const std::vector<Corners>& corners, std::span<Spectrum> out) const;
+
+    std::size_t rays_ = 0;
 
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;

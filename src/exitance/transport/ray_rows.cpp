@@ -5,6 +5,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/core/trace.hpp"
+#include "exitance/transport/distributed.hpp"
 #include "exitance/transport/element_rays.hpp"
 
 namespace exitance {
@@ -16,6 +17,8 @@ unsigned RayBudget::rays(double area, double mean_area) const {
 }
 
 namespace {
+
+constexpr std::size_t row_block = 16;  ///< So many rows are one process's.
 
 /// Which points of which sequence the rays of a leaf are.
 struct Deal {
@@ -54,26 +57,41 @@ std::vector<Deal> deal(const ElementTree& tree, const LeafNumbering& numbering, 
 }  // namespace
 
 RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                 const ElementLocator& locator, RayBudget budget, std::uint64_t seed, Dealing dealing) {
+                 const ElementLocator& locator, RayBudget budget, std::uint64_t seed, Dealing dealing, RowsHeld held)
+    : held_(held) {
     const std::size_t n = numbering.leaves.size();
     const double mean_area = stage.area / static_cast<double>(n);
     first_.assign(n + 1, 0);
     for (std::size_t i = 0; i < n; ++i)
         first_[i + 1] = first_[i] + budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
-    hits_.assign(first_[n], missed);
+    rays_ = first_[n];
     const std::vector<Deal> dealt = deal(tree, numbering, first_, seed, dealing);
+    if (held == RowsHeld::by_owner)
+        for (std::size_t i = 0, all = 0; i < n; ++i) {
+            const std::size_t count = std::exchange(all, first_[i + 1]), here = is_here(i) ? all - count : 0;
+            first_[i + 1] = first_[i] + here;
+        }
+    hits_.assign(first_[n], missed);
 
-    parallel_ranges(n, 16,
-                    [&](std::size_t begin, std::size_t end) {
-                        ElementRays rays(stage, tree, locator);
-                        for (std::size_t i = begin; i < end; ++i) {
-                            const std::size_t count = first_[i + 1] - first_[i];
-                            rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count),
-                                      dealt[i].first);
-                            note_touched("rays", count);
-                        }
-                    },
-                    {"cast rows", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
+    parallel_own_ranges(n, row_block,
+                        [&](std::size_t begin, std::size_t end) {
+                            ElementRays rays(stage, tree, locator);
+                            for (std::size_t i = begin; i < end; ++i) {
+                                const std::size_t count = first_[i + 1] - first_[i];
+                                rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count),
+                                          dealt[i].first);
+                                note_touched("rays", count);
+                            }
+                        },
+                        {"cast rows", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
+    if (held == RowsHeld::everywhere)
+        exchange_values(
+            n, row_block, [&](std::size_t i) { return std::span(hits_).subspan(first_[i], first_[i + 1] - first_[i]); },
+            "cast rows");
+}
+
+bool RayRows::is_here(std::size_t i) const {
+    return held_ == RowsHeld::everywhere || is_own(i, row_block);
 }
 
 Spectrum RayRows::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {
@@ -84,15 +102,26 @@ Spectrum RayRows::gather_at(std::size_t receiver, std::span<const Spectrum> radi
 }
 
 void RayRows::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
-    parallel_for(size(), 64, [&](std::size_t i) { irradiance[i] = gather_at(i, radiosity); });
+    if (held_ == RowsHeld::everywhere || processes() == 1)
+        return parallel_for(size(), 64, [&](std::size_t i) { irradiance[i] = gather_at(i, radiosity); });
+    shared_ranges(
+        size(), row_block,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) irradiance[i] = gather_at(i, radiosity);
+        },
+        [&](std::size_t i) -> Spectrum& { return irradiance[i]; }, {"solve"});
 }
 
 std::vector<double> RayRows::kept() const {
     std::vector<double> out(size());
     parallel_for(size(), 256, [&](std::size_t i) {
+        if (!is_here(i)) return;
         const std::span<const std::uint32_t> row = hits(i);
         out[i] = 1 - static_cast<double>(std::count(row.begin(), row.end(), missed)) / static_cast<double>(row.size());
     });
+    if (held_ == RowsHeld::by_owner)
+        exchange_values(
+            size(), row_block, [&](std::size_t i) -> double& { return out[i]; }, "cast rows");
     return out;
 }
 

@@ -24,6 +24,10 @@ struct RayBudget {
 /// below an element gather is nearly as good as if it had cast all of their rays; of much use where an element has few.
 enum class Dealing : std::uint8_t { by_element, by_piece };
 
+/// Where several processes work together: has each of them all rows, or only those that it has cast? The latter are
+/// rows to gather by, and by nothing else.
+enum class RowsHeld : std::uint8_t { everywhere, by_owner };
+
 /// Transport by rays: row i holds the elements that n_i rays, spread over element i with density cos / pi around its
 /// normal, hit first on their fronts: F_ij is the share of them that hits j. Unbiased; a row of a closed scene sums to
 /// 1 exactly. The points (four dimensions: place and direction) are scrambled Sobol points, so that the error of what
@@ -31,13 +35,15 @@ enum class Dealing : std::uint8_t { by_element, by_piece };
 class RayRows final : public TransportOperator {
   public:
     RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
-            RayBudget budget, std::uint64_t seed, Dealing dealing = Dealing::by_element);
+            RayBudget budget, std::uint64_t seed, Dealing dealing = Dealing::by_element,
+            RowsHeld held = RowsHeld::everywhere);
 
     std::size_t size() const override { return first_.size() - 1; }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
     std::size_t memory_bytes() const override { return 4 * hits_.size() + 8 * first_.size(); }
-    std::size_t rays() const { return hits_.size(); }
+    /// Of all processes together.
+    std::size_t rays() const { return rays_; }
     static constexpr std::uint32_t missed = 0xffffffffu;
     /// Of row i: leaf numbers, `missed` where a ray met nothing or a back.
     std::span<const std::uint32_t> hits(std::size_t i) const {
@@ -48,7 +54,11 @@ class RayRows final : public TransportOperator {
     std::vector<double> kept() const;
 
   private:
-    std::vector<std::size_t> first_;  ///< Row i stands in hits_[first_[i], first_[i + 1]).
+    bool is_here(std::size_t i) const;
+
+    RowsHeld held_;
+    std::size_t rays_ = 0;
+    std::vector<std::size_t> first_;  ///< Row i stands in hits_[first_[i], first_[i + 1]); empty where it is not here.
     std::vector<std::uint32_t> hits_;
 };
 

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double gnuplot_seconds = 60;
+constexpr std::size_t most_marked = 60;  // points of a curve that are marked
 
 struct PlotCurve {
     std::string name;
@@ -88,10 +89,14 @@ std::string script(const StudyPlot& plot, const std::string& title, const std::v
     // Colours that people who see few of them tell apart [Okabe08].
     constexpr std::array colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
     std::string draw = "plot ";
-    for (std::size_t i = 0; i < curves.size(); ++i)
-        draw += fmt::format("{}$curve{} using 1:2 with linespoints lw 1.6 ps 0.7 pt {} dt {} lc rgb '{}' title {}",
-                            i > 0 ? ", \\\n     " : "", i, 4 + i % 11, 1 + i / colours.size() % 4,
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const std::string marks = curves[i].points.size() > most_marked
+                                      ? "lines"
+                                      : fmt::format("linespoints ps 0.7 pt {}", 4 + i % 11);
+        draw += fmt::format("{}$curve{} using 1:2 with {} lw 1.6 dt {} lc rgb '{}' title {}",
+                            i > 0 ? ", \\\n     " : "", i, marks, 1 + i / colours.size() % 4,
                             colours[i % colours.size()], quoted(curves[i].name));
+    }
     text += "set terminal svg size 820,480 font 'sans-serif,13' background '#ffffff'\n";
     text += fmt::format("set output {}\n{}\n", quoted(stem + ".svg"), draw);
     text += "set terminal pngcairo size 820,480 font 'sans-serif,10'\n";

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/reconstruct/solution.hpp"
@@ -15,6 +16,14 @@ class StoredScene {
   public:
     static void write(Hdf5Writer& file, const std::string& group, const Scene& scene);
     static Scene read(Hdf5Reader& file, const std::string& group);
+
+    /// The same in memory, for another process of the same program; without facets of the sky, which no file has.
+    static std::string bytes_of(const Scene& scene);
+    static Result<Scene> from_bytes(std::string_view bytes);
+
+  private:
+    template <class Archive>
+    static void archive_all(Archive& archive, Scene& scene);
 };
 
 /// How materials emit that do not do so diffusely; nothing where all do.

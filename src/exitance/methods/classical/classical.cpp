@@ -2,6 +2,7 @@
 
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/phase_times.hpp"
 #include "exitance/methods/classical/classical_input.hpp"
 #include "exitance/methods/classical/vertex_averages.hpp"
 #include "exitance/methods/light/light_functions.hpp"
@@ -213,14 +214,17 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     Snapshots snapshots(classical.snapshots, [&](const Snapshots::Moment& moment) {
         return sink ? sink(unfinished(*watched, *method, moment), moment.number) : Result<void>();
     });
-    const ClassicalInput input{stage, options, classical, knobs, progress, stop, snapshots};
+    PhaseTimes phases(progress);
+    const ClassicalInput input{stage, options, classical, knobs, phases, stop, snapshots};
     watched = &input;
     Solution solution{.scene = scene};
     SolveStatistics& statistics = solution.statistics;
     statistics.seconds["mesh"] = watch.restart();
     ClassicalLight light = find_light(*method, input);
+    phases.close();
     if (!snapshots.written()) return snapshots.written().error();
-    statistics.seconds["solve"] = watch.restart() - snapshots.writing();
+    statistics.seconds["link"] = phases.seconds({"link"});
+    statistics.seconds["solve"] = std::max(0.0, watch.restart() - snapshots.writing() - statistics.seconds["link"]);
     record(input, *method, light, statistics, facts);
     solution.direct_in_elements = classical.carried();
     solution.indirect = std::move(light.irradiance);

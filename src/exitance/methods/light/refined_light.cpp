@@ -4,6 +4,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -15,22 +16,25 @@ std::vector<Spectrum> mean_residual(const Stage& stage, const GlobalLight& light
     for (const ElementFunction& part : parts) sums.emplace_back(stage, part);
     const ElementLocator locator(indirect.tree, stage.scene.regions().size());
     std::vector<Spectrum> out(light.numbering.leaves.size());
-    parallel_ranges(out.size(), 8, [&](std::size_t begin, std::size_t end) {
-        ElementGather::Workspace workspace;
-        for (std::size_t i = begin; i < end; ++i) {
-            const ElementId e = light.numbering.leaves[i];
-            const RegionId region = light.tree.region(e);
-            const Normal& n = stage.scene.regions()[region].plane.n;
-            const Spectrum& rho = stage.scene.material(region).reflectance;
-            for (const auto& [uv, weight] : element_rule(light.tree, e, RuleOrder::nodes)) {
-                const Point x = light.tree.patch(e).at(uv);
-                if (stage.occluders.is_covered(x, n, region)) continue;
-                Spectrum arriving;
-                for (const ElementGather& sum : sums) arriving += sum(x, n, region, share, workspace);
-                out[i] += weight * (rho * (arriving - indirect.at(locator.find(region, x))));
+    shared_ranges(
+        out.size(), 8,
+        [&](std::size_t begin, std::size_t end) {
+            ElementGather::Workspace workspace;
+            for (std::size_t i = begin; i < end; ++i) {
+                const ElementId e = light.numbering.leaves[i];
+                const RegionId region = light.tree.region(e);
+                const Normal& n = stage.scene.regions()[region].plane.n;
+                const Spectrum& rho = stage.scene.material(region).reflectance;
+                for (const auto& [uv, weight] : element_rule(light.tree, e, RuleOrder::nodes)) {
+                    const Point x = light.tree.patch(e).at(uv);
+                    if (stage.occluders.is_covered(x, n, region)) continue;
+                    Spectrum arriving;
+                    for (const ElementGather& sum : sums) arriving += sum(x, n, region, share, workspace);
+                    out[i] += weight * (rho * (arriving - indirect.at(locator.find(region, x))));
+                }
             }
-        }
-    });
+        },
+        [&](std::size_t i) -> Spectrum& { return out[i]; }, {"refine"});
     return out;
 }
 
@@ -43,7 +47,7 @@ std::vector<ElementFunction> refined_light(const Stage& stage, const GlobalLight
     const std::vector<Spectrum> r = mean_residual(stage, light, indirect, out, share);
     const std::size_t regions = stage.scene.regions().size();
     const ElementLocator locator(light.tree, regions);
-    const RayRows F(stage, light.tree, light.numbering, locator, rays, seed);
+    const RayRows F(stage, light.tree, light.numbering, locator, rays, seed, Dealing::by_element, RowsHeld::by_owner);
     std::vector<Spectrum> e = r;
     solve_radiosity(
         {F, leaf_reflectances(stage.scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},

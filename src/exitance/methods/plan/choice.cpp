@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include "exitance/reconstruct/element_gather.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 
-MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
+namespace {
+
+MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
     MethodChoice out{options, {}};
     const auto choose = [&](Method method, std::string why) {
         out.options.method = method, out.why = std::move(why);
@@ -32,6 +35,22 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     }
     return choose(Method::matrix, fmt::format("{} polygons that hide one another; rays find light best there",
                                               stage.scene.surfaces().size()));
+}
+
+}  // namespace
+
+bool runs_over_processes(Relaxation relaxation) {
+    return relaxation != Relaxation::gauss_seidel && relaxation != Relaxation::southwell;
+}
+
+MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
+    MethodChoice choice = choose_alone(stage, options);
+    if (processes() == 1 || choice.options.method == Method::matrix) return choice;
+    choice.why = fmt::format("{} would be the choice ({}), but does not run over processes",
+                             name_in(method_names, choice.options.method), choice.why);
+    choice.options = options;
+    choice.options.method = Method::matrix;
+    return choice;
 }
 
 }  // namespace exitance

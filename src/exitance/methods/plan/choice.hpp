@@ -17,7 +17,11 @@ struct MethodChoice {
     std::string why;  ///< Empty where the user chose.
 };
 
-/// By what is asked for, what stands in the scene, and the error.
+/// Are its steps those of all unknowns at once, so that several processes can share them?
+bool runs_over_processes(Relaxation relaxation);
+
+/// By what is asked for, what stands in the scene, and the error. Where several processes work together and the choice
+/// does not run over them, the next that does, which is `matrix` on rows of rays.
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options);
 
 }  // namespace exitance

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "exitance/core/memory.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -29,7 +30,7 @@ double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, con
 
 Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
     const double limit = static_cast<double>(*options.memory_limit_bytes);
-    const double used = static_cast<double>(peak_memory_bytes());
+    const double used = largest_of_all(static_cast<double>(peak_memory_bytes()));
     bool unchanged = true;
     for (double before = 0; used + predicted_bytes(knobs, pieces, options) > limit; unchanged = false) {
         const double now = predicted_bytes(knobs, pieces, options);

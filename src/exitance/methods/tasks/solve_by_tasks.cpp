@@ -76,6 +76,8 @@ void record(const TaskEngine& engine, const TaskReport& report, const GlobalLigh
         [&](std::uint32_t root) { return max(engine.radiosity(root)); }, asked);
     s.figures["tasks"] = static_cast<double>(report.tasks);
     s.figures["stolen_tasks"] = static_cast<double>(report.stolen);
+    // Processor time of all threads, parts of what the solve took.
+    s.seconds["visibility"] = report.seconds[TaskGraph::vis], s.seconds["form_factors"] = report.seconds[TaskGraph::ff];
     for (std::size_t k = 0; k < TaskGraph::cost_names.size(); ++k)
         s.figures[std::string(TaskGraph::cost_names[k]) + "_seconds"] = report.seconds[k];
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/transport/distributed.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
 namespace exitance {
@@ -156,7 +157,8 @@ struct Certifier::Content {
           coarse(light.tree, stage.scene.regions().size()),
           rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
           area(leaf_areas(light.tree, light.numbering)),
-          H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1) {
+          H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1,
+            Dealing::by_element, RowsHeld::by_owner) {
         if (mean_reflected > 0) constant = error_constant(H, rho, area);
     }
 
@@ -183,52 +185,55 @@ void Certifier::Content::measure_residuals() {
                                                    : in_turn(options.places, options.points);
     const std::size_t before = samples.size();
     samples.resize(before + places.size());
-    parallel_ranges(places.size(), 8, [&](std::size_t begin, std::size_t end) {
-        GatherWorkspace workspace;
-        ElementGather::Workspace sums;
-        ClusteredLight::Workspace clustered;
-        for (std::size_t k = begin; k < end; ++k) {
-            const auto& [place, weight] = places[k];
-            const RegionId region = indirect.tree.region(place.element);
-            const Point x = indirect.tree.patch(place.element).at(place.uv);
-            const Normal& n = stage.scene.regions()[region].plane.n;
-            const Spectrum& reflectance = stage.scene.material(region).reflectance;
-            Spectrum delivered = indirect.at(place);
-            if (options.direct_in_elements)
-                delivered -= stage.clustered.at(x, n, region, point_accuracy(options.error), clustered).irradiance;
-            Sample& sample = samples[before + k];
-            sample.region = region, sample.weight = weight;
-            if (stage.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage.rooms.at(region, x));
-            sample.leaf = light.numbering.number[coarse.find(region, x).element];
-            if (options.summed) {
-                const bool is_covered = stage.occluders.is_covered(x, n, region);
-                const auto sum = [&](std::span<const ElementGather> parts) {
-                    Spectrum arriving;
-                    for (const ElementGather& part : parts)
-                        if (!is_covered) arriving += part(x, n, region, options.summed->share, sums);
-                    return arriving;
-                };
-                sample.r1 = sample.r2 = reflectance * (sum(options.summed->delivered) - delivered);
-                if (!options.summed->gathered.empty() && k % local_every == 0) {
-                    sample.local1 = sample.local2 = reflectance * (sum(options.summed->gathered) - delivered);
-                    sample.tells_local = true;
+    shared_ranges(
+        places.size(), 8,
+        [&](std::size_t begin, std::size_t end) {
+            GatherWorkspace workspace;
+            ElementGather::Workspace sums;
+            ClusteredLight::Workspace clustered;
+            for (std::size_t k = begin; k < end; ++k) {
+                const auto& [place, weight] = places[k];
+                const RegionId region = indirect.tree.region(place.element);
+                const Point x = indirect.tree.patch(place.element).at(place.uv);
+                const Normal& n = stage.scene.regions()[region].plane.n;
+                const Spectrum& reflectance = stage.scene.material(region).reflectance;
+                Spectrum delivered = indirect.at(place);
+                if (options.direct_in_elements)
+                    delivered -= stage.clustered.at(x, n, region, point_accuracy(options.error), clustered).irradiance;
+                Sample& sample = samples[before + k];
+                sample.region = region, sample.weight = weight;
+                if (stage.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage.rooms.at(region, x));
+                sample.leaf = light.numbering.number[coarse.find(region, x).element];
+                if (options.summed) {
+                    const bool is_covered = stage.occluders.is_covered(x, n, region);
+                    const auto sum = [&](std::span<const ElementGather> parts) {
+                        Spectrum arriving;
+                        for (const ElementGather& part : parts)
+                            if (!is_covered) arriving += part(x, n, region, options.summed->share, sums);
+                        return arriving;
+                    };
+                    sample.r1 = sample.r2 = reflectance * (sum(options.summed->delivered) - delivered);
+                    if (!options.summed->gathered.empty() && k % local_every == 0) {
+                        sample.local1 = sample.local2 = reflectance * (sum(options.summed->gathered) - delivered);
+                        sample.tells_local = true;
+                    }
+                    continue;
                 }
-                continue;
+                const unsigned rays = rays_at(place.element);
+                const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
+                    const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
+                    cast_gather(stage, x, n, region, rays, key, workspace);
+                    r = reflectance * (read_gather(b, workspace).irradiance - delivered);
+                    sample.tells_local = options.gathered != nullptr;
+                    if (options.gathered)
+                        local = reflectance * (read_gather(*options.gathered, workspace).irradiance - delivered);
+                };
+                measure(1, sample.r1, sample.local1);
+                measure(2, sample.r2, sample.local2);
+                sample.rays = 2 * rays;
             }
-            const unsigned rays = rays_at(place.element);
-            const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
-                const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
-                cast_gather(stage, x, n, region, rays, key, workspace);
-                r = reflectance * (read_gather(b, workspace).irradiance - delivered);
-                sample.tells_local = options.gathered != nullptr;
-                if (options.gathered)
-                    local = reflectance * (read_gather(*options.gathered, workspace).irradiance - delivered);
-            };
-            measure(1, sample.r1, sample.local1);
-            measure(2, sample.r2, sample.local2);
-            sample.rays = 2 * rays;
-        }
-    });
+        },
+        [&](std::size_t k) -> Sample& { return samples[before + k]; }, {"certificate"});
     ++looks;
 }
 

@@ -1,0 +1,82 @@
+#include "exitance/cli/processes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "exitance/core/memory.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/methods/plan/choice.hpp"
+#include "exitance/transport/distributed.hpp"
+
+namespace exitance {
+
+Result<void> check_processes(const SolveArguments& arguments) {
+    if (processes() == 1) return {};
+    const SolveOptions& o = arguments.options;
+    const bool own_choice = o.method == Method::automatic;
+    if (!own_choice && o.method != Method::matrix)
+        return Error{ErrorCode::usage,
+                     std::string(name_in(method_names, o.method)) + " does not run over several processes", "--method",
+                     "matrix does (and auto, which takes it)"};
+    const std::array<std::pair<const char*, bool>, 8> alone{{
+        {"--form-factors", o.form_factors && *o.form_factors != FormFactorKind::ray_cast},
+        {"--basis", o.basis && is_galerkin(*o.basis)},
+        {"--relaxation", o.relaxation && !runs_over_processes(*o.relaxation)},
+        {"--importance", !arguments.importance.empty()},
+        {"--task-engine", o.task_engine},
+        {"--trace", !arguments.trace.empty()},
+        {"--dry-run", arguments.dry_run},
+        {"a classical form", arguments.classical.any()},
+    }};
+    for (const auto& [name, is_given] : alone)
+        if (is_given)
+            return Error{ErrorCode::usage, "does not run over several processes as asked for", name,
+                         "rows of rays do: --form-factors ray-cast, --basis constant or linear, --relaxation jacobi, "
+                         "cg, gmres or chebyshev; everything else by one process"};
+    return {};
+}
+
+CheckedScene load_for_all(const SceneArguments& scene) {
+    if (processes() == 1) return load_scene(scene.files, scene.load);
+    CheckedScene checked{Error{}, {}};
+    if (is_first_process()) checked = load_scene(scene.files, scene.load);
+    const Result<void> read =
+        by_first([&] { return checked.scene ? Result<void>() : Result<void>(checked.scene.error()); });
+    if (!read) {
+        checked.scene = read.error();
+        return checked;
+    }
+    const std::string bytes =
+        as_first(is_first_process() ? StoredScene::bytes_of(*checked.scene) : std::string(), "scene");
+    if (!is_first_process()) checked.scene = StoredScene::from_bytes(bytes);
+    return checked;
+}
+
+SharedCheckpoints::SharedCheckpoints(CheckpointStore* file)
+    : file_(file), state_(as_first(file ? file->resumed() : std::string(), "checkpoint")) {}
+
+bool SharedCheckpoints::is_due() const {
+    return as_first(file_ && file_->is_due()) && file_;
+}
+
+void record_processes(SolveStatistics& statistics) {
+    const auto own = static_cast<double>(peak_memory_bytes());
+    if (processes() == 1) return;
+    statistics.peak_memory_bytes = static_cast<std::size_t>(largest_of_all(own));
+    auto& figures = statistics.figures;
+    figures["peak_memory_bytes_of_all"] = sum_of_all(own);
+    figures["processes"] = static_cast<double>(processes());
+    const std::map<std::string, Traffic> sent = traffic();
+    double messages = 0, bytes = 0;
+    for (const auto& [what, t] : sent) {
+        std::string name = what;
+        std::replace(name.begin(), name.end(), ' ', '_');
+        messages += figures["messages_" + name] = sum_of_all(static_cast<double>(t.messages));
+        bytes += figures["message_bytes_" + name] = sum_of_all(static_cast<double>(t.bytes));
+    }
+    figures["messages"] = messages, figures["message_bytes"] = bytes;
+}
+
+}  // namespace exitance

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/cli/arguments.hpp"
+#include "exitance/core/checkpoint.hpp"
+#include "exitance/reconstruct/solution.hpp"
+
+namespace exitance {
+
+/// Where several processes work together, what does not run over them is an error that names what does.
+Result<void> check_processes(const SolveArguments& arguments);
+
+/// The scene, which the first process reads and checks, for all.
+CheckedScene load_for_all(const SceneArguments& scene);
+
+/// The first process's checkpoints, for all: they go on from one state, and keep it at the same places.
+class SharedCheckpoints final : public CheckpointStore {
+  public:
+    /// `file`: of the first process; null for the others.
+    explicit SharedCheckpoints(CheckpointStore* file);
+
+    /// True for the first process alone, which then keeps the state that all have.
+    bool is_due() const override;
+    void keep(std::string state) override { file_->keep(std::move(state)); }
+    std::string resumed() const override { return state_; }
+
+  private:
+    CheckpointStore* file_;
+    std::string state_;
+};
+
+/// How many processes there were, what they sent, and what memory they took: all of them, and the one with the most.
+void record_processes(SolveStatistics& statistics);
+
+}  // namespace exitance

@@ -1,0 +1,76 @@
+#include "exitance/core/archive.hpp"
+#include "exitance/io/solution/solution_groups.hpp"
+
+namespace exitance {
+namespace {
+
+template <class Archive, class Things>
+void archive_each(Archive& a, Things& things) {
+    things.resize(archive_size(a, things.size(), 1));
+    for (auto& thing : things) a(thing);
+}
+
+}  // namespace
+
+// What a scene is made of, beyond plain values.
+
+template <class Archive>
+void archive(Archive& a, Material& m) {
+    a(m.name, m.reflectance, m.exitance, m.emission);
+}
+
+template <class Archive>
+void archive(Archive& a, EmissionProfile::Axis& axis) {
+    a(axis.angle, axis.offset, axis.at);
+}
+
+template <class Archive>
+void archive(Archive& a, EmissionProfile& p) {
+    a(p.axes[0], p.axes[1], p.values, p.body, p.size, p.smooth_width);
+}
+
+template <class Archive>
+void archive(Archive& a, Region& r) {
+    a(r.material, r.plane, r.area, r.surfaces, r.loops, r.level);
+}
+
+template <class Archive>
+void archive(Archive& a, PunctualLight& l) {
+    a(l.name, l.kind, l.position, l.direction, l.intensity, l.inner_cone, l.outer_cone);
+}
+
+template <class Archive>
+void archive(Archive& a, Pane& p) {
+    a(p.corners, p.n, p.transmissivity, p.index, p.line);
+}
+
+template <class Archive>
+void archive(Archive& a, SceneCamera& c) {
+    a(c.name, c.eye, c.target, c.up, c.fov, c.width);
+}
+
+template <class Archive>
+void StoredScene::archive_all(Archive& a, Scene& s) {
+    a(s.file_, s.surfaces_, s.corners_, s.emitters_, s.photometric_, s.box_);
+    archive_each(a, s.materials_), archive_each(a, s.profiles_), archive_each(a, s.groups_);
+    archive_each(a, s.regions_);
+    // A sky's facets are made where they are needed, and point to its domes.
+    a(s.lights_, s.distant_.domes, s.distant_.discs, s.panes_, s.cameras_);
+}
+
+std::string StoredScene::bytes_of(const Scene& scene) {
+    ArchiveWriter writer;
+    archive_all(writer, const_cast<Scene&>(scene));  // a writer changes nothing
+    return writer.take();
+}
+
+Result<Scene> StoredScene::from_bytes(std::string_view bytes) {
+    ArchiveReader reader(bytes);
+    Scene scene;
+    archive_all(reader, scene);
+    if (!reader.good() || reader.left() != 0)
+        return Error{ErrorCode::failure, "did not come whole from the process that read it", "the scene", ""};
+    return scene;
+}
+
+}  // namespace exitance

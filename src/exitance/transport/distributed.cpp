@@ -1,0 +1,181 @@
+#include "exitance/transport/distributed.hpp"
+
+#define OMPI_SKIP_MPICXX 1
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+namespace exitance {
+namespace {
+
+/// What this process knows of the others.
+struct Team {
+    std::size_t size = 1, own = 0;
+    bool joined = false;
+    const StopRequest* asked = nullptr;
+    StopRequest* agreed = nullptr;
+    std::uint64_t meetings = 0;
+    std::map<std::string, Traffic> traffic;
+};
+Team team;
+
+/// Launchers tell their processes what they belong to.
+bool was_launched() {
+    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"})
+        if (const char* value = std::getenv(name); value && *value)
+            return std::string(name).ends_with("_SIZE") ? std::atol(value) > 1 : true;
+    return false;
+}
+
+/// MPI's own calls end the job where they fail, which is its default. This is for what we find out.
+[[noreturn]] void end_job(const char* why) {
+    std::fprintf(stderr, "error: process %zu of %zu: %s\n", team.own, team.size, why);
+    MPI_Abort(MPI_COMM_WORLD, 1);
+    std::abort();
+}
+
+void count(const char* what, std::size_t bytes) {
+    Traffic& t = team.traffic[*what ? what : "other"];
+    ++t.exchanges, t.messages += team.size - 1, t.bytes += bytes * (team.size - 1);
+}
+
+}  // namespace
+
+Result<void> join_processes() {
+    if (team.joined || !was_launched()) return {};
+    int provided = 0, size = 1, rank = 0;
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS ||
+        provided < MPI_THREAD_FUNNELED)
+        return Error{ErrorCode::failure, "MPI does not let programs with threads begin", "", ""};
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    team.joined = true;
+    team.size = static_cast<std::size_t>(size), team.own = static_cast<std::size_t>(rank);
+    return {};
+}
+
+void leave_processes() {
+    if (team.joined) MPI_Finalize();
+    team.joined = false;
+}
+
+std::size_t processes() {
+    return team.size;
+}
+
+std::size_t own_process() {
+    return team.own;
+}
+
+StopTogether::StopTogether(const StopRequest& asked, StopRequest& agreed) {
+    team.asked = &asked, team.agreed = &agreed;
+}
+
+StopTogether::~StopTogether() {
+    team.asked = nullptr, team.agreed = nullptr;
+}
+
+double seconds_left(const StopRequest& agreed) {
+    return as_first((team.asked ? *team.asked : agreed).seconds_left());
+}
+
+const std::map<std::string, Traffic>& traffic() {
+    return team.traffic;
+}
+
+std::string as_first(std::string bytes, const char* what) {
+    if (team.size == 1) return bytes;
+    bytes.resize(as_first(bytes.size()));
+    detail::send_from_first(bytes.data(), bytes.size(), what);
+    return bytes;
+}
+
+Result<void> by_first(const std::function<Result<void>()>& work) {
+    const Result<void> done = is_first_process() ? work() : Result<void>();
+    if (team.size == 1 || as_first(static_cast<bool>(done))) return done;
+    const Error none, &own = done ? none : done.error();
+    Error error{as_first(own.code), {}, {}, {}};
+    error.message = as_first(own.message, "agreement");
+    error.where = as_first(own.where, "agreement");
+    error.hint = as_first(own.hint, "agreement");
+    return error;
+}
+
+double largest_of_all(double value) {
+    if (team.size == 1) return value;
+    double out = value;
+    MPI_Allreduce(&value, &out, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    count("agreement", sizeof value);
+    return out;
+}
+
+double sum_of_all(double value) {
+    if (team.size == 1) return value;
+    std::vector<double> all(team.size);
+    MPI_Allgather(&value, 1, MPI_DOUBLE, all.data(), 1, MPI_DOUBLE, MPI_COMM_WORLD);
+    count("agreement", sizeof value);
+    double sum = 0;
+    for (double v : all) sum += v;
+    return sum;
+}
+
+void parallel_own_ranges(std::size_t count, std::size_t grain,
+                         const std::function<void(std::size_t, std::size_t)>& body, const Work& work) {
+    if (team.size == 1) return parallel_ranges(count, grain, body, work);
+    const std::size_t blocks = (count + grain - 1) / grain;
+    const std::size_t own = blocks > team.own ? (blocks - team.own + team.size - 1) / team.size : 0;
+    const auto first_of = [&](std::size_t k) { return (k * team.size + team.own) * grain; };
+    Work of_own{work.name, {}, work.by_polygon};
+    if (work.polygon_of) of_own.polygon_of = [&](std::size_t k) { return work.polygon_of(first_of(k)); };
+    parallel_ranges(
+        own, 1,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                if (team.asked && team.asked->requested()) team.agreed->interrupt();
+                body(first_of(k), std::min(count, first_of(k) + grain));
+            }
+        },
+        of_own);
+}
+
+namespace detail {
+
+void send_from_first(void* data, std::size_t size, const char* what) {
+    constexpr std::size_t most = std::size_t(1) << 28;  // MPI counts by int
+    for (std::size_t done = 0; done < size; done += most)
+        MPI_Bcast(static_cast<char*>(data) + done, static_cast<int>(std::min(most, size - done)), MPI_BYTE, 0,
+                  MPI_COMM_WORLD);
+    Traffic& t = team.traffic[what];
+    ++t.exchanges;
+    if (is_first_process()) t.messages += team.size - 1, t.bytes += size * (team.size - 1);
+}
+
+void meet(std::size_t things, const char* what) {
+    const bool stops = team.agreed && ((team.asked && team.asked->requested()) || team.agreed->requested());
+    const std::uint64_t place = ++team.meetings << 40 ^ things;
+    std::array<std::uint64_t, 3> own{place, ~place, stops}, all{};
+    MPI_Allreduce(own.data(), all.data(), 3, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    count("agreement", sizeof own);
+    if (all[0] != place || all[1] != ~place)
+        end_job((std::string("the processes have come to different places, here at: ") + what).c_str());
+    if (all[2] != 0 && team.agreed) team.agreed->interrupt();
+}
+
+void exchange(std::span<char> all, std::span<const std::size_t> first, const char* what) {
+    std::vector<int> sizes, places;
+    for (std::size_t p = 0; p < team.size; ++p) {
+        sizes.push_back(static_cast<int>(first[p + 1] - first[p]));
+        places.push_back(static_cast<int>(first[p]));
+    }
+    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), sizes.data(), places.data(), MPI_BYTE,
+                   MPI_COMM_WORLD);
+    count(what, first[team.own + 1] - first[team.own]);
+}
+
+}  // namespace detail
+
+}  // namespace exitance

@@ -1,0 +1,165 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/core/progress.hpp"
+#include "exitance/core/result.hpp"
+
+namespace exitance {
+
+// Several processes that solve one scene together, each with threads of its own. All of them take the same steps: what
+// is cheap each computes for itself; the indices of what is expensive are dealt out, and what they give is sent to all.
+// So every process goes on from the same bits, which are those of one process alone. Every function that says "all"
+// has to be called by all processes, in the same order, by the thread that drives the work.
+
+/// Finds out whether this process was started as one of several (by mpirun or a batch system) and joins the others. To
+/// be called once, first of all. A program that runs alone does nothing here.
+Result<void> join_processes();
+/// The end of that, for all.
+void leave_processes();
+
+/// How many there are, and which of them this is.
+std::size_t processes();
+std::size_t own_process();
+/// The one that reads files, writes them, and speaks.
+inline bool is_first_process() {
+    return own_process() == 0;
+}
+
+/// While it lives, a stop that any process is asked for (`asked`: its signals, its clock) becomes one that all have
+/// agreed on (`agreed`, which the work looks at): at the end of every shared loop, so that no process goes on with less
+/// than others have. Within a shared loop a process that is asked stops its own part at once. One at a time.
+class StopTogether {
+  public:
+    StopTogether(const StopRequest& asked, StopRequest& agreed);
+    ~StopTogether();
+    StopTogether(const StopTogether&) = delete;
+    StopTogether& operator=(const StopTogether&) = delete;
+};
+
+/// Seconds until the deadline, as the first process sees it; `agreed` as in StopTogether. All.
+double seconds_left(const StopRequest& agreed);
+
+namespace detail {
+void send_from_first(void* data, std::size_t size, const char* what);
+}
+
+/// The first process's value, for all.
+template <class T>
+requires std::is_trivially_copyable_v<T> T as_first(T value) {
+    if (processes() > 1) detail::send_from_first(&value, sizeof value, "agreement");
+    return value;
+}
+/// The same for bytes of any number.
+std::string as_first(std::string bytes, const char* what);
+/// What only the first process does; how it went, for all.
+Result<void> by_first(const std::function<Result<void>()>& work);
+
+/// The largest of all processes' values; their sum, in the order of the processes. All.
+double largest_of_all(double value);
+double sum_of_all(double value);
+
+/// What this process sends: messages to other processes, as if each exchange went straight from one to the other, and
+/// their bytes.
+struct Traffic {
+    std::size_t exchanges = 0, messages = 0, bytes = 0;
+};
+/// By what was sent.
+const std::map<std::string, Traffic>& traffic();
+
+/// Are the indices around i, `grain` of them a block, this process's? Blocks are dealt out like cards: neighbours cost
+/// alike, so all processes have about the same work.
+inline bool is_own(std::size_t i, std::size_t grain) {
+    return i / grain % processes() == own_process();
+}
+
+/// `parallel_ranges` over this process's own blocks of `grain` indices. Hears of stops.
+void parallel_own_ranges(std::size_t count, std::size_t grain,
+                         const std::function<void(std::size_t, std::size_t)>& body, const Work& work = {});
+
+namespace detail {
+
+/// The end of a shared loop over `count` things: all agree on stops, and make sure that they are at the same place.
+void meet(std::size_t count, const char* what);
+/// Everybody's bytes to everybody: process p's stand from first[p] on in `all`, `own` among them already.
+void exchange(std::span<char> all, std::span<const std::size_t> first, const char* what);
+
+template <class T>
+std::span<char> bytes_of(T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return {reinterpret_cast<char*>(&value), sizeof value};
+}
+template <class T>
+std::span<char> bytes_of(std::span<T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return {reinterpret_cast<char*>(values.data()), values.size_bytes()};
+}
+
+/// value(i) of every i in blocks [block, end), whose bytes are together as many as given by process.
+template <class Value>
+void exchange_blocks(std::size_t block, std::size_t end, std::size_t count, std::size_t grain,
+                     std::span<const std::size_t> first, const Value& value, const char* what) {
+    std::vector<char> all(first.back());
+    std::vector<std::size_t> at(first.begin(), first.end());
+    const auto for_each = [&](const auto& take) {
+        at.assign(first.begin(), first.end());
+        for (std::size_t b = block; b < end; ++b) {
+            const std::size_t owner = b % processes();
+            for (std::size_t i = b * grain; i < count && i < (b + 1) * grain; ++i) {
+                decltype(auto) held = value(i);
+                const std::span<char> bytes = bytes_of(held);
+                if (!bytes.empty()) take(owner, bytes, all.data() + at[owner]);
+                at[owner] += bytes.size();
+            }
+        }
+    };
+    const std::size_t own = own_process();
+    for_each([&](std::size_t owner, std::span<char> bytes, char* sent) {
+        if (owner == own) std::copy(bytes.begin(), bytes.end(), sent);
+    });
+    exchange(all, first, what);
+    for_each([&](std::size_t owner, std::span<char> bytes, const char* sent) {
+        if (owner != own) std::copy(sent, sent + bytes.size(), bytes.begin());
+    });
+}
+
+}  // namespace detail
+
+/// Sends value(i), a reference to a plain value or a span of them that is as long everywhere, from the process whose i
+/// is to all others, for every i in [0, count). In rounds, so that little memory is needed. All.
+template <class Value>
+void exchange_values(std::size_t count, std::size_t grain, const Value& value, const char* what) {
+    if (processes() == 1) return;
+    detail::meet(count, what);
+    constexpr std::size_t most_bytes = std::size_t(32) << 20;  // of a round, of all processes together
+    const std::size_t blocks = (count + grain - 1) / grain;
+    for (std::size_t block = 0, end = 0; block < blocks; block = end) {
+        std::vector<std::size_t> first(processes() + 1);
+        for (std::size_t bytes = 0; end < blocks && bytes < most_bytes; ++end)
+            for (std::size_t i = end * grain; i < count && i < (end + 1) * grain; ++i) {
+                decltype(auto) held = value(i);
+                const std::size_t size = detail::bytes_of(held).size();
+                first[end % processes() + 1] += size, bytes += size;
+            }
+        for (std::size_t p = 0; p < processes(); ++p) first[p + 1] += first[p];
+        detail::exchange_blocks(block, end, count, grain, first, value, what);
+    }
+}
+
+/// `parallel_ranges`, dealt out to all processes: body(first, last) writes value(i), a reference to a plain value, for
+/// each i of its range and nothing else that lasts; afterwards all processes have all values. All.
+template <class Value>
+void shared_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
+                   const Value& value, const Work& work) {
+    parallel_own_ranges(count, grain, body, work);
+    exchange_values(count, grain, value, work.name);
+}
+
+}  // namespace exitance
