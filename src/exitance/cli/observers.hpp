@@ -1,13 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
-#include "exitance/cli/arguments.hpp"
+#include "exitance/core/result.hpp"
+#include "exitance/reconstruct/glare.hpp"
 
 namespace exitance {
-
-/// Options of `report` that lighting standards ask for: --plane, --cylindrical, --maintenance, --observers, --tables.
-void declare_standards(CLI::App& app, ReportArguments& arguments);
 
 /// Who observers named by words are: "auto", "x,y,z dx,dy,dz", or a table (CSV x,y,z,dx,dy,dz).
 Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene);
