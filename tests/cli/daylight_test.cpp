@@ -29,6 +29,10 @@ std::string weather() {
     return text;
 }
 
+std::string first_line_of(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
 std::size_t lines(const std::string& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
@@ -72,7 +76,8 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
     write_text(folder / "w.epw", weather());
     write_text(folder / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n");
     const Finished run = run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points",
-                                      folder / "p.pts", "-o", folder / "year", "--json"});
+                                      folder / "p.pts", "-o", folder / "year", "--eyes", folder / "p.pts", "--sun-day",
+                                      "02-01", "--sun-altitude", "10", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("\"sDA_300_50\": 1.0"), std::string::npos) << run.out;
     EXPECT_EQ(lines(read_text(folder / "year/illuminance.csv")), 25u);
@@ -81,6 +86,15 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
     EXPECT_EQ(lines(read_text(folder / "year/matrix.csv")), 3u);
     EXPECT_EQ(read_text(folder / "year/summary.csv").find("name,value\nsensors,2\nhours,24\noccupied_hours,10\n"), 0u);
     EXPECT_EQ(read_text(folder / "year/illuminance.csv").find("month,day,hour,E_0,E_1\n6,21,1,0,0\n"), 0u);
+    // EN 17037: half of the 24 hours are daylight, and half of those bring more than 750 lx through the open half.
+    EXPECT_NE(run.out.find("\"EN17037_daylight_hours\": 12.0"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("\"EN17037_level\": 3.0"), std::string::npos) << run.out;
+    EXPECT_TRUE(first_line_of(read_text(folder / "year/metrics.csv")).ends_with(",E_half_of_daylight,sunlight_hours"));
+    EXPECT_EQ(lines(read_text(folder / "year/view.csv")), 3u);
+    EXPECT_EQ(run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points", folder / "p.pts", "-o",
+                           folder / "year", "--sun-day", "02-30"})
+                  .status,
+              2);
     EXPECT_EQ(run_program({"daylight", folder / "s.h5", "--epw", folder / "none.epw", "--points", folder / "p.pts",
                            "-o", folder / "y"})
                   .status,

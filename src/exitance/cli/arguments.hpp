@@ -14,6 +14,7 @@
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/classical/classical_options.hpp"
+#include "exitance/methods/daylight/daylight_provision.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/reconstruct/working_plane.hpp"
 #include "exitance/scene/photometric_units.hpp"
@@ -134,6 +135,8 @@ struct DaylightArguments : CommonArguments {
     std::string solution, epw, points, output;
     int division = 1;  ///< Of Tregenza's patches, in either direction.
     double north = 0, ground = 0.2;
+    SunDay sun_day;    ///< On which hours of sunlight are counted.
+    std::string eyes;  ///< Points for views out; empty: none.
     int threads = 0;
 };
 

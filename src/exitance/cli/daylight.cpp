@@ -21,14 +21,18 @@ std::vector<DaylightHour> hours_of(const Weather& weather) {
 
 std::string as_text(const DaylightResults& results, const std::string& folder) {
     const DaylightSummary& s = results.summary;
+    const DaylightProvision::Shares& provision = results.provision.by_illuminance;
+    constexpr std::array<const char*, 4> levels{"no level", "minimum", "medium", "high"};
     return fmt::format(
         "daylight   {} sensors, {} hours, {} of them occupied\n"
         "factor     {:.3g}% in the mean (overcast sky)\n"
         "sDA        {:.1f}% of the sensors have 300 lx in half of the occupied hours\n"
         "ASE        {:.1f}% of the sensors have 1000 lx of sun in more than 250 hours\n"
+        "EN 17037   {}: 300 lx in half of the daylight hours at {:.1f}% of the sensors, 100 lx at {:.1f}%\n"
         "written    {}\n",
         results.sensors.size(), results.hours.size(), s.occupied_hours, s.mean_daylight_factor,
-        100 * s.spatial_autonomy, 100 * s.sunlight_exposure, folder);
+        100 * s.spatial_autonomy, 100 * s.sunlight_exposure, levels[static_cast<std::size_t>(provision.level())],
+        100 * provision.at_target[0], 100 * provision.at_minimum[0], folder);
 }
 
 }  // namespace
@@ -42,6 +46,12 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     if (!points) return terminal.fail(points.error());
     if (points->size() == 0)
         return terminal.fail({ErrorCode::bad_input, "holds no points", arguments.points, "x y z dx dy dz a line"});
+    std::optional<ProbePoints> eyes;
+    if (!arguments.eyes.empty()) {
+        Result<ProbePoints> read = load_probe_points(arguments.eyes);
+        if (!read) return terminal.fail(read.error());
+        eyes = std::move(*read);
+    }
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
 
@@ -59,6 +69,9 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     results.year = daylight_year(solution->scene, results.sensors, patches, results.matrix, results.hours, site);
     results.metrics = daylight_metrics(results.year, patches, results.matrix, results.hours, site);
     results.summary = summarize(results.metrics, results.hours);
+    results.provision = daylight_provision(results.year, results.metrics, results.hours, site);
+    results.sunlight = sunlight_hours(solution->scene, results.sensors, site, weather->zone, arguments.sun_day);
+    if (eyes) results.eyes = eyes->points, results.views = views_out(solution->scene, results.eyes);
     terminal.progress().phase("write");
     if (const Result<void> written = write_daylight(arguments.output, results); !written)
         return terminal.fail(written.error());

@@ -92,6 +92,11 @@ void declare_scene(CLI::App& app, SceneArguments& scene);
 /// --unit and --efficacy
 void declare_unit(CLI::App& app, UnitArguments& unit);
 
+// Options for what lighting standards ask for: --plane, --cylindrical, --maintenance, --observers, --tables; --eyes,
+// --sun-day, --sun-altitude.
+void declare_standards(CLI::App& app, ReportArguments& arguments);
+void declare_standards(CLI::App& app, DaylightArguments& arguments);
+
 // All options of a verb.
 void declare(CLI::App& app, SolveArguments& arguments);
 void declare(CLI::App& app, ProbeArguments& arguments);

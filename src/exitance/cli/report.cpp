@@ -7,7 +7,7 @@
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/light_unit.hpp"
-#include "exitance/cli/standards_arguments.hpp"
+#include "exitance/cli/observers.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/pictures/display.hpp"

@@ -1,7 +1,6 @@
-#include "exitance/cli/standards_arguments.hpp"
+#include <cstdio>
 
 #include "exitance/cli/option_kinds.hpp"
-#include "exitance/io/files/text_table.hpp"
 
 namespace exitance {
 namespace {
@@ -46,57 +45,7 @@ CLI::Option* add_planes(CLI::App& app, const std::string& name, std::vector<Plan
         ->take_all();
 }
 
-/// In the middle of each wall of the largest floor, looking across it, as CIE 117 has them.
-Result<std::vector<Observer>> standard_observers(const Scene& scene) {
-    constexpr double seated = 1.2, off_wall = 0.1;  // metres
-    PlaneRequest request;
-    request.height = seated;
-    const Result<std::vector<GridLight>> planes = make_working_planes(scene, request);
-    if (!planes) return planes.error();
-    const MeasuringPlane& plane = planes->front().plane;
-    const Point middle = plane.origin + 0.5 * (plane.u + plane.v);
-    std::vector<Observer> out;
-    const std::array<std::pair<const char*, Vec3>, 4> walls{{{"along u", -0.5 * plane.u},
-                                                             {"against u", 0.5 * plane.u},
-                                                             {"along v", -0.5 * plane.v},
-                                                             {"against v", 0.5 * plane.v}}};
-    for (const auto& [name, way] : walls)
-        out.push_back({name, middle + way - off_wall * normalized(way), -1 * normalized(way)});
-    return out;
-}
-
-Result<std::vector<Observer>> load_observers(const std::string& path) {
-    Result<NumberTable> table = NumberTable::open(path, {"x", "y", "z", "dx", "dy", "dz"});
-    if (!table) return table.error();
-    std::vector<Observer> out;
-    for (std::array<double, 6> row;;) {
-        const Result<bool> more = table->next(row);
-        if (!more) return more.error();
-        if (!*more) break;
-        const Vec3 view{row[3], row[4], row[5]};
-        if (!(norm(view) > 0)) return table->lines().error("looks in no direction", "dx, dy, dz must not all be 0");
-        out.push_back({fmt::format("{}", out.size() + 1), {row[0], row[1], row[2]}, normalized(view)});
-    }
-    if (out.empty()) return Error{ErrorCode::bad_input, "holds no observers", path, "x,y,z,dx,dy,dz and a row each"};
-    return out;
-}
-
 }  // namespace
-
-Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene) {
-    if (words == "auto") return standard_observers(scene);
-    if (words.find_first_not_of("0123456789.,+-eE ") != std::string::npos) return load_observers(words);
-    std::string blank = words;
-    std::replace(blank.begin(), blank.end(), ',', ' ');
-    std::istringstream in(blank);
-    std::vector<double> n;
-    for (double value; in >> value;) n.push_back(value);
-    const Vec3 view = n.size() == 6 ? Vec3{n[3], n[4], n[5]} : Vec3();
-    if (!in.eof() || !(norm(view) > 0))
-        return Error{ErrorCode::usage, fmt::format("'{}' is not 'x,y,z dx,dy,dz'", words), "--observers",
-                     "an eye in metres and the direction in which it looks"};
-    return std::vector<Observer>{{words, {n[0], n[1], n[2]}, normalized(view)}};
-}
 
 void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_planes(app, "--plane", arguments.working_planes, false,
@@ -118,6 +67,36 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
                    "Folder for planes.csv, plane_1.csv, plans with lines of equal light (plane_1.svg, .pdf), ..., "
                    "observers.csv")
         ->type_name("FOLDER");
+}
+
+void declare_standards(CLI::App& app, DaylightArguments& arguments) {
+    app.add_option(
+           "--eyes", arguments.eyes,
+           "Places that views out are judged from by EN 17037 (points as --points has them; their directions do "
+           "not count): view.csv")
+        ->type_name("FILE");
+    app.add_option_function<std::string>(
+           "--sun-day",
+           [&arguments](const std::string& w) {
+               constexpr std::array<int, 12> days{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+               int month = 0, day = 0;
+               char rest = 0;
+               if (std::sscanf(w.c_str(), "%2d-%2d%c", &month, &day, &rest) != 2 || month < 1 || month > 12 ||
+                   day < 1 || day > days[static_cast<std::size_t>(month - 1)])
+                   throw CLI::ValidationError("--sun-day", fmt::format("'{}' is not a day such as 03-21", w));
+               arguments.sun_day.month = month, arguments.sun_day.day = day;
+           },
+           "Cloudless day whose hours of sunlight are counted, MM-DD; default 03-21")
+        ->type_name("DAY");
+    app.add_option_function<std::string>(
+           "--sun-altitude",
+           [&arguments](const std::string& w) {
+               arguments.sun_day.least_altitude = read_number("--sun-altitude", w);
+               if (!(arguments.sun_day.least_altitude >= 0 && arguments.sun_day.least_altitude < 90))
+                   throw CLI::ValidationError("--sun-altitude", fmt::format("must be from 0 to 90, not {}", w));
+           },
+           "Lower suns do not count for these hours, degrees; default 0")
+        ->type_name("DEGREES");
 }
 
 }  // namespace exitance

@@ -2,7 +2,6 @@
 #include <sstream>
 
 #include "exitance/cli/option_kinds.hpp"
-#include "exitance/cli/standards_arguments.hpp"
 
 namespace exitance {
 namespace {
@@ -317,6 +316,7 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
            },
            "Reflectance of the ground beneath the scene; default 0.2")
         ->type_name("R");
+    declare_standards(app, arguments);
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }

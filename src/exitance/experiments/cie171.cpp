@@ -9,6 +9,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/experiments/cie171/cases.hpp"
+#include "exitance/experiments/cie171/page.hpp"
 #include "exitance/geometry/quadrature.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
@@ -164,6 +165,8 @@ Result<void> write_cie171(const std::string& folder, const std::vector<Cie171Row
         summary += fmt::format("{},{},{:.3e},{:.3e},{}\n", s.study, s.points, s.mean, s.largest, quoted(s.worst));
     const std::filesystem::path in(folder);
     if (const Result<void> written = write_file((in / "results.csv").string(), table); !written) return written;
+    if (const Result<void> written = write_file((in / "validation.md").string(), cie171_page(rows)); !written)
+        return written;
     return write_file((in / "summary.csv").string(), summary);
 }
 

@@ -38,8 +38,8 @@ struct Cie171Options {
 Result<std::vector<Cie171Row>> run_cie171(const Cie171Options& options, Progress& progress, const StopRequest& stop);
 
 /// Writes FOLDER/results.csv, a row a value (study,scene,parameter,point,x,y,z,nx,ny,nz,exact,computed,relative_error),
-/// and FOLDER/summary.csv, a row a case: points, mean and largest relative error. The folder is made where it is
-/// missing.
+/// FOLDER/summary.csv, a row a case: points, mean and largest relative error, and FOLDER/validation.md, a page for
+/// people (cie171/page.hpp). The folder is made where it is missing.
 Result<void> write_cie171(const std::string& folder, const std::vector<Cie171Row>& rows);
 
 /// A row of summary.csv.

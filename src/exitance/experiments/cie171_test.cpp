@@ -7,6 +7,7 @@
 #include <map>
 
 #include "exitance/experiments/cie171/exact_sky.hpp"
+#include "exitance/experiments/cie171/page.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "support/temporary_folder.hpp"
@@ -97,6 +98,18 @@ TEST(Cie171, WritesARowAValueAndACaseALine) {
     EXPECT_EQ(summary[0].points, 11u);
     Progress progress;
     EXPECT_FALSE(run_cie171({.only = "5.5"}, progress, StopRequest()));
+}
+
+TEST(Cie171, ThePageTellsTheWorstValueOfEverySceneBesideWhatIsPublished) {
+    std::vector<Cie171Row> rows{{"5.3", "room", "", "A", {}, {}, 100, 101, 0.01},
+                                {"5.3", "room", "", "B", {}, {}, 2000, 2100, 0.05},
+                                {"5.8", "cube", "rho=0.5", "C", {}, {}, 310.98, 310.98, 0}};
+    const std::string page = cie171_page(rows);
+    EXPECT_NE(page.find("| 5.3 | area source in a ceiling | 2 | 3% | 5% | about 0 (Iray); 4.9% (Cycles) |"),
+              std::string::npos)
+        << page;
+    EXPECT_NE(page.find("| 5.3 | room | B | 2000.0 | 2100.0 | 5% |"), std::string::npos);
+    EXPECT_NE(page.find("| 5.8 | cube | rho=0.5, C | 310.98 | 310.98 | 0 |"), std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 
@@ -36,14 +37,17 @@ Result<void> write_hours(const std::string& path, const DaylightResults& results
 }
 
 Result<void> write_metrics(const std::string& path, const DaylightResults& results) {
-    std::string text = "x,y,z,nx,ny,nz,DF,DA_300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,sun_hours\n";
+    std::string text =
+        "x,y,z,nx,ny,nz,DF,DA_300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,sun_hours,"
+        "E_half_of_daylight,sunlight_hours\n";
     for (std::size_t i = 0; i < results.sensors.size(); ++i) {
         const auto& [x, n] = results.sensors[i];
         const DaylightMetrics& m = results.metrics[i];
         text += fmt::format(
-            "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", x.x, x.y,
-            x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2], m.useful[3],
-            m.sunny_hours);
+            "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g}"
+            "\n",
+            x.x, x.y, x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2],
+            m.useful[3], m.sunny_hours, results.provision.reached[i], results.sunlight[i]);
     }
     return write_file(path, text);
 }
@@ -59,16 +63,61 @@ Result<void> write_matrix(const std::string& path, const DaylightMatrix& matrix)
     return write_file(path, text + "\n");
 }
 
+Result<void> write_views(const std::string& path, const DaylightResults& results) {
+    std::string text = "x,y,z,sight_angle,distance,sky,landscape,ground,level\n";
+    for (std::size_t i = 0; i < results.eyes.size(); ++i) {
+        const Point& x = results.eyes[i];
+        const ViewOut& v = results.views[i];
+        text += fmt::format("{:.10g},{:.10g},{:.10g},{:.5g},{:.5g},{:d},{:d},{:d},{}\n", x.x, x.y, x.z, v.sight_angle,
+                            v.distance, v.sky, v.landscape, v.ground, v.level());
+    }
+    return write_file(path, text);
+}
+
+/// The level that three quarters of the eyes reach.
+int view_level(const std::vector<ViewOut>& views) {
+    constexpr double wanted = 0.75;
+    for (int level = 3; level > 0; --level) {
+        const auto reached =
+            std::count_if(views.begin(), views.end(), [&](const ViewOut& v) { return v.level() >= level; });
+        if (static_cast<double>(reached) >= wanted * static_cast<double>(views.size())) return level;
+    }
+    return 0;
+}
+
+void add_provision(const DaylightResults& results, std::vector<std::pair<std::string, double>>& out) {
+    const DaylightProvision& p = results.provision;
+    out.emplace_back("EN17037_daylight_hours", static_cast<double>(p.hours));
+    const auto add = [&](const std::string& way, const DaylightProvision::Shares& shares) {
+        for (std::size_t k = 0; k < 3; ++k)
+            out.emplace_back(fmt::format("EN17037{}_target_{:g}", way, DaylightProvision::targets[k]),
+                             shares.at_target[k]);
+        for (std::size_t k = 0; k < 3; ++k)
+            out.emplace_back(fmt::format("EN17037{}_minimum_{:g}", way, DaylightProvision::minimums[k]),
+                             shares.at_minimum[k]);
+        out.emplace_back(fmt::format("EN17037{}_level", way), shares.level());
+    };
+    add("", p.by_illuminance);
+    out.emplace_back("EN17037_median_diffuse", p.median_diffuse);
+    add("_factor", p.by_factor);
+    if (!results.sunlight.empty())
+        out.emplace_back("EN17037_sunlight_hours_most",
+                         *std::max_element(results.sunlight.begin(), results.sunlight.end()));
+    if (!results.views.empty()) out.emplace_back("EN17037_view_level", view_level(results.views));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, double>> summary_values(const DaylightResults& results) {
     const DaylightSummary& s = results.summary;
-    return {{"sensors", static_cast<double>(results.sensors.size())},
-            {"hours", static_cast<double>(results.hours.size())},
-            {"occupied_hours", static_cast<double>(s.occupied_hours)},
-            {"mean_daylight_factor", s.mean_daylight_factor},
-            {"sDA_300_50", s.spatial_autonomy},
-            {"ASE_1000_250", s.sunlight_exposure}};
+    std::vector<std::pair<std::string, double>> out{{"sensors", static_cast<double>(results.sensors.size())},
+                                                    {"hours", static_cast<double>(results.hours.size())},
+                                                    {"occupied_hours", static_cast<double>(s.occupied_hours)},
+                                                    {"mean_daylight_factor", s.mean_daylight_factor},
+                                                    {"sDA_300_50", s.spatial_autonomy},
+                                                    {"ASE_1000_250", s.sunlight_exposure}};
+    add_provision(results, out);
+    return out;
 }
 
 Result<void> write_daylight(const std::string& folder, const DaylightResults& results) {
@@ -83,7 +132,7 @@ Result<void> write_daylight(const std::string& folder, const DaylightResults& re
           write_hours(in("sun.csv"), results, results.year.sun), write_metrics(in("metrics.csv"), results),
           write_matrix(in("matrix.csv"), results.matrix), write_file(in("summary.csv"), summary)})
         if (!written) return written.error();
-    return {};
+    return results.views.empty() ? Result<void>() : write_views(in("view.csv"), results);
 }
 
 }  // namespace exitance

@@ -41,8 +41,8 @@ std::string values(const ReportFigures::Grid& grid, Vec2 cell) {
         for (int x = 0; x < light.columns; ++x) {
             const auto i = static_cast<std::size_t>(y * light.columns + x);
             if (!light.is_open[i]) continue;
-            svg += fmt::format("<text class=\"point\" x=\"{:.1f}\" y=\"{:.1f}\">{:.3g}</text>", (x + 0.5) * cell.x,
-                               (light.rows - y - 0.5) * cell.y + 3, grid.values[i]);
+            svg += fmt::format("<text class=\"point\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", (x + 0.5) * cell.x,
+                               (light.rows - y - 0.5) * cell.y + 3, short_figure(grid.values[i]));
         }
     return svg;
 }

@@ -70,8 +70,7 @@ void draw_points(const ReportFigures::Grid& grid, const Plan& plan, Drawing& out
     if (plan.to_mm * std::min(light.step_u, light.step_v) < least_cell) return;
     for (std::size_t i = 0; i < light.points.size(); ++i)
         if (light.is_open[i])
-            out.texts.push_back(
-                {plan.at(light.points[i]), fmt::format("{:.3g}", grid.values[i]), 1.6, pale, true, false});
+            out.texts.push_back({plan.at(light.points[i]), short_figure(grid.values[i]), 1.6, pale, true, false});
 }
 
 void draw_lines(const ReportFigures::Grid& grid, const LightUnit& unit, const Plan& plan, Drawing& out) {

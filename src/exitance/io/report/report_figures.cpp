@@ -109,6 +109,11 @@ std::string figure(double value) {
     return std::isfinite(value) ? fmt::format("{:.5g}", value) : "null";
 }
 
+std::string short_figure(double value) {
+    return std::abs(value) >= 100 && std::abs(value) < 1e6 ? fmt::format("{:.0f}", value)
+                                                           : fmt::format("{:.3g}", value);
+}
+
 Result<std::string> data_address(const Image& image) {
     const Result<std::string> png = encode_png(image, {});
     if (!png) return png.error();

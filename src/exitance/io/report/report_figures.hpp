@@ -41,6 +41,9 @@ const char* symbol(const LightUnit& unit);
 /// A number as pages and files show it: five significant digits.
 std::string figure(double value);
 
+/// The same for narrow places: three significant digits, without powers of ten up to a million.
+std::string short_figure(double value);
+
 /// The numbers as JSON.
 std::string report_json(const ReportContent& content, const ReportFigures& figures);
 

@@ -5,7 +5,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/direct/beams.hpp"
-#include "exitance/scene/locator.hpp"
+#include "exitance/methods/daylight/sensor_places.hpp"
 
 namespace exitance {
 namespace {
@@ -78,15 +78,7 @@ DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> senso
     out.sensors = n;
     out.illuminance.assign(hours.size() * n, 0), out.sun.assign(hours.size() * n, 0);
     const Occluders occluders(scene);
-    const Locator locator(scene);
-    std::vector<Receiver> at;
-    for (const ProbePoint& sensor : sensors) {
-        const SurfaceId s = locator.find(sensor.x, sensor.n);
-        const RegionId own = s.is_none() ? RegionId() : scene.surfaces()[s].region;
-        Point x = sensor.x;
-        if (!own.is_none()) x -= (scene.regions()[own].plane.signed_distance(x) - occluders.lift(own)) * sensor.n;
-        at.push_back({x, sensor.n, own});
-    }
+    const std::vector<Receiver> at = sensor_places(scene, occluders, sensors);
     std::vector<float> all(n * m);  // direct and reflected
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = matrix.direct[k] + matrix.reflected[k];
     const Spectrum weights = luminous_weights();

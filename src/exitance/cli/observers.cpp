@@ -1,0 +1,67 @@
+#include "exitance/cli/observers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "exitance/io/files/text_table.hpp"
+#include "exitance/reconstruct/working_plane.hpp"
+
+namespace exitance {
+namespace {
+
+/// In the middle of each wall of the largest floor, looking across it, as CIE 117 has them.
+Result<std::vector<Observer>> standard_observers(const Scene& scene) {
+    constexpr double seated = 1.2, off_wall = 0.1;  // metres
+    PlaneRequest request;
+    request.height = seated;
+    const Result<std::vector<GridLight>> planes = make_working_planes(scene, request);
+    if (!planes) return planes.error();
+    const MeasuringPlane& plane = planes->front().plane;
+    const Point middle = plane.origin + 0.5 * (plane.u + plane.v);
+    std::vector<Observer> out;
+    const std::array<std::pair<const char*, Vec3>, 4> walls{{{"along u", -0.5 * plane.u},
+                                                             {"against u", 0.5 * plane.u},
+                                                             {"along v", -0.5 * plane.v},
+                                                             {"against v", 0.5 * plane.v}}};
+    for (const auto& [name, way] : walls)
+        out.push_back({name, middle + way - off_wall * normalized(way), Vec3() - normalized(way)});
+    return out;
+}
+
+Result<std::vector<Observer>> load_observers(const std::string& path) {
+    Result<NumberTable> table = NumberTable::open(path, {"x", "y", "z", "dx", "dy", "dz"});
+    if (!table) return table.error();
+    std::vector<Observer> out;
+    for (std::array<double, 6> row;;) {
+        const Result<bool> more = table->next(row);
+        if (!more) return more.error();
+        if (!*more) break;
+        const Vec3 view{row[3], row[4], row[5]};
+        if (!(norm(view) > 0)) return table->lines().error("looks in no direction", "dx, dy, dz must not all be 0");
+        out.push_back({fmt::format("{}", out.size() + 1), {row[0], row[1], row[2]}, normalized(view)});
+    }
+    if (out.empty()) return Error{ErrorCode::bad_input, "holds no observers", path, "x,y,z,dx,dy,dz and a row each"};
+    return out;
+}
+
+}  // namespace
+
+Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene) {
+    if (words == "auto") return standard_observers(scene);
+    if (words.find_first_not_of("0123456789.,+-eE ") != std::string::npos) return load_observers(words);
+    std::string blank = words;
+    std::replace(blank.begin(), blank.end(), ',', ' ');
+    std::istringstream in(blank);
+    std::vector<double> n;
+    for (double value; in >> value;) n.push_back(value);
+    const Vec3 view = n.size() == 6 ? Vec3{n[3], n[4], n[5]} : Vec3();
+    if (!in.eof() || !(norm(view) > 0))
+        return Error{ErrorCode::usage, fmt::format("'{}' is not 'x,y,z dx,dy,dz'", words), "--observers",
+                     "an eye in metres and the direction in which it looks"};
+    return std::vector<Observer>{{words, {n[0], n[1], n[2]}, normalized(view)}};
+}
+
+}  // namespace exitance

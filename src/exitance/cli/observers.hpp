@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exitance/core/result.hpp"
+#include "exitance/reconstruct/glare.hpp"
+
+namespace exitance {
+
+/// Who observers named by words are: "auto", "x,y,z dx,dy,dz", or a table (CSV x,y,z,dx,dy,dz).
+Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene);
+
+}  // namespace exitance
