@@ -127,6 +127,10 @@ std::string statistics_json(const Solution& solution) {
              {"links_found_by", is_linked ? oracle : Json("none")},
              {"initial_links", nullptr},
              {"coefficient_memory_bytes", solution.statistics.element_memory_bytes}};
+    if (method == name_in(method_names, Method::discontinuity))
+        own["local_pass"] = options.is_object() && options.contains("local_pass") && options["local_pass"].is_string()
+                                ? options["local_pass"]
+                                : Json(name_in(local_pass_names, LocalPassRule::e));
     for (const auto& [name, value] : own.items())
         if (!solution.statistics.figures.contains(name))
             json[name] = facts && facts->is_object() && facts->contains(name) ? (*facts)[name] : value;
@@ -173,6 +177,7 @@ std::string options_json(const SolveOptions& o) {
         {"oracle", name_in(oracle_names, o.oracle)},
         {"gcs", name_or_null(cells_names, o.gcs)},
         {"max_units", value_or_null(o.max_units)},
+        {"local_pass", name_or_null(local_pass_names, o.local_pass)},
         {"hemicube_cells", value_or_null(o.hemicube_cells)},
         {"keep_links", o.keep_links},
         {"seed", o.seed},

@@ -7,6 +7,7 @@
 
 #include "exitance/cli/classical_solve.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/local_pass_check.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/summary.hpp"
@@ -200,6 +201,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
         arguments.classical.gather.reset();
     }
     if (const Result<void> engine = check_task_engine(arguments); !engine) return terminal.fail(engine.error());
+    if (const Result<void> pass = check_local_pass(arguments); !pass) return terminal.fail(pass.error());
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
     if (const Result<void> sky = read_sky(arguments); !sky) return terminal.fail(sky.error());
     if (const Result<void> obeyed = check_classical(arguments); !obeyed) return terminal.fail(obeyed.error());

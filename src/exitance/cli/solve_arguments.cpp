@@ -63,6 +63,10 @@ void declare_method(CLI::App& app, SolveArguments& arguments) {
                "Growing cells as published, all light through the networks, or improved (default)")
         ->group("Method");
     add_count(app, "--max-units", o.max_units, 8, "Of each network of growing cells")->group("Method");
+    add_choice(app, "--local-pass", local_pass_names, o.local_pass,
+               "Of discontinuity meshing, at nodes: a leaves' light, b form factors anew, c visibility too, d that of "
+               "primary sources alone, or e (default) those exactly")
+        ->group("Method");
     add_count(app, "--hemicube-cells", o.hemicube_cells, 2, "Along an edge of a hemicube's top, even")->group("Method");
     add_count(app, "--seed", o.seed, 0, "Of the random numbers; default 1")->group("Method");
 }
@@ -116,6 +120,8 @@ void declare(CLI::App& app, SolveArguments& arguments) {
                                                    name_in(basis_names, *o.basis)));
         if ((o.gcs || o.max_units) && o.method != Method::growing_cells)
             throw CLI::ValidationError(o.gcs ? "--gcs" : "--max-units", "is obeyed by --method growing-cells alone");
+        if (o.local_pass && o.method != Method::discontinuity)
+            throw CLI::ValidationError("--local-pass", "is obeyed by --method discontinuity alone");
     });
     app.add_option_function<std::string>(
            "--bounces", [&o](const std::string& w) { o.bounces = read_bounces(w); },

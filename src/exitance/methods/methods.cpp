@@ -17,8 +17,8 @@ std::span<const MethodEntry> method_table() {
         {Method::hierarchical, solve_hierarchical, "haar"},
         {Method::wavelet, solve_wavelet, "multiwavelet2"},
         {Method::monte_carlo, solve_monte_carlo, "constant"},
-        // Its own is the direct light; what is reflected comes from the method that suits most scenes.
-        {Method::discontinuity, solve_matrix, "quadratic"},
+        // Its own is the direct light; what is reflected is smooth: a hierarchy, on which direct light is projected.
+        {Method::discontinuity, solve_hierarchical, "quadratic"},
         {Method::growing_cells, solve_growing_cells, "gaussian"},
     };
     return table;

@@ -14,6 +14,7 @@
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/light/refined_light.hpp"
 #include "exitance/methods/light/smoothing.hpp"
+#include "exitance/methods/lines/solve_by_lines.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/plan/choice.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
@@ -560,6 +561,8 @@ Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Pr
                              const StopRequest& stop, CheckpointStore* checkpoints) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
+    if (options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e)
+        return solve_by_lines(scene, options, progress, stop);
     if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);
     const Stopwatch watch;
     PhaseTimes phases(progress);

@@ -42,6 +42,8 @@ enum class VisibilityKind { automatic, fractional, quadrature, exact };
 enum class FormFactorKind { analytic, ray_cast, hemicube };
 /// Growing cells as published, all light through the networks, or with direct light apart and analytic kernels.
 enum class CellsKind { classic, improved };
+/// Of discontinuity meshing: how light at a place is found from the global pass. See methods/lines/local_passes.hpp.
+enum class LocalPassRule { a, b, c, d, e };
 
 /// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
 inline constexpr std::array<std::pair<Method, std::string_view>, 9> method_names{{
@@ -95,6 +97,14 @@ inline constexpr std::array<std::pair<FormFactorKind, std::string_view>, 3> form
 inline constexpr std::array<std::pair<CellsKind, std::string_view>, 2> cells_names{{
     {CellsKind::classic, "classic"},
     {CellsKind::improved, "improved"},
+}};
+
+inline constexpr std::array<std::pair<LocalPassRule, std::string_view>, 5> local_pass_names{{
+    {LocalPassRule::a, "a"},
+    {LocalPassRule::b, "b"},
+    {LocalPassRule::c, "c"},
+    {LocalPassRule::d, "d"},
+    {LocalPassRule::e, "e"},
 }};
 
 /// Constants to quadratic functions on leaves that are linked pair by pair, without a hierarchy.
@@ -158,6 +168,7 @@ struct SolveOptions {
     std::optional<std::size_t> hemicube_cells = {};  ///< Along an edge of a hemicube's top.
     std::optional<CellsKind> gcs = {};               ///< Of growing cells; empty: improved.
     std::optional<std::size_t> max_units = {};       ///< Of each network of growing cells.
+    std::optional<LocalPassRule> local_pass = {};    ///< Of discontinuity meshing; empty: e.
     /// Deliver what the method's elements hold in place of gathering it: smoothed (true) or as it is. Empty: whatever
     /// is best.
     std::optional<bool> smoothing = {};

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "exitance/cli/arguments.hpp"
+#include "exitance/core/result.hpp"
+
+namespace exitance {
+
+/// An option that `--local-pass a|b|c|d` does not obey is an error.
+Result<void> check_local_pass(const SolveArguments& arguments);
+
+}  // namespace exitance
