@@ -127,10 +127,11 @@ std::string statistics_json(const Solution& solution) {
              {"links_found_by", is_linked ? oracle : Json("none")},
              {"initial_links", nullptr},
              {"coefficient_memory_bytes", solution.statistics.element_memory_bytes}};
-    if (method == name_in(method_names, Method::discontinuity))
-        own["local_pass"] = options.is_object() && options.contains("local_pass") && options["local_pass"].is_string()
-                                ? options["local_pass"]
-                                : Json(name_in(local_pass_names, LocalPassRule::e));
+    if (method == name_in(method_names, Method::discontinuity)) {
+        const bool given = options.is_object() && options.contains("local_pass") && options["local_pass"].is_string();
+        own["local_pass"] = given ? options["local_pass"] : Json(name_in(local_pass_names, LocalPassRule::e));
+        own["links_found_by"] = solution.direct_in_elements ? Json(name_in(oracle_names, LinkOracle::power)) : oracle;
+    }
     for (const auto& [name, value] : own.items())
         if (!solution.statistics.figures.contains(name))
             json[name] = facts && facts->is_object() && facts->contains(name) ? (*facts)[name] : value;

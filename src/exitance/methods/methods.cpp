@@ -9,6 +9,16 @@ std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbe
     return out;
 }
 
+namespace {
+
+/// What discontinuity meshing reads of reflected light, which is smooth: direct light is projected on a hierarchy, and
+/// links carry it. Reflections are counted by `matrix` alone.
+GlobalLight solve_beside_discontinuities(const MethodInput& input) {
+    return input.options.bounces > 0 ? solve_matrix(input) : solve_hierarchical(input);
+}
+
+}  // namespace
+
 std::span<const MethodEntry> method_table() {
     static constexpr MethodEntry table[] = {
         {Method::matrix, solve_matrix, "constant"},
@@ -17,8 +27,7 @@ std::span<const MethodEntry> method_table() {
         {Method::hierarchical, solve_hierarchical, "haar"},
         {Method::wavelet, solve_wavelet, "multiwavelet2"},
         {Method::monte_carlo, solve_monte_carlo, "constant"},
-        // Its own is the direct light; what is reflected is smooth: a hierarchy, on which direct light is projected.
-        {Method::discontinuity, solve_hierarchical, "quadratic"},
+        {Method::discontinuity, solve_beside_discontinuities, "quadratic"},
         {Method::growing_cells, solve_growing_cells, "gaussian"},
     };
     return table;

@@ -20,7 +20,8 @@ void record_method(const Stage& stage, const GlobalLight& light, bool has_links,
     statistics.element_memory_bytes = light.element_memory_bytes;
     statistics.elements_by_level = light.elements_by_level;
     // Links that rays have found lead between constants, whatever basis the method has else.
-    if (has_links && light.indirect_corners.empty()) statistics.basis = name_in(basis_names, BasisKind::haar);
+    const bool sharp = statistics.method == name_in(method_names, Method::discontinuity);
+    if (has_links && !sharp && light.indirect_corners.empty()) statistics.basis = name_in(basis_names, BasisKind::haar);
     const double scale = light.mean_reflected(stage.area);
     statistics.standard_error = scale > 0 ? rms_standard_error(stage, light) / scale : 0;
 }

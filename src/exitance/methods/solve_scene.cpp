@@ -61,7 +61,8 @@ class Solver {
         statistics().threads = threads();
         statistics().schedule = name_in(schedule_names, schedule());
         statistics().surfaces = scene.surfaces().size();
-        has_links_ = method.id == Method::hierarchical || method.id == Method::wavelet;
+        const bool sharp = method.id == Method::discontinuity && options.bounces < 0;
+        has_links_ = method.id == Method::hierarchical || method.id == Method::wavelet || sharp;
         if (!options.importance.empty() && !has_links_)
             warn(fmt::format("--importance steers links, of which the method {} has none", statistics().method));
         if (options.oracle != LinkOracle::transport && !has_links_)

@@ -183,26 +183,13 @@ bool LineHierarchy::cut(std::uint32_t node) {
     return true;
 }
 
-/// Links that are no longer good enough are cut; pairs that were too dark are looked at again.
-bool LineHierarchy::refine(const StopRequest& stop) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pending = std::exchange(dark_, {});
-    std::vector<Link> kept;
-    for (const Link& l : links_) {
-        constexpr double of_partial = 1.0 / 3;
-        const double carried = max(sent(l.source)) * l.factor * tree_.nodes()[l.receiver].area;
-        const double allowed = (l.visible < 1 ? of_partial : 1) * threshold_;
-        const bool open = can_cut(l.receiver) || can_cut(l.source);
-        if (carried > allowed && open && l.visible > 0)
-            pending.emplace_back(l.receiver, l.source);
-        else
-            kept.push_back(l);
-    }
-    links_ = std::move(kept);
+/// Links these pairs, or parts of them. False where a stop cut it short.
+bool LineHierarchy::link(Pairs pending, const StopRequest& stop) {
     while (!pending.empty() && !stop.requested()) {
         std::vector<Judged> judged(pending.size());
         parallel_for(pending.size(), 32,
                      [&](std::size_t i) { judged[i] = judge(pending[i].first, pending[i].second); });
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> next;
+        Pairs next;
         for (const Judged& j : judged) {
             const auto [p, q] = std::pair(j.link.receiver, j.link.source);
             if (j.cut < 3) ++form_factors_, rays_ += options_.rays;
@@ -219,8 +206,34 @@ bool LineHierarchy::refine(const StopRequest& stop) {
         }
         pending = std::move(next);
     }
-    sort_links();
     return pending.empty();
+}
+
+/// Links that are no longer good enough are cut; pairs that were too dark are looked at again.
+bool LineHierarchy::refine(const StopRequest& stop) {
+    Pairs pending = std::exchange(dark_, {});
+    std::vector<Link> kept;
+    for (const Link& l : links_) {
+        constexpr double of_partial = 1.0 / 3;
+        const double carried = max(sent(l.source)) * l.factor * tree_.nodes()[l.receiver].area;
+        const double allowed = (l.visible < 1 ? of_partial : 1) * threshold_;
+        const bool open = can_cut(l.receiver) || can_cut(l.source);
+        if (carried > allowed && open && l.visible > 0)
+            pending.emplace_back(l.receiver, l.source);
+        else
+            kept.push_back(l);
+    }
+    links_ = std::move(kept);
+    constexpr std::size_t slice = 500'000;  // pairs at a time, for the sake of memory
+    bool whole = true;
+    for (std::size_t first = 0; first < pending.size() && whole; first += slice) {
+        const std::size_t count = std::min(slice, pending.size() - first);
+        whole = link({pending.begin() + static_cast<std::ptrdiff_t>(first),
+                      pending.begin() + static_cast<std::ptrdiff_t>(first + count)},
+                     stop);
+    }
+    sort_links();
+    return whole;
 }
 
 void LineHierarchy::sort_links() {

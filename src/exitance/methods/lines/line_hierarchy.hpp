@@ -36,6 +36,9 @@ class LineHierarchy {
         float visible = 0;  ///< Share of the rays that pass.
     };
 
+    /// All pairs of pieces are looked at: with more of them than this, memory and time are not to be had.
+    static constexpr std::size_t most_pieces = 5'000;
+
     /// The stage must outlive it.
     LineHierarchy(const Stage& stage, const LineHierarchyOptions& options);
 
@@ -84,6 +87,8 @@ class LineHierarchy {
     bool cut(std::uint32_t node);
     void add_corners();
     void cut_by_direct_light(const StopRequest& stop);
+    using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+    bool link(Pairs pending, const StopRequest& stop);
     bool refine(const StopRequest& stop);
     void sort_links();
     void relax(const StopRequest& stop);
@@ -101,7 +106,7 @@ class LineHierarchy {
     std::vector<double> brightest_;  ///< Of the leaves below.
     std::vector<Link> links_;
     std::vector<std::size_t> first_link_;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> dark_;  ///< Pairs that are too dark as yet.
+    Pairs dark_;  ///< Pairs that are too dark as yet.
     double threshold_ = 0, least_area_ = 0, darkest_ = 0;
     std::size_t rays_ = 0, form_factors_ = 0, iterations_ = 0;
     double change_ = 0;

@@ -8,6 +8,7 @@
 #include "exitance/accuracy/accuracy.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/lines/local_passes.hpp"
 #include "exitance/reconstruct/discontinuity/discontinuity_mesh.hpp"
 #include "exitance/reconstruct/energy.hpp"
@@ -47,6 +48,20 @@ ElementFunction reflected_by(const ElementFunction& E, const Scene& scene) {
     return out;
 }
 
+/// Regions that have no triangle that is wide enough are dark.
+ElementFunction on_all_regions(ElementFunction f, const Stage& stage) {
+    Field<RegionId, std::uint8_t> has_light(stage.scene.regions().size(), 0);
+    for (const ElementId root : f.tree.roots()) has_light[f.tree.region(root)] = 1;
+    for (const Piece& piece : stage.pieces) {
+        if (has_light[piece.region]) continue;
+        const ElementId root = f.tree.add_root(piece.region, piece.patch);
+        f.first_value.resize(f.tree.size());
+        f.first_value[root] = static_cast<std::uint32_t>(f.values.size());
+        for (int k = 0; k < piece.patch.corner_count(); ++k) f.add_value({});
+    }
+    return f;
+}
+
 void certify(const Stage& stage, const SolveOptions& options, Solution& solution) {
     SolveStatistics& s = solution.statistics;
     const GlobalLight coarse = coarse_light(stage, solution.indirect, options);
@@ -54,6 +69,7 @@ void certify(const Stage& stage, const SolveOptions& options, Solution& solution
     const QuickFunction b(reflected, stage.scene.regions().size());
     CertificateOptions look{.error = options.error_target(), .seed = options.seed};
     look.direct_in_elements = true;
+    look.light_in = light_by_room(stage, coarse);
     Certifier certifier(stage, coarse, solution.indirect, b, look);
     const Certificate found = certifier.look();
     s.relative_error_estimate = s.relative_error_estimate_interpolant = found.estimate;
@@ -97,8 +113,8 @@ bool pass(const Stage& stage, const SolveOptions& options, double error, Solutio
     const StopRequest go_on;  // of what was found in time the light is put together
     if (!hierarchy.links().empty() || !stop.requested())
         mesh = run_local_pass(hierarchy, whole ? *options.local_pass : LocalPassRule::a, work, go_on);
-    if (mesh.empty()) return false;
-    solution.interpolant = solution.indirect = linear_elements(mesh, stage.scene);
+    if (mesh.empty()) return whole;
+    solution.interpolant = solution.indirect = on_all_regions(linear_elements(mesh, stage.scene), stage);
     record(hierarchy, work, mesh, solution.statistics);
     solution.discontinuity = std::move(mesh);
     solution.statistics.seconds["reconstruct"] += watch.restart();
@@ -110,18 +126,6 @@ EnergyBalance balance(const Solution& solution, const Stage& stage) {
     for (const Piece& piece : stage.pieces) none.tree.add_root(piece.region, piece.patch);
     none.fit.resize(none.tree.size());
     return energy_balance(solution, none, stage);
-}
-
-/// Every piece one element, dark.
-ElementFunction nothing(const Stage& stage) {
-    ElementFunction out;
-    for (const Piece& piece : stage.pieces) out.tree.add_root(piece.region, piece.patch);
-    out.first_value.resize(out.tree.size());
-    for (const ElementId e : out.tree.roots()) {
-        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
-        for (int k = 0; k < out.tree.patch(e).corner_count(); ++k) out.add_value({});
-    }
-    return out;
 }
 
 }  // namespace
@@ -145,13 +149,18 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
     const Stopwatch watch;
     Solution solution{.scene = scene};
     Stage stage(solution.scene);
+    if (stage.pieces.size() > LineHierarchy::most_pieces)
+        return Error{ErrorCode::bad_input,
+                     fmt::format("is {} convex polygons, of which --local-pass a to d looks at all pairs: at most {}",
+                                 stage.pieces.size(), LineHierarchy::most_pieces),
+                     scene.file(), "--local-pass e has no such limit"};
     stage.rooms = find_light_rooms(stage, options.seed, stop);
     SolveStatistics& s = solution.statistics;
     s.method = name_in(method_names, Method::discontinuity), s.basis = "quadratic";
     s.threads = threads(), s.schedule = name_in(schedule_names, schedule());
     s.surfaces = scene.surfaces().size();
     solution.direct_in_elements = true;
-    solution.indirect = solution.interpolant = nothing(stage);
+    solution.indirect = solution.interpolant = dark(stage);
     constexpr int most_attempts = 4;
     // What is exported is the function that is solved for: the stricter demand is that of both.
     std::optional<double> demand = options.error_demand();
