@@ -90,12 +90,11 @@ std::string script(const StudyPlot& plot, const std::string& title, const std::v
     constexpr std::array colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
     std::string draw = "plot ";
     for (std::size_t i = 0; i < curves.size(); ++i) {
-        const std::string marks = curves[i].points.size() > most_marked
-                                      ? "lines"
-                                      : fmt::format("linespoints ps 0.7 pt {}", 4 + i % 11);
-        draw += fmt::format("{}$curve{} using 1:2 with {} lw 1.6 dt {} lc rgb '{}' title {}",
-                            i > 0 ? ", \\\n     " : "", i, marks, 1 + i / colours.size() % 4,
-                            colours[i % colours.size()], quoted(curves[i].name));
+        const std::string marks =
+            curves[i].points.size() > most_marked ? "lines" : fmt::format("linespoints ps 0.7 pt {}", 4 + i % 11);
+        draw +=
+            fmt::format("{}$curve{} using 1:2 with {} lw 1.6 dt {} lc rgb '{}' title {}", i > 0 ? ", \\\n     " : "", i,
+                        marks, 1 + i / colours.size() % 4, colours[i % colours.size()], quoted(curves[i].name));
     }
     text += "set terminal svg size 820,480 font 'sans-serif,13' background '#ffffff'\n";
     text += fmt::format("set output {}\n{}\n", quoted(stem + ".svg"), draw);

@@ -8,6 +8,7 @@
 #include "exitance/experiments/cie171.hpp"
 #include "exitance/experiments/flatland/kernel_terms.hpp"
 #include "exitance/experiments/kernel_error.hpp"
+#include "exitance/experiments/local_pass/local_pass_study.hpp"
 #include "exitance/experiments/study/study_scene.hpp"
 #include "exitance/experiments/task_schedules.hpp"
 #include "exitance/experiments/thesis/thesis_studies.hpp"
@@ -163,14 +164,48 @@ Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& opti
     return StudyTables{{"results", std::move(*table)}, {"graphs", std::move(*of_graphs)}};
 }
 
+/// Joins tables of several scenes; their first column names the scene.
+Result<void> append_csv(StudyTables& tables, const std::string& name, const std::string& csv) {
+    const Result<Table> table = parse_csv(csv, name);
+    if (!table) return table.error();
+    tables[name].append(*table);
+    return {};
+}
+
+/// Local passes on global ones, and links against the threshold of initial links.
+Result<StudyTables> local_pass_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                      const StopRequest& stop) {
+    LocalPassStudyOptions asked;
+    if (options.quick) asked.points = 200, asked.paths = 256, asked.accuracies.pop_back();
+    constexpr double medium = 0.08;
+    StudyTables tables;
+    std::optional<Error> failure;
+    const auto add = [&](const char* name, const Result<std::string>& csv) {
+        const Result<void> added = csv ? append_csv(tables, name, *csv) : Result<void>(csv.error());
+        if (!added && !failure) failure = added.error();
+    };
+    const Result<void> done =
+        for_scenes(study, options, progress, stop, [&](const std::string& name, double value, const Scene& scene) {
+            const std::string scene_name = fmt::format("{} {:g}", name, value);
+            const auto passes = run_local_pass_study(scene, asked, progress, stop);
+            add("results", passes ? Result<std::string>(local_pass_csv(scene_name, *passes)) : passes.error());
+            const auto links =
+                run_link_threshold_study(scene, {0, 0.01, 0.03, 0.1, 0.3, 1}, medium, asked, progress, stop);
+            add("thresholds", links ? Result<std::string>(link_threshold_csv(scene_name, *links)) : links.error());
+        });
+    if (!done) return done.error();
+    if (failure && !stop.requested()) return *failure;
+    return tables;
+}
+
 }  // namespace
 
 std::span<const StudyTableMaker> study_table_makers() {
     static constexpr StudyTableMaker makers[] = {
-        {"candidates", visibility_tables}, {"cie171", cie171_tables},      {"flatland", flatland_tables},
-        {"kernel", kernel_tables},         {"layers", mesh_tables},        {"premesh", mesh_tables},
-        {"rays", visibility_tables},       {"schedules", schedule_tables}, {"triangulation", mesh_tables},
-        {"volumes", visibility_tables},
+        {"candidates", visibility_tables}, {"cie171", cie171_tables},         {"flatland", flatland_tables},
+        {"kernel", kernel_tables},         {"local-pass", local_pass_tables}, {"layers", mesh_tables},
+        {"premesh", mesh_tables},          {"rays", visibility_tables},       {"schedules", schedule_tables},
+        {"triangulation", mesh_tables},    {"volumes", visibility_tables},
     };
     return makers;
 }

@@ -9,7 +9,6 @@
 namespace exitance {
 namespace {
 
-
 TEST(Table, ComesBackAsItWasWritten) {
     const TemporaryFolder folder;
     Table table{{"row", "error"}, {}};
