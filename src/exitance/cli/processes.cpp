@@ -68,6 +68,9 @@ void record_processes(SolveStatistics& statistics) {
     auto& figures = statistics.figures;
     figures["peak_memory_bytes_of_all"] = sum_of_all(own);
     figures["processes"] = static_cast<double>(processes());
+    const ExchangeTime time = exchange_time();
+    figures["waiting_seconds_of_all"] = sum_of_all(time.waiting);
+    figures["sending_seconds_of_all"] = sum_of_all(time.sending);
     const std::map<std::string, Traffic> sent = traffic();
     double messages = 0, bytes = 0;
     for (const auto& [what, t] : sent) {
