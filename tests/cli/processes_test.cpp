@@ -146,7 +146,9 @@ TEST_F(ProgramOfProcesses, GoOnFromACheckpointInAnotherNumber) {
         while (!std::filesystem::exists(kept)) ASSERT_TRUE(run.wait_for("phase"));
         ASSERT_TRUE(run.wait_for("\"gather\""));
         ASSERT_EQ(kill(last_child(run.process()), signal), 0);
-        EXPECT_NE(run.finish().status, 0);
+        const int status = run.finish().status;
+        EXPECT_NE(status, 0);
+        EXPECT_TRUE(signal == SIGKILL || status == 143) << status << ": all stop, and the first writes what there is";
         ASSERT_TRUE(std::filesystem::exists(kept));
     }
     const Finished resumed = run_on(4, solve("several", {"--error", error, "--resume"}));
