@@ -61,6 +61,11 @@ bool SharedCheckpoints::is_due() const {
     return as_first(file_ && file_->is_due()) && file_;
 }
 
+std::optional<ExitCode> signal_of_any(std::optional<ExitCode> own) {
+    const double any = largest_of_all(own ? static_cast<double>(*own) : 0);
+    return any > 0 ? std::optional(static_cast<ExitCode>(static_cast<int>(any))) : std::nullopt;
+}
+
 void record_processes(SolveStatistics& statistics) {
     const auto own = static_cast<double>(peak_memory_bytes());
     if (processes() == 1) return;
@@ -68,6 +73,9 @@ void record_processes(SolveStatistics& statistics) {
     auto& figures = statistics.figures;
     figures["peak_memory_bytes_of_all"] = sum_of_all(own);
     figures["processes"] = static_cast<double>(processes());
+    const ExchangeTime time = exchange_time();
+    figures["waiting_seconds_of_all"] = sum_of_all(time.waiting);
+    figures["sending_seconds_of_all"] = sum_of_all(time.sending);
     const std::map<std::string, Traffic> sent = traffic();
     double messages = 0, bytes = 0;
     for (const auto& [what, t] : sent) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "exitance/cli/arguments.hpp"
+#include "exitance/cli/exit_code.hpp"
 #include "exitance/core/checkpoint.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
@@ -29,6 +31,9 @@ class SharedCheckpoints final : public CheckpointStore {
     CheckpointStore* file_;
     std::string state_;
 };
+
+/// The exit status for a signal that any of the processes has received.
+std::optional<ExitCode> signal_of_any(std::optional<ExitCode> own);
 
 /// How many processes there were, what they sent, and what memory they took: all of them, and the one with the most.
 void record_processes(SolveStatistics& statistics);

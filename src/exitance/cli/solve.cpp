@@ -251,7 +251,8 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
                                              : solve_scene(*checked.scene, arguments.options, tracing.progress(), stop,
                                                            checkpoints ? &*checkpoints : nullptr);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
-    if (const auto signal = as_first(signals.received()); !solution && signal) return *signal;
+    const std::optional<ExitCode> signal = signal_of_any(signals.received());
+    if (!solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
     SolveStatistics& statistics = solution->statistics;
@@ -262,8 +263,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     statistics.peak_memory_bytes = peak_memory_bytes();
     record_processes(statistics);
     // The processes have agreed on a stop, which the first of them knows the reason of.
-    if (processes() > 1 && statistics.stopped_by == "interrupt" && !asked.interrupted())
-        statistics.stopped_by = "time limit";
+    if (processes() > 1 && statistics.stopped_by == "interrupt" && !signal) statistics.stopped_by = "time limit";
 
     tracing.progress().phase("write");
     Stopwatch writing;
@@ -283,7 +283,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     } else if (!arguments.quiet) {
         terminal.print(summary(statistics));
     }
-    return as_first(code_of(statistics, signals));
+    return signal ? *signal : as_first(code_of(statistics, signals));
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include "exitance/geometry/quadrature.hpp"
 #include "exitance/mesh/conforming.hpp"
 #include "exitance/mesh/planes.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -152,8 +153,13 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
     const SharedNodes nodes = make_conforming(out.tree, plane, contacts);
     const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(out.tree, plane);
     std::vector<std::vector<Spectrum>> value(leaves.size());
-    parallel_for(leaves.size(), 1,
-                 [&](std::size_t p) { value[p] = Projection(f, out.tree, nodes, p, leaves[p]).solve(); });
+    for (std::size_t p = 0; p < value.size(); ++p) value[p].resize(nodes.first_node[p + 1] - nodes.first_node[p]);
+    shared_ranges(
+        leaves.size(), 1,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) value[p] = Projection(f, out.tree, nodes, p, leaves[p]).solve();
+        },
+        [&](std::size_t p) { return std::span(value[p]); }, {"continuous"});
     out.first_value.resize(out.tree.size());
     out.values.reserve(nodes.node_of.size());
     for (ElementId e : out.tree.leaves()) {

@@ -20,6 +20,7 @@ struct Team {
     StopRequest* agreed = nullptr;
     std::uint64_t meetings = 0;
     std::map<std::string, Traffic> traffic;
+    ExchangeTime time;
 };
 Team team;
 
@@ -85,6 +86,10 @@ double seconds_left(const StopRequest& agreed) {
 
 const std::map<std::string, Traffic>& traffic() {
     return team.traffic;
+}
+
+ExchangeTime exchange_time() {
+    return team.time;
 }
 
 std::string as_first(std::string bytes, const char* what) {
@@ -158,7 +163,9 @@ void meet(std::size_t things, const char* what) {
     const bool stops = team.agreed && ((team.asked && team.asked->requested()) || team.agreed->requested());
     const std::uint64_t place = ++team.meetings << 40 ^ things;
     std::array<std::uint64_t, 3> own{place, ~place, stops}, all{};
+    const Stopwatch watch;
     MPI_Allreduce(own.data(), all.data(), 3, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    team.time.waiting += watch.seconds();
     count("agreement", sizeof own);
     if (all[0] != place || all[1] != ~place)
         end_job((std::string("the processes have come to different places, here at: ") + what).c_str());
@@ -166,6 +173,7 @@ void meet(std::size_t things, const char* what) {
 }
 
 void exchange(std::span<char> all, std::span<const std::size_t> first, const char* what) {
+    const Stopwatch watch;
     std::vector<int> sizes, places;
     for (std::size_t p = 0; p < team.size; ++p) {
         sizes.push_back(static_cast<int>(first[p + 1] - first[p]));
@@ -173,6 +181,7 @@ void exchange(std::span<char> all, std::span<const std::size_t> first, const cha
     }
     MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), sizes.data(), places.data(), MPI_BYTE,
                    MPI_COMM_WORLD);
+    team.time.sending += watch.seconds();
     count(what, first[team.own + 1] - first[team.own]);
 }
 

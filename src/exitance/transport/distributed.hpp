@@ -74,6 +74,12 @@ struct Traffic {
 /// By what was sent.
 const std::map<std::string, Traffic>& traffic();
 
+/// Wall time that this process has spent so far until the others came to where it was, and on sending, seconds.
+struct ExchangeTime {
+    double waiting = 0, sending = 0;
+};
+ExchangeTime exchange_time();
+
 /// Are the indices around i, `grain` of them a block, this process's? Blocks are dealt out like cards: neighbours cost
 /// alike, so all processes have about the same work.
 inline bool is_own(std::size_t i, std::size_t grain) {

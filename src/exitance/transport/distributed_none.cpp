@@ -46,6 +46,10 @@ const std::map<std::string, Traffic>& traffic() {
     return none;
 }
 
+ExchangeTime exchange_time() {
+    return {};
+}
+
 void parallel_own_ranges(std::size_t count, std::size_t grain,
                          const std::function<void(std::size_t, std::size_t)>& body, const Work& work) {
     parallel_ranges(count, grain, body, work);
