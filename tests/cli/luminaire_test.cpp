@@ -21,6 +21,8 @@ TEST(ProgramLuminaire, TellsFactsAndDrawsThem) {
     EXPECT_EQ(text.status, 0) << text.err;
     EXPECT_NE(text.out.find("beam angle (50%)"), std::string::npos) << text.out;
     EXPECT_TRUE(read_text(folder / "d.svg").starts_with("<svg"));
+    ASSERT_EQ(run_program({"luminaire", folder / "d.ies", "-o", folder / "ugr.csv"}).status, 0);
+    EXPECT_TRUE(read_text(folder / "ugr.csv").starts_with("ceiling,walls,floor,X,Y,crosswise,endwise\n70,50,20,2,2,"));
     const Finished checked = run_program({"check", folder / "d.obj", "--json"});
     EXPECT_EQ(checked.status, 0) << checked.err;
     const Finished json = run_program({"luminaire", folder / "d.ies", "--json"});

@@ -6,6 +6,7 @@
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/photometry/glare_table.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/photometry/polar_diagram.hpp"
@@ -128,19 +129,22 @@ SceneDescription opening_scene(const Photometry& p) {
 
 }  // namespace
 
-/// exitance luminaire FILE [-o DIAGRAM.svg] [-o OPENING.obj]
+/// exitance luminaire FILE [-o DIAGRAM.svg] [-o OPENING.obj] [-o UGR.csv]
 ExitCode run(const LuminaireArguments& arguments, Terminal& terminal) {
     for (const std::string& output : arguments.outputs)
-        if (ending(output) != ".svg" && ending(output) != ".obj")
-            return terminal.fail({ErrorCode::usage, "is written as .svg (polar diagram) or .obj (opening)", output,
+        if (ending(output) != ".svg" && ending(output) != ".obj" && ending(output) != ".csv")
+            return terminal.fail({ErrorCode::usage,
+                                  "is written as .svg (polar diagram), .obj (opening) or .csv (table of UGR)", output,
                                   "name it something.svg"});
     const Result<Photometry> p = load_photometry(arguments.file);
     if (!p) return terminal.fail(p.error());
     if (!arguments.json) terminal.show(p->findings);
     terminal.print(arguments.json ? facts_json(*p) : facts_text(*p));
     for (const std::string& output : arguments.outputs) {
-        const Result<void> written =
-            ending(output) == ".svg" ? write_file(output, polar_diagram(*p)) : write_obj(opening_scene(*p), output);
+        const std::string end = ending(output);
+        const Result<void> written = end == ".svg"   ? write_file(output, polar_diagram(*p))
+                                     : end == ".csv" ? write_file(output, glare_table_csv(make_glare_table(*p)))
+                                                     : write_obj(opening_scene(*p), output);
         if (!written) return terminal.fail(written.error());
     }
     return ExitCode::done;

@@ -336,8 +336,9 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
 
 void declare(CLI::App& app, LuminaireArguments& arguments) {
     app.add_option("FILE", arguments.file, "Photometric file: IES LM-63 (.ies) or EULUMDAT (.ldt)")->required();
-    app.add_option("-o,--output", arguments.outputs,
-                   "Polar diagram (.svg) or luminous opening (.obj) to write; may be given again")
+    app.add_option(
+           "-o,--output", arguments.outputs,
+           "Polar diagram (.svg), luminous opening (.obj) or standard table of UGR (.csv) to write; may be given again")
         ->type_name("FILE")
         ->expected(1)
         ->take_all();

@@ -73,10 +73,10 @@ void Luminaires::know(const std::string& path, Photometry photometry) {
 std::uint32_t Luminaires::material_of(const Lamp& lamp, const PlacedLuminaire& luminaire, double table_exitance,
                                       double factor) {
     const auto world = [&](const Vec3& v) { return v.x * luminaire.x + v.y * luminaire.y + v.z * luminaire.z; };
-    const Photometry& p = lamp.photometry;
+    const LuminaireBody& body = lamp.body;
     DirectedEmission emission;
     emission.profile = lamp.profile;
-    emission.x = world(p.axis_x), emission.y = world(p.axis_y), emission.z = world(p.axis_z);
+    emission.x = world(body.axis_x), emission.y = world(body.axis_y), emission.z = world(body.axis_z);
     std::array<double, 9> turn;
     std::size_t next = 0;
     for (const Vec3& v : {emission.x, emission.y, emission.z})
@@ -85,7 +85,7 @@ std::uint32_t Luminaires::material_of(const Lamp& lamp, const PlacedLuminaire& l
     const auto [at, is_new] = materials_.try_emplace({lamp.profile.value, table_exitance, factor, turn}, number);
     if (!is_new) return at->second;
     Material material;
-    material.name = "luminaire " + std::filesystem::path(p.file).filename().string();
+    material.name = "luminaire " + std::filesystem::path(lamp.photometry.file).filename().string();
     material.exitance = Spectrum(table_exitance * factor);
     if (material.emits()) {
         emission.scale = pi / table_exitance;

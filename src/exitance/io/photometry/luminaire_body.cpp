@@ -15,7 +15,6 @@ constexpr double degree = pi / 180;
 constexpr double least_size = 0.01;   ///< Of what has an extent in some directions alone, metres,
 constexpr double point_size = 0.001;  ///< and of what has none.
 constexpr int sides = 24;  ///< Of a round edge: it has normals where tables of 1, 3, 5 and 15 degrees have entries.
-constexpr int lying_sides = 32;  ///< Of a cylinder that lies, whose edges no grid of angles follows.
 constexpr int bands_of_sphere = 8, sides_of_sphere = 16;
 
 /// A regular polygon of the area of a circle of diameter 1, its edges' normals at multiples of 360 / n degrees.
@@ -70,6 +69,15 @@ Polygons ball() {
     return out;
 }
 
+/// A cylinder along x or y is one along z with its axes renamed in a circle, so often: fronts stay in front.
+int turns_of(Shape shape) {
+    return shape == Shape::cylinder_x ? 1 : shape == Shape::cylinder_y ? 2 : 0;
+}
+
+bool is_cylinder(Shape shape) {
+    return shape == Shape::cylinder_x || shape == Shape::cylinder_y || shape == Shape::cylinder_z;
+}
+
 Polygons polygons_of(Shape shape, const Vec3& size) {
     Polygons out;
     switch (shape) {
@@ -90,13 +98,11 @@ Polygons polygons_of(Shape shape, const Vec3& size) {
             out = prism(square_outline());
             break;
         default:
-            out = prism(round_outline(shape == Shape::cylinder_z ? sides : lying_sides));
+            out = prism(round_outline(sides));
     }
-    // A cylinder along x or y is one along z with its axes renamed in a circle, which keeps fronts in front.
-    const int turns = shape == Shape::cylinder_x ? 1 : shape == Shape::cylinder_y ? 2 : 0;
     for (std::vector<Point>& face : out)
         for (Point& p : face) {
-            for (int i = 0; i < turns; ++i) p = {p.z, p.x, p.y};
+            for (int i = 0; i < turns_of(shape); ++i) p = {p.z, p.x, p.y};
             p = {p.x * size.x, p.y * size.y, p.z * size.z};
         }
     return out;
@@ -119,23 +125,52 @@ std::vector<double> refined(const std::vector<double>& at, double last, double s
     return out;
 }
 
-/// Radiance as a table of its own: intensity over the body's projected area, on a grid fine enough that this area is
-/// as good as linear between its angles.
-EmissionProfile baked(const Photometry& p, const std::vector<Vec3>& areas, double step) {
-    EmissionProfile out;
-    out.axes[0] = {EmissionProfile::Angle::phi, 0, refined(p.phi, 360, step)};
-    out.axes[1] = {EmissionProfile::Angle::theta, 0, refined(p.theta, 180, step)};
-    for (const double phi : out.axes[0].at)
-        for (const double theta : out.axes[1].at) {
-            const double a = theta * degree, b = phi * degree;
-            const Vec3 d = std::sin(a) * (std::cos(b) * p.axis_x + std::sin(b) * p.axis_y) - std::cos(a) * p.axis_z;
-            out.values.push_back(p.intensity(d) / projected_area(areas, d));
-        }
+/// Angles from the axis of a cylinder, degrees: closer where it is seen nearly end-on and its projected area, end +
+/// side sin a, changes fast, so that 1 over it is as good as linear between them; through those of the table.
+std::vector<double> graded(const std::vector<double>& table, double end, double side, double step) {
+    constexpr double growth = 0.04;  // linear to 4e-4
+    const double bend = end / side / degree;
+    std::vector<double> rise{0};
+    while (rise.back() < 90) rise.push_back(rise.back() + std::min(step, growth * (rise.back() + bend)));
+    std::vector<double> out;
+    for (const double a : rise) out.push_back(a * 90 / rise.back());
+    for (std::size_t i = rise.size() - 1; i-- > 0;) out.push_back(180 - out[i]);
+    // The nearest angle moves to one of the table, so that no step becomes tiny.
+    for (const double t : table) {
+        const auto after = std::lower_bound(out.begin(), out.end(), t);
+        if (after == out.begin() || after == out.end()) continue;
+        const auto nearest = *after - t < t - *(after - 1) ? after : after - 1;
+        const bool is_fixed = nearest == out.begin() || nearest + 1 == out.end() || *nearest == 90;
+        if (!is_fixed) *nearest = t;
+    }
     return out;
 }
 
-EmissionProfile profile_of(const Photometry& p, Shape shape, const Vec3& size, const std::vector<Vec3>& areas) {
-    EmissionProfile out;
+/// Radiance as a table of its own: intensity over the body's projected area, on a grid fine enough that this area is
+/// as good as linear between its angles.
+void bake(const Photometry& p, const std::vector<Vec3>& areas, double step, bool is_cylinder, LuminaireBody& body) {
+    EmissionProfile& out = body.profile;
+    // In the frame of a cylinder that does not stand the file's angles are nowhere.
+    const bool is_own = body.axis_z == p.axis_z;
+    const std::vector<double> none;
+    out.axes[0] = {EmissionProfile::Angle::phi, 0, refined(is_own ? p.phi : none, 360, step)};
+    out.axes[1] = {EmissionProfile::Angle::theta, 0, refined(is_own ? p.theta : none, 180, step)};
+    if (is_cylinder)
+        out.axes[1].at = graded(is_own ? p.theta : none, projected_area(areas, body.axis_z),
+                                projected_area(areas, body.axis_x), step);
+    for (const double phi : out.axes[0].at)
+        for (const double theta : out.axes[1].at) {
+            const double a = theta * degree, b = phi * degree;
+            const Vec3 d =
+                std::sin(a) * (std::cos(b) * body.axis_x + std::sin(b) * body.axis_y) - std::cos(a) * body.axis_z;
+            out.values.push_back(p.intensity(d) / projected_area(areas, d));
+        }
+}
+
+void add_profile(const Photometry& p, Shape shape, const Vec3& size, const std::vector<Vec3>& areas,
+                 LuminaireBody& body) {
+    EmissionProfile& out = body.profile;
+    body.axis_x = p.axis_x, body.axis_y = p.axis_y, body.axis_z = p.axis_z;
     const bool is_flat = shape == Shape::rectangle || shape == Shape::ellipse;
     // EmissionProfile::Body::box measures the box along the axes of the table, which are the body's in type C.
     const bool is_box = (shape == Shape::box || shape == Shape::point) && p.type == Photometry::Type::c;
@@ -144,7 +179,11 @@ EmissionProfile profile_of(const Photometry& p, Shape shape, const Vec3& size, c
         const double step = shape == Shape::cylinder_z || shape == Shape::box ? 1
                             : shape == Shape::ellipsoid                       ? 0.25
                                                                               : 0.5;
-        return baked(p, areas, step);
+        if (is_cylinder(shape) && p.type == Photometry::Type::c)
+            for (Vec3* axis : {&body.axis_x, &body.axis_y, &body.axis_z})
+                for (int i = 0; i < turns_of(shape); ++i) *axis = {axis->z, axis->x, axis->y};
+        bake(p, areas, step, is_cylinder(shape) && p.type == Photometry::Type::c, body);
+        return;
     }
     out.axes[0] = {EmissionProfile::Angle::phi, 0, p.phi};
     out.axes[1] = {EmissionProfile::Angle::theta, 0, p.theta};
@@ -153,7 +192,6 @@ EmissionProfile profile_of(const Photometry& p, Shape shape, const Vec3& size, c
     out.size = is_box ? size : Vec3{1, 1, 1};
     const double area = is_flat ? norm(areas[0]) : 1;
     for (double& v : out.values) v /= area;
-    return out;
 }
 
 }  // namespace
@@ -178,14 +216,13 @@ LuminaireBody make_luminaire_body(const Photometry& p) {
     const Polygons polygons = polygons_of(shape, size);
     std::vector<Vec3> areas;
     for (const std::vector<Point>& face : polygons) areas.push_back(area_vector(face));
-    out.profile = profile_of(p, shape, size, areas);
+    add_profile(p, shape, size, areas, out);
     const bool is_upright = p.type == Photometry::Type::c;
     double most = 0;
     for (std::size_t i = 0; i < polygons.size(); ++i) {
         const Normal n = normalized(areas[i]);
-        const double exitance = is_flat && is_upright
-                                    ? (n.z < 0 ? p.flux(0, 90) : p.flux(90, 180)) / norm(areas[i])
-                                    : exitance_of(out.profile, {dot(p.axis_x, n), dot(p.axis_y, n), dot(p.axis_z, n)});
+        const double exitance = is_flat && is_upright ? (n.z < 0 ? p.flux(0, 90) : p.flux(90, 180)) / norm(areas[i])
+                                                      : exitance_of(out.profile, out.in_frame(n));
         most = std::max(most, exitance);
         out.faces.push_back({polygons[i], exitance});
     }

@@ -20,7 +20,9 @@ struct LuminaireBody {
         double exitance = 0;         ///< lm/m^2; 0 where no light leaves it: it is there to keep the body opaque.
     };
     std::vector<Face> faces;
-    EmissionProfile profile;   ///< Radiance in cd/m^2 by directions of the table's frame (Photometry::axis_x, ...).
+    EmissionProfile profile;                                 ///< Radiance in cd/m^2 by directions of its frame:
+    Vec3 axis_x{1, 0, 0}, axis_y{0, 1, 0}, axis_z{0, 0, 1};  ///< the table's, or that of a cylinder's axis.
+    Vec3 in_frame(const Vec3& d) const { return {dot(axis_x, d), dot(axis_y, d), dot(axis_z, d)}; }
     double flux() const;       ///< Of all faces, lm.
     bool is_enlarged = false;  ///< A line that has been given a width, for example.
 };
