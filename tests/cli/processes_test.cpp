@@ -121,7 +121,7 @@ TEST_F(ProgramOfProcesses, FailTogetherAndSaySoOnce) {
 }
 
 TEST_F(ProgramOfProcesses, TakeAMethodThatRunsOverThemWhereTheirChoiceWouldNot) {
-    const std::vector<std::string> fine{"--error-interpolant", "0.01", "--time-limit", "0.5", "--verbose"};
+    const std::vector<std::string> fine{"--error-interpolant", "0.01", "--time-limit", "0.5"};
     const Finished run = run_on(2, solve("auto", fine));
     EXPECT_TRUE(run.status == 0 || run.status == 4) << run.err;
     EXPECT_NE(run.err.find("does not run over processes"), std::string::npos) << run.err;
