@@ -45,11 +45,13 @@ class Solver {
     Solver(const Scene& scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
            CheckpointStore* checkpoints)
         : progress_(progress), stop_(stop), checkpoints_(checkpoints), solution_{.scene = scene}, stage_(scene) {
-        const auto [options, why] = choose_method(stage_, asked);
+        const auto [options, why, is_second] = choose_method(stage_, asked);
         options_ = options;
         may_become_linear_ = asked.method == Method::automatic && options.method == Method::matrix;
         const MethodEntry& method = entry_of(options.method);
-        if (!why.empty()) progress.note(fmt::format("method {}: {}", name_in(method_names, method.id), why));
+        const std::string chosen_for = fmt::format("method {}: {}", name_in(method_names, method.id), why);
+        if (is_second) warn(chosen_for);
+        if (!is_second && !why.empty()) progress.note(chosen_for);
         if (asked.method != Method::automatic && asked.method != method.id)
             warn(fmt::format("--bounces is counted by the method matrix, which solves in place of {}",
                              name_in(method_names, asked.method)));

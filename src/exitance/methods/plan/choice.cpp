@@ -10,7 +10,8 @@ namespace exitance {
 namespace {
 
 MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
-    MethodChoice out{options, {}};
+    MethodChoice out;
+    out.options = options;
     const auto choose = [&](Method method, std::string why) {
         out.options.method = method, out.why = std::move(why);
         return out;
@@ -50,6 +51,7 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
                              name_in(method_names, choice.options.method), choice.why);
     choice.options = options;
     choice.options.method = Method::matrix;
+    choice.is_second = true;
     return choice;
 }
 

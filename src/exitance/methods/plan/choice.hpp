@@ -14,7 +14,8 @@ constexpr double sums_reach = 0.00125;
 /// The options with the method that solves in place of `auto`, its basis, and why that.
 struct MethodChoice {
     SolveOptions options;
-    std::string why;  ///< Empty where the user chose.
+    std::string why;         ///< Empty where the user chose.
+    bool is_second = false;  ///< What would have been chosen does not run over the processes that there are.
 };
 
 /// Are its steps those of all unknowns at once, so that several processes can share them?

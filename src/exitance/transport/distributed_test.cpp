@@ -1,0 +1,40 @@
+#include "exitance/transport/distributed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace exitance {
+
+TEST(Distributed, AloneAProcessDoesEverythingItself) {
+    ASSERT_EQ(processes(), 1u) << "tests are not started by a launcher";
+    EXPECT_TRUE(is_first_process());
+    std::vector<int> out(1000);
+    shared_ranges(
+        out.size(), 7,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) out[i] += static_cast<int>(i);
+        },
+        [&](std::size_t i) -> int& { return out[i]; }, {"test"});
+    std::vector<int> expected(out.size());
+    std::iota(expected.begin(), expected.end(), 0);
+    EXPECT_EQ(out, expected);
+    for (std::size_t i = 0; i < out.size(); ++i) EXPECT_TRUE(is_own(i, 7));
+    EXPECT_TRUE(traffic().empty());
+}
+
+TEST(Distributed, AloneItsWordIsThatOfAll) {
+    EXPECT_EQ(as_first(42), 42);
+    EXPECT_EQ(as_first(std::string("word"), "test"), "word");
+    EXPECT_EQ(largest_of_all(1.5), 1.5);
+    EXPECT_EQ(sum_of_all(1.5), 1.5);
+    const Result<void> done = by_first([] { return Result<void>(Error{ErrorCode::limit, "too much", "here", ""}); });
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().message, "too much");
+    StopRequest asked, agreed;
+    const StopTogether together(asked, agreed);
+    asked.set_deadline(StopRequest::Clock::now());
+    EXPECT_LE(seconds_left(processes() > 1 ? agreed : asked), 0);
+}
+
+}  // namespace exitance
