@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
@@ -42,6 +44,11 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Weather> weather = load_epw(arguments.epw);
     if (!weather) return terminal.fail(weather.error());
+    const auto missing =
+        std::count_if(weather->hours.begin(), weather->hours.end(), [](const WeatherHour& h) { return h.is_missing; });
+    if (missing > 0 && !arguments.quiet)
+        terminal.note(fmt::format("{}: {} of {} hours have no irradiances, and count as dark", arguments.epw, missing,
+                                  weather->hours.size()));
     const Result<ProbePoints> points = load_probe_points(arguments.points);
     if (!points) return terminal.fail(points.error());
     if (points->size() == 0)

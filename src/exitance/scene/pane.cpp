@@ -32,6 +32,10 @@ Spectrum Pane::transmission(double cosine) const {
     Spectrum out;
     if (!(cosine > 0)) return out;
     for (std::size_t b = 0; b < bands; ++b) {
+        if (b > 0 && transmissivity[b] == transmissivity[b - 1]) {  // grey glass is most glass, and powers cost
+            out[b] = out[b - 1];
+            continue;
+        }
         const double t = std::pow(transmissivity[b], 1 / f.cos_inside);
         out[b] = 0.5 * (through(f.across, t) + through(f.along, t));
     }

@@ -9,6 +9,8 @@
 namespace exitance {
 namespace {
 
+constexpr double noise = 1e-12;  ///< Of a corner's distance: rounding of cuts.
+
 /// A part of the source, and which panes stand before it.
 struct Part {
     std::vector<Vec3> corners;
@@ -49,32 +51,47 @@ std::vector<Vec3> pyramid_over(const Pane& pane, const Receiver& at, const Vec3&
     return planes;
 }
 
+/// Where a convex polygon lies against a pyramid: beside it, within it, or across its sides.
+enum class Lies { beside, within, across };
+Lies lie_of(std::span<const Vec3> corners, std::span<const Vec3> pyramid) {
+    bool within = true;
+    for (const Vec3& plane : pyramid) {
+        bool any_in = false;
+        for (const Vec3& r : corners) {
+            const double h = dot(plane, r), rounding = noise * norm(r);
+            any_in |= h > rounding, within &= h >= -rounding;
+        }
+        if (!any_in) return Lies::beside;
+    }
+    return within ? Lies::within : Lies::across;
+}
+
 /// Cuts parts along a pane's outline.
 void put_before(const Pane& pane, std::span<const Vec3> pyramid, std::vector<Part>& parts) {
-    constexpr double noise = 1e-12;
-    std::vector<Part> out;
+    std::vector<Part> fresh;
     for (Part& part : parts) {
+        const Lies lies = lie_of(part.corners, pyramid);
+        if (lies == Lies::within) part.panes.push_back(&pane);
+        if (lies != Lies::across) continue;
         std::vector<Vec3> inside = part.corners;
-        std::vector<Part> beside;
+        const std::size_t first = fresh.size();
         for (const Vec3& plane : pyramid) {
             const auto is_out = [&](const Vec3& r) { return dot(plane, r) < -noise * norm(r); };
             if (std::any_of(inside.begin(), inside.end(), is_out)) {
                 std::vector<Vec3> rest = cut_above(inside, -plane);
-                if (!rest.empty()) beside.push_back({std::move(rest), part.panes});
+                if (!rest.empty()) fresh.push_back({std::move(rest), part.panes});
                 inside = cut_above(inside, plane);
             }
             if (inside.empty()) break;
         }
-        if (inside.empty()) {
-            out.push_back(std::move(part));
+        if (inside.empty()) {  // beside it after all
+            fresh.resize(first);
             continue;
         }
-        for (Part& p : beside) out.push_back(std::move(p));
         part.corners = std::move(inside);
         part.panes.push_back(&pane);
-        out.push_back(std::move(part));
     }
-    parts = std::move(out);
+    for (Part& part : fresh) parts.push_back(std::move(part));
 }
 
 Spectrum transmission_towards(const Vec3& r, std::span<const Pane* const> panes) {
@@ -145,22 +162,41 @@ class GlazedSum {
     const RelativeRadiance& radiance_;
 };
 
-}  // namespace
+/// A pane and the pyramid over it.
+struct PaneInView {
+    const Pane* pane;
+    std::vector<Vec3> pyramid;
+};
 
-Spectrum transmitted_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
-                                 std::span<const Vec3> visible, const RelativeRadiance& radiance) {
+/// The panes between a receiver and a source, whose plane lies at `height` from the receiver.
+std::vector<PaneInView> panes_in_view(const Occluders& occluders, const Receiver& at, const Normal& n, double height) {
+    std::vector<PaneInView> out;
+    const double slack = occluders.rounding();
+    for (const Pane& pane : occluders.scene().panes())
+        if (std::vector<Vec3> pyramid = pyramid_over(pane, at, n, height + slack, slack); !pyramid.empty())
+            out.push_back({&pane, std::move(pyramid)});
+    return out;
+}
+
+Spectrum through_panes(const Receiver& at, std::span<const PaneInView> panes, std::span<const Vec3> visible,
+                       const RelativeRadiance& radiance) {
     if (visible.size() < 3 || is_sliver(visible)) return {};
-    std::vector<Part> parts{{{visible.begin(), visible.end()}, {}}};
-    const Normal& n = occluders.pieces()[source].plane.n;
-    const double slack = occluders.rounding(), height = dot(n, visible[0]) + slack;
-    for (const Pane& pane : occluders.scene().panes()) {
-        const std::vector<Vec3> pyramid = pyramid_over(pane, at, n, height, slack);
-        if (!pyramid.empty()) put_before(pane, pyramid, parts);
-    }
+    std::vector<Part> parts(1);
+    parts[0].corners.assign(visible.begin(), visible.end());
+    for (const PaneInView& in_view : panes) put_before(*in_view.pane, in_view.pyramid, parts);
     const GlazedSum sum(at.n, radiance);
     Spectrum out;
     for (const Part& part : parts) out += sum.of(part.corners, part.panes);
     return out;
+}
+
+}  // namespace
+
+Spectrum transmitted_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+                                 std::span<const Vec3> visible, const RelativeRadiance& radiance) {
+    if (visible.size() < 3) return {};
+    const Normal& n = occluders.pieces()[source].plane.n;
+    return through_panes(at, panes_in_view(occluders, at, n, dot(n, visible[0])), visible, radiance);
 }
 
 Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
@@ -168,9 +204,11 @@ Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, Piec
                             const PartLight& light) {
     Fragments fragments;
     visible_fragments(occluders, at, source, candidates, scratch, fragments);
+    if (fragments.empty()) return {};
+    const Normal& n = occluders.pieces()[source].plane.n;
+    const std::vector<PaneInView> panes = panes_in_view(occluders, at, n, dot(n, fragments[0][0]));
     Spectrum out;
-    for (const std::vector<Vec3>& fragment : fragments)
-        out += transmitted_form_factor(occluders, at, source, fragment, light.radiance);
+    for (const std::vector<Vec3>& fragment : fragments) out += through_panes(at, panes, fragment, light.radiance);
     return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -46,9 +47,32 @@ Result<Weather> read_location(LineReader& lines, std::string_view line) {
     return out;
 }
 
-Result<WeatherHour> read_hour(const LineReader& lines, std::string_view line) {
-    constexpr std::size_t direct_field = 14, diffuse_field = 15;  // counted from 0
-    constexpr double missing = 9999;
+/// A leap day stands for that of a leap year: typical years put months of several years together.
+bool mend_leap_day(WeatherHour& hour) {
+    if (is_date(hour.year, hour.month, hour.day)) return true;
+    constexpr int leap_year = 2020;
+    if (hour.month != 2 || hour.day != 29) return false;
+    hour.year = leap_year;
+    return true;
+}
+
+constexpr double missing = 9999;  ///< Numbers from here on say that there is none.
+
+/// The irradiance that is not there, by global = diffuse + direct sin h in the middle of the hour.
+void fill_in(const Weather& weather, const std::optional<double>& global, std::optional<double> direct,
+             std::optional<double> diffuse, WeatherHour& hour) {
+    constexpr double least_sine = 0.05;  // lower suns make any direct light of a small difference
+    const double sine = std::sin(sun_position(hour.middle(weather.zone), weather.place).altitude * pi / 180);
+    if (global && direct && !diffuse)
+        diffuse = std::max(0.0, *global - *direct * std::max(0.0, sine));
+    else if (global && diffuse && !direct && (sine > least_sine || *global <= *diffuse))
+        direct = std::max(0.0, *global - *diffuse) / std::max(sine, least_sine);
+    hour.is_missing = !direct || !diffuse;
+    if (!hour.is_missing) hour.direct_normal = *direct, hour.diffuse_horizontal = *diffuse;
+}
+
+Result<WeatherHour> read_hour(const LineReader& lines, std::string_view line, const Weather& weather) {
+    constexpr std::size_t global_field = 13, direct_field = 14, diffuse_field = 15;  // counted from 0
     const std::vector<std::string_view> fields = fields_of(line);
     if (fields.size() <= diffuse_field)
         return lines.error(
@@ -60,12 +84,12 @@ Result<WeatherHour> read_hour(const LineReader& lines, std::string_view line) {
         date[i] = static_cast<int>(*value);
     }
     WeatherHour out{date[0], date[1], date[2], date[3]};
-    if (!is_date(out.year, out.month, out.day) || out.hour < 1 || out.hour > 24)
+    if (!mend_leap_day(out) || out.hour < 1 || out.hour > 24)
         return lines.error(fmt::format("{}-{}-{}, hour {}, is no date", out.year, out.month, out.day, out.hour));
     const auto direct = parse_number(fields[direct_field]), diffuse = parse_number(fields[diffuse_field]);
     if (!direct || !diffuse) return lines.error("direct or diffuse irradiance is not a number");
-    out.is_missing = !(*direct >= 0 && *direct < missing && *diffuse >= 0 && *diffuse < missing);
-    if (!out.is_missing) out.direct_normal = *direct, out.diffuse_horizontal = *diffuse;
+    const auto known = [](const std::optional<double>& v) { return v && *v >= 0 && *v < missing ? v : std::nullopt; };
+    fill_in(weather, known(parse_number(fields[global_field])), known(direct), known(diffuse), out);
     return out;
 }
 
@@ -86,7 +110,7 @@ Result<Weather> load_epw(const std::string& path) {
         if (lines->line() == 1) out = read_location(*lines, *line);
         if (!out) return out;
         if (lines->line() <= header_lines || line->find_first_not_of(" \t,") == line->npos) continue;
-        const Result<WeatherHour> hour = read_hour(*lines, *line);
+        const Result<WeatherHour> hour = read_hour(*lines, *line, *out);
         if (!hour) return hour.error();
         out->hours.push_back(*hour);
         if (out->hours.size() > most_hours) return lines->error("there are more hours than a year has");

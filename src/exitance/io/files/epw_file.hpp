@@ -29,8 +29,9 @@ struct Weather {
     const WeatherHour* at(int month, int day, double hour) const;
 };
 
-/// Reads a weather file (.epw): place and irradiances. Missing numbers (9999 and more) count as no light. Error: of
-/// code bad_input with the line.
+/// Reads a weather file (.epw): place and irradiances. Of direct and diffuse light the one that is missing (9999 and
+/// more) follows from the other and from global light; else the hour is missing, and counts as no light. 29 February is
+/// one of a leap year, whatever the line's year. Error: of code bad_input with the line.
 Result<Weather> load_epw(const std::string& path);
 
 }  // namespace exitance

@@ -16,6 +16,7 @@
 #include "exitance/io/scenes/rad_emission.hpp"
 #include "exitance/io/scenes/rad_shapes.hpp"
 #include "exitance/io/scenes/rad_sky.hpp"
+#include "exitance/io/scenes/rad_sky_command.hpp"
 #include "exitance/io/scenes/xform.hpp"
 
 namespace exitance {
@@ -214,7 +215,8 @@ Result<void> RadianceReader::add_file(const std::string& name, Copied& out) {
 
 /// What a row of programs prints, each reading what the one before it prints.
 Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out) {
-    if (!options_.run_commands)
+    const bool is_known = is_sky_command(stages[0]) && stages.size() == 1;
+    if (!options_.run_commands && !is_known)
         return Error{
             ErrorCode::bad_input, fmt::format("the command '!{}' is not run", shown(stages[0][0])), "",
             "--run-commands has programs of Radiance's run where they are installed; or run it yourself, write "
@@ -223,7 +225,11 @@ Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, in
     std::string text;
     for (const CommandWords& words : stages) {
         Result<std::string> printed =
-            run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
+            is_known ? sky_command_output(words)
+                     : run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
+        // Options that are not read here are left to the program, where that may be run.
+        if (is_known && !printed && options_.run_commands)
+            printed = run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
         if (!printed) return printed.error();
         text = std::move(*printed);
     }

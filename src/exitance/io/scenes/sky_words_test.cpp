@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "exitance/io/files/atomic_file.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -72,7 +74,7 @@ TEST(WeatherFile, TellsPlaceAndIrradiances) {
     const TemporaryFolder folder;
     const std::string path = folder / "w.epw";
     ASSERT_TRUE(
-        write_file(path, weather_text(hour_text(6, 21, 12, "650", "130") + hour_text(6, 21, 13, "9999", "130"))));
+        write_file(path, weather_text(hour_text(6, 21, 12, "650", "130") + hour_text(6, 21, 13, "9999", "9999"))));
     const Result<Weather> weather = load_epw(path);
     ASSERT_TRUE(weather) << weather.error().message;
     EXPECT_EQ(weather->place.latitude, 47.4);
@@ -87,6 +89,33 @@ TEST(WeatherFile, TellsPlaceAndIrradiances) {
     EXPECT_FALSE(parse_sky("perez,time=06-21T12:30", &*weather)) << "the hour is missing";
     EXPECT_FALSE(parse_sky("perez,time=06-22T11:30", &*weather));
     EXPECT_FALSE(parse_sky("perez", &*weather));
+}
+
+TEST(WeatherFile, LeapDaysAndMissingIrradiancesAreMended) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "w.epw";
+    std::string no_diffuse = hour_text(6, 21, 12, "600", "9999"), no_direct = hour_text(6, 21, 13, "9999", "120");
+    const auto with_global = [](std::string line, const char* global) {
+        std::size_t at = 0;
+        for (int i = 0; i < 13; ++i) at = line.find(',', at) + 1;
+        return line.replace(at, line.find(',', at) - at, global);
+    };
+    ASSERT_TRUE(write_file(
+        path, weather_text(hour_text(2, 29, 12, "500", "100") + with_global(no_diffuse, "640") +
+                           with_global(no_direct, "650") + with_global(hour_text(6, 21, 14, "9999", "9999"), "600"))));
+    const Result<Weather> weather = load_epw(path);
+    ASSERT_TRUE(weather) << weather.error().message;
+    ASSERT_EQ(weather->hours.size(), 4u);
+    EXPECT_EQ(weather->hours[0].day, 29);
+    EXPECT_TRUE(parse_sky("perez,time=02-29T11:30", &*weather));
+    const auto sine = [&](std::size_t i) {
+        const WeatherHour& hour = weather->hours[i];
+        return std::sin(sun_position(hour.middle(weather->zone), weather->place).altitude * pi / 180);
+    };
+    EXPECT_NEAR(weather->hours[1].diffuse_horizontal, 640 - 600 * sine(1), 1e-9);
+    EXPECT_NEAR(weather->hours[2].direct_normal, (650 - 120) / sine(2), 1e-9);
+    EXPECT_FALSE(weather->hours[1].is_missing || weather->hours[2].is_missing);
+    EXPECT_TRUE(weather->hours[3].is_missing);
 }
 
 TEST(WeatherFile, FaultsAreToldWithTheirLine) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "exitance/scene/sky/perez_sky.hpp"
+
 namespace exitance {
 namespace {
 
@@ -218,13 +220,17 @@ PerezState perez_state(const PerezInput& input, const Normal& sun) {
 }
 
 SkyModel perez_sky(const PerezInput& input, const Normal& direction) {
-    static constexpr std::array<double, 7> bins{1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
     Normal sun = direction;
     if (sun.z < 0) {
         const double across = std::hypot(sun.x, sun.y);
         sun = across > 0 ? Normal{sun.x / across, sun.y / across, 0} : Normal{0, 1, 0};
     }
-    auto [clearness, brightness] = perez_state(input, sun);
+    return perez_sky_of(perez_state(input, sun), sun);
+}
+
+SkyModel perez_sky_of(const PerezState& state, const Normal& sun) {
+    static constexpr std::array<double, 7> bins{1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
+    auto [clearness, brightness] = state;
     if (clearness > 1.065 && clearness < 2.8) brightness = std::max(brightness, 0.2);
     const auto bin = static_cast<std::size_t>(std::upper_bound(bins.begin(), bins.end(), clearness) - bins.begin());
     const double zenith = std::acos(std::clamp(sun.z, 0.0, 1.0));
