@@ -25,8 +25,8 @@ struct LocalPassRow {
     double threshold = 0;  ///< Of links, as a share of the emitted flux.
     std::size_t links = 0, leaves = 0, triangles = 0;
     double error = 0, noise = 0;  ///< Relative RMS of radiosity against the paths, their noise taken out; and that.
-    double global_seconds = 0, local_seconds = 0;
-    std::size_t form_factors = 0, rays = 0;  ///< Of the local pass.
+    double global_seconds = 0, local_seconds = 0;  ///< Processor time of all threads.
+    std::size_t form_factors = 0, rays = 0;        ///< Of the local pass.
 };
 
 /// Errors and times of local passes a to e on global passes of several accuracies: the experiment of [Lischinski93].
