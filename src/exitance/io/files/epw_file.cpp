@@ -14,7 +14,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_hours = 8784 * 12;  ///< Of an hour in twelve parts, in a leap year.
+constexpr std::size_t most_hours = 8784 * 100;  ///< A century: more is no weather file.
 
 std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> out;
@@ -112,8 +112,15 @@ Result<Weather> load_epw(const std::string& path) {
         if (lines->line() <= header_lines || line->find_first_not_of(" \t,") == line->npos) continue;
         const Result<WeatherHour> hour = read_hour(*lines, *line, *out);
         if (!hour) return hour.error();
+        const auto is_same = [&](const WeatherHour& h) {
+            return h.year == hour->year && h.month == hour->month && h.day == hour->day && h.hour == hour->hour;
+        };
+        if (!out->hours.empty() && is_same(out->hours.back()))
+            return lines->error(
+                fmt::format("{}-{}-{}, hour {}, comes twice", hour->year, hour->month, hour->day, hour->hour),
+                "files of one line an hour are read");
         out->hours.push_back(*hour);
-        if (out->hours.size() > most_hours) return lines->error("there are more hours than a year has");
+        if (out->hours.size() > most_hours) return lines->error("there are more hours than a century has");
     }
     if (lines->failed()) return lines->read_error();
     if (out && out->hours.empty()) return lines->error("there are no hours in it");

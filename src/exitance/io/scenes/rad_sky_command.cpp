@@ -83,71 +83,77 @@ Result<double> number_after(const CommandWords& words, std::size_t& i, const Rad
     return *value;
 }
 
+/// Takes the number of an option that has one.
+void take_number(char option, double value, RadSkyWords& out) {
+    switch (option) {
+        case 'g':
+            out.ground = value;
+            return;
+        case 'a':
+            out.latitude = value * pi / 180;
+            return;
+        case 'o':
+            out.longitude = value;
+            return;
+        case 'm':
+            if (!out.has_meridian) out.meridian = value;
+            return;  // a zone's name wins
+        case 'y':
+            out.year = static_cast<int>(std::clamp(value, -9999.0, 9999.0));
+            return;
+        case 't':
+            out.turbidity = value;
+            return;
+        case 'O':
+            out.output = value;
+            return;
+        case 'b':
+        case 'B':
+            out.zenith = value, out.zenith_by = option;
+            return;
+        default:
+            out.solar = value, out.solar_by = option;
+    }
+}
+
+Result<void> check_options(const RadSkyWords& in) {
+    if (!(in.ground >= 0 && in.ground <= 1)) return wrong(in, fmt::format("-g {:g} is no reflectance", in.ground));
+    if (!(std::abs(in.latitude) <= 0.5 * pi)) return wrong(in, "-a lies not in [-90, 90]");
+    if (!(std::abs(in.longitude) <= 360) || !(std::abs(in.meridian) <= 360))
+        return wrong(in, "-o and -m lie not in [-360, 360]");
+    if (in.year && !is_date(*in.year, in.month ? in.month : 1, in.month ? in.day : 1))
+        return wrong(in, fmt::format("{}-{}-{} is no date", *in.year, in.month, in.day));
+    if (in.zenith < 0 || in.solar < 0) return wrong(in, "a brightness is negative");
+    return {};
+}
+
 Result<void> read_options(const CommandWords& words, RadSkyWords& out) {
     const bool perez = out.program == "gendaylit";
+    const std::string plain = perez ? "sw" : "sicu", numbers = perez ? "gaomyO" : "gaomytbBrR";
+    const std::string pairs = perez ? "PWLG" : "";
     for (std::size_t i = 4; i < words.size(); ++i) {
         const std::string& w = words[i];
-        if (w.size() != 2 || (w[0] != '-' && w[0] != '+')) return wrong(out, fmt::format("'{}' is not read", shown(w)));
-        const bool plus = w[0] == '+';
-        const char c = w[1];
-        const std::string plain = perez ? "sw" : "sicu", numbers = perez ? "gaomyO" : "gaomytbBrR";
+        const char c = w.size() == 2 && (w[0] == '-' || w[0] == '+') ? w[1] : ' ';
         if (plain.find(c) != std::string::npos) {
             if (c == 'w') continue;
             out.kind = c;
-            if (c == 's' || c == 'i') out.has_sun = plus;
-            continue;
-        }
-        if (perez && std::string("PWLG").find(c) != std::string::npos) {
+            if (c == 's' || c == 'i') out.has_sun = w[0] == '+';
+        } else if (w[0] == '-' && pairs.find(c) != std::string::npos) {
             const Result<double> first = number_after(words, i, out);
             if (!first) return first.error();
             const std::optional<double> second = ++i < words.size() ? parse_number(words[i]) : std::nullopt;
             if (!second || !std::isfinite(*second)) return wrong(out, fmt::format("-{} needs two numbers", c));
             out.input = c, out.first = *first, out.second = *second;
-            continue;
-        }
-        if (plus || numbers.find(c) == std::string::npos)
+        } else if (w[0] == '-' && numbers.find(c) != std::string::npos) {
+            const Result<double> value = number_after(words, i, out);
+            if (!value) return value.error();
+            take_number(c, *value, out);
+        } else {
             return wrong(out, fmt::format("option '{}' is not read", shown(w)),
                          "--run-commands has the installed program do it");
-        const Result<double> value = number_after(words, i, out);
-        if (!value) return value.error();
-        switch (c) {
-            case 'g':
-                out.ground = *value;
-                break;
-            case 'a':
-                out.latitude = *value * pi / 180;
-                break;
-            case 'o':
-                out.longitude = *value;
-                break;
-            case 'm':
-                if (!out.has_meridian) out.meridian = *value;
-                break;
-            case 'y':
-                out.year = static_cast<int>(std::clamp(*value, -9999.0, 9999.0));
-                break;
-            case 't':
-                out.turbidity = *value;
-                break;
-            case 'O':
-                out.output = *value;
-                break;
-            case 'b':
-            case 'B':
-                out.zenith = *value, out.zenith_by = c;
-                break;
-            default:
-                out.solar = *value, out.solar_by = c;
         }
     }
-    if (!(out.ground >= 0 && out.ground <= 1)) return wrong(out, fmt::format("-g {:g} is no reflectance", out.ground));
-    if (!(std::abs(out.latitude) <= 0.5 * pi)) return wrong(out, "-a lies not in [-90, 90]");
-    if (!(std::abs(out.longitude) <= 360) || !(std::abs(out.meridian) <= 360))
-        return wrong(out, "-o and -m lie not in [-360, 360]");
-    if (out.year && !is_date(*out.year, out.month ? out.month : 1, out.month ? out.day : 1))
-        return wrong(out, fmt::format("{}-{}-{} is no date", *out.year, out.month, out.day));
-    if (out.zenith < 0 || out.solar < 0) return wrong(out, "a brightness is negative");
-    return {};
+    return check_options(out);
 }
 
 /// Fills altitude and azimuth (from south towards west), radians.

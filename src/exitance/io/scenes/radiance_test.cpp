@@ -208,6 +208,19 @@ TEST_F(RadianceFiles, TheSunIsADisc) {
     EXPECT_NEAR(sun.irradiance[0], 10 * pi * std::pow(std::sin(0.25 * pi / 180), 2), 1e-15);
 }
 
+TEST_F(RadianceFiles, LinesOfGenskyAndGendaylitNeedNoProgram) {
+    const std::string glow = "skyfunc glow sky_glow 0 0 4 1 1 1 0\nsky_glow source sky 0 0 4 0 0 1 180\ngrey ";
+    for (const char* line :
+         {"!gensky 3 20 10 -a 40 -o 98 -m 105", "!gendaylit 3 20 10 -a 40 -o 98 -m 105 -W 600 100"}) {
+        const Scene s = scene(std::string(line) + "\n" + glow + square);
+        ASSERT_EQ(s.distant().discs.size(), 1u) << line;
+        EXPECT_NEAR(s.distant().discs[0].towards.z, 0.685639, 1e-6) << line;
+        EXPECT_EQ(s.distant().domes.size(), 1u) << line;
+        const Scene turned = scene(std::string(line) + " | xform -rz 90\n" + glow + square);
+        EXPECT_NEAR(turned.distant().discs[0].towards.x, -s.distant().discs[0].towards.y, 1e-9) << line;
+    }
+}
+
 TEST_F(RadianceFiles, SkiesOfGenskyAndGendaylitAreReadInClosedForm) {
     const std::string glow =
         "skyfunc glow sky_glow 0 0 4 0.9 0.8 1.1 0\nsky_glow source sky 0 0 4 0 0 1 180\n"

@@ -131,6 +131,7 @@ TEST(WeatherFile, FaultsAreToldWithTheirLine) {
     EXPECT_EQ(first(weather_text("2021,1,1\n")), "w.epw:9");
     EXPECT_EQ(first(weather_text(hour_text(1, 1, 25, "1", "1"))), "w.epw:9");
     EXPECT_EQ(first(weather_text(hour_text(1, 1, 1, "x", "1"))), "w.epw:9");
+    EXPECT_EQ(first(weather_text(hour_text(1, 1, 1, "1", "1") + hour_text(1, 1, 1, "1", "1"))), "w.epw:10");
     EXPECT_NE(first(weather_text("")), "none");
     EXPECT_FALSE(load_epw(folder / "none.epw"));
 }
