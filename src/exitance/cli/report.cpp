@@ -106,6 +106,14 @@ std::optional<Error> find_misuse(const ReportArguments& arguments) {
     if (arguments.output.empty() && arguments.tables.empty())
         return Error{ErrorCode::usage, "nothing is to be written", "report",
                      "name a page, -o room.html, or --tables FOLDER"};
+    const bool measures = !arguments.planes.empty() || !arguments.working_planes.empty();
+    if (arguments.maintenance < 1 && !measures)
+        return Error{ErrorCode::usage, "has no planes to be applied to", "--maintenance", "add --plane 0.75"};
+    if (arguments.output.empty() && !measures && arguments.observers.empty())
+        return Error{ErrorCode::usage, "there is nothing to tell in tables", "--tables",
+                     "add --plane 0.75 or --observers auto, or a page, -o room.html"};
+    if (arguments.output.empty() && !arguments.views.empty())
+        return Error{ErrorCode::usage, "tables hold no pictures", "--camera", "add a page, -o room.html"};
     if (arguments.output.empty()) return std::nullopt;
     const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
     if (page) return std::nullopt;
