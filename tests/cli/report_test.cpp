@@ -176,6 +176,12 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
                                                                                        {"--maintenance", "1.2"}})
         EXPECT_EQ(report(wrong).status, 2) << wrong[1];
     EXPECT_EQ(report({"--observers", folder / "none.csv"}).status, 3);
+    // Tables alone, without a page.
+    EXPECT_EQ(run_program({"report", solution, "--plane", "0.75", "--tables", folder / "u", "-q"}).status, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / "u/plane_1.csv"));
+    EXPECT_EQ(run_program({"report", solution, "-q"}).status, 2);
+    EXPECT_EQ(run_program({"report", solution, "--tables", folder / "u"}).status, 2);
+    EXPECT_EQ(run_program({"report", solution, "-o", folder / "r.html", "--maintenance", "0.8"}).status, 2);
 }
 
 }  // namespace exitance::test

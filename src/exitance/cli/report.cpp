@@ -66,14 +66,19 @@ std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) 
 
 /// Light maps for the embedded viewer, where they are small enough for a page that is mailed.
 void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
-    constexpr double most_texels = 150000;
+    constexpr double many_texels = 150000, few_texels = 2000;
     constexpr std::size_t most_faces = 20000;
     const Scene& scene = light.solution().scene;
     if (scene.surfaces().size() > most_faces) return;
     double area = 0;
     for (const Region& region : scene.regions()) area += region.area;
+    // A texel costs what its emitters do, and those that are not diffuse about eight times as much.
+    constexpr double cheap_emitters = 16, cost_of_directed = 8;
+    const double cost =
+        static_cast<double>(scene.emitters().size()) * (scene.has_directed_emission() ? cost_of_directed : 1);
+    const double texels = std::max(few_texels, many_texels * std::min(1.0, cheap_emitters / std::max(cost, 1.0)));
     BakeOptions options;
-    options.density = std::min(64.0, std::sqrt(most_texels / area));
+    options.density = std::min(64.0, std::sqrt(texels / area));
     Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     if (maps) content.viewer = std::move(*maps);
 }
@@ -98,14 +103,48 @@ Result<std::vector<Observer>> all_observers(const ReportArguments& arguments, co
 }
 
 std::optional<Error> find_misuse(const ReportArguments& arguments) {
+    if (arguments.output.empty() && arguments.tables.empty())
+        return Error{ErrorCode::usage, "nothing is to be written", "report",
+                     "name a page, -o room.html, or --tables FOLDER"};
+    const bool measures = !arguments.planes.empty() || !arguments.working_planes.empty();
+    if (arguments.maintenance < 1 && !measures)
+        return Error{ErrorCode::usage, "has no planes to be applied to", "--maintenance", "add --plane 0.75"};
+    if (arguments.output.empty() && !measures && arguments.observers.empty())
+        return Error{ErrorCode::usage, "there is nothing to tell in tables", "--tables",
+                     "add --plane 0.75 or --observers auto, or a page, -o room.html"};
+    if (arguments.output.empty() && !arguments.views.empty())
+        return Error{ErrorCode::usage, "tables hold no pictures", "--camera", "add a page, -o room.html"};
+    if (arguments.output.empty()) return std::nullopt;
     const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
     if (page) return std::nullopt;
     return Error{ErrorCode::usage, "reports are written as .html", arguments.output, "name the output something.html"};
 }
 
+/// What a page shows besides planes and observers.
+Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction& light, ReportContent& content,
+                      Terminal& terminal, const StopRequest& stop) {
+    const Scene& scene = light.solution().scene;
+    content.statistics = statistics_json(light.solution().statistics);
+    std::vector<Camera> cameras;
+    for (const RenderArguments& view : views(arguments, scene)) {
+        Result<Camera> camera = choose_camera(view, light);
+        if (!camera) return camera.error();
+        cameras.push_back(*camera);
+    }
+    content.view = cameras.front();
+    for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
+    constexpr std::size_t surface_points = 50000, error_points = 400;
+    constexpr unsigned error_rays = 2048;
+    const std::vector<SurfaceId> faces = largest_faces(scene, content.surfaces_left_out);
+    content.surfaces = measure_surfaces(light, faces, surface_points, terminal.progress(), stop);
+    content.error = find_error_percentile(light, error_points, error_rays, terminal.progress(), stop);
+    add_viewer(light, content, terminal, stop);
+    return {};
+}
+
 }  // namespace
 
-/// exitance report SOLUTION -o PAGE
+/// exitance report SOLUTION -o PAGE --tables FOLDER
 ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     ReportContent content;
@@ -124,29 +163,18 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     if (!observers) return terminal.fail(observers.error());
     const RadiosityFunction light(*solution);
     content.solution = &*solution, content.unit = unit_of(arguments.unit, solution->scene, terminal);
-    content.statistics = statistics_json(solution->statistics);
-    std::vector<Camera> cameras;
-    for (const RenderArguments& view : views(arguments, solution->scene)) {
-        Result<Camera> camera = choose_camera(view, light);
-        if (!camera) return terminal.fail(camera.error());
-        cameras.push_back(*camera);
-    }
-    content.view = cameras.front();
-    for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
-    for (GridLight& grid : content.grids) measure(light, grid, terminal.progress(), stop);
     content.maintenance = arguments.maintenance;
+    if (!arguments.output.empty())
+        if (const Result<void> added = add_page(arguments, light, content, terminal, stop); !added)
+            return terminal.fail(added.error());
+    for (GridLight& grid : content.grids) measure(light, grid, terminal.progress(), stop);
     const LightUnit lux(UnitChoice::lux, solution->scene.is_photometric(),
                         arguments.unit.efficacy.value_or(daylight_efficacy));
     for (const Observer& observer : *observers)
         content.observers.push_back({observer, find_glare(light, observer, lux)});
-    constexpr std::size_t surface_points = 50000, error_points = 400;
-    constexpr unsigned error_rays = 2048;
-    const std::vector<SurfaceId> faces = largest_faces(solution->scene, content.surfaces_left_out);
-    content.surfaces = measure_surfaces(light, faces, surface_points, terminal.progress(), stop);
-    content.error = find_error_percentile(light, error_points, error_rays, terminal.progress(), stop);
-    add_viewer(light, content, terminal, stop);
     terminal.progress().finish();
-    Result<void> written = write_report(content, arguments.output);
+    Result<void> written;
+    if (!arguments.output.empty()) written = write_report(content, arguments.output);
     if (written && !arguments.tables.empty()) written = write_report_tables(content, arguments.tables);
     return written ? ExitCode::done : terminal.fail(written.error());
 }

@@ -261,9 +261,9 @@ void declare(CLI::App& app, BakeArguments& arguments) {
 
 void declare(CLI::App& app, ReportArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output, "Page to write (.html), its numbers beside it (.json)")
-        ->type_name("FILE")
-        ->required();
+    app.add_option("-o,--output", arguments.output,
+                   "Page to write (.html), its numbers beside it (.json); may be left out with --tables")
+        ->type_name("FILE");
     app.add_option_function<std::vector<std::string>>(
            "--grid",
            [&arguments](const std::vector<std::string>& all) {

@@ -39,8 +39,11 @@ struct Float3 {
     float x, y, z;
 };
 
+/// Embree takes no coordinates beyond 1.8e18: what is farther away than `far` sizes of the scene stands there.
 Float3 to_float(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    const double far = 1e15;
+    const auto within = [far](double c) { return static_cast<float>(std::clamp(c, -far, far)); };
+    return {within(v.x), within(v.y), within(v.z)};
 }
 
 /// What a ray needs to know of a surface that it hits, side by side in memory.

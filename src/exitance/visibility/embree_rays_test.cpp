@@ -78,6 +78,20 @@ Scene half_a_plate_between() {
     return test::make({{floor}, {ceiling}, {plate}});
 }
 
+TEST(RayTracer, MeetsNothingFromWhereNoNumberOfEmbreesReaches) {
+    const Scene scene = test::make(test::triangle_soup(20, 0.4, 5));
+    const RayTracer tracer(scene);
+    for (const double far : {1e20, 1e200, 1e308}) {
+        const std::vector<Vec3> directions{{1, 0, 0}, {0, 0, -1}, {far, 1, 0}};
+        std::vector<RayHit> hits(directions.size());
+        tracer.nearest(directions, {far, far, 0}, {}, hits);
+        for (const RayHit& hit : hits) EXPECT_TRUE(hit.surface.is_none());
+        const Point from{far, far, 0}, to{0, 0, 0};
+        bool blocked = false;
+        tracer.occluded(std::span(&from, 1), std::span(&to, 1), {}, {}, std::span(&blocked, 1));
+    }
+}
+
 TEST(RayTracer, FindsSegmentsBlockedOnlyByWhatStandsBetweenTheirEnds) {
     const Scene scene = half_a_plate_between();
     const RayTracer tracer(scene);
