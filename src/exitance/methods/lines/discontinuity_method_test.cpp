@@ -54,6 +54,27 @@ TEST(DiscontinuityMethod, DirectLightIsSharpAndReflectedLightComesFromAHierarchy
     EXPECT_LT(error(light.interpolant_at(points)), 0.045);
 }
 
+TEST(DiscontinuityMethod, ReflectedLightJumpsAtContactsWhereNoDirectLightComes) {
+    std::vector<test::Face> faces{{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}},
+                                  {{{0.5, 0.5, 1}, {1.5, 0.5, 1}, {1.5, 1.5, 1}, {0.5, 1.5, 1}}},
+                                  {{{0.5, 0.5, 1}, {0.5, 1.5, 1}, {1.5, 1.5, 1}, {1.5, 0.5, 1}}},
+                                  {{{0.7, 0.7, 2}, {0.7, 1.3, 2}, {1.3, 1.3, 2}, {1.3, 0.7, 2}}, 10}};
+    // A leg that meets the board's dark side.
+    const std::vector<Vec2> leg{{0.9, 0.9}, {1.1, 0.9}, {1.1, 1.1}, {0.9, 1.1}};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec2 a = leg[i], b = leg[(i + 1) % 4];
+        faces.push_back({{{a.x, a.y, 0}, {b.x, b.y, 0}, {b.x, b.y, 1}, {a.x, a.y, 1}}});
+    }
+    const Scene scene = test::make(faces);
+    const Solution solution =
+        solved(scene, {.method = Method::discontinuity, .error = 0.05, .error_interpolant = 0.05});
+    int contacts = 0;
+    for (const DiscontinuityCurve& c : solution.discontinuity.curves)
+        contacts += c.cause == CurveCause::contact && scene.regions()[c.region].plane.n.z < -0.5 && c.a.z > 0.5;
+    EXPECT_GE(contacts, 4);
+    EXPECT_LT(solution.discontinuity.size(), 3000u);
+}
+
 TEST(DiscontinuityMethod, ReflectionsAreCounted) {
     const Scene scene = room_with_board();
     const Solution once = solved(scene, {.method = Method::discontinuity, .bounces = 1, .error = 0.05});

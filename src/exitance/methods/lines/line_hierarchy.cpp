@@ -349,8 +349,11 @@ bool LineHierarchy::solve(Progress& progress, const StopRequest& stop) {
     const CurveFinder finder(stage_, edges, {.stop = &stop});
     const std::size_t regions = stage_.scene.regions().size();
     std::vector<std::optional<ReceiverCurves>> found(regions);
-    parallel_for(regions, 1,
-                 [&](std::size_t r) { found[r].emplace(finder.find(RegionId(static_cast<std::uint32_t>(r)))); });
+    parallel_for(regions, 1, [&](std::size_t r) {
+        const RegionId region(static_cast<std::uint32_t>(r));
+        found[r].emplace(finder.find(region));
+        finder.add_contacts_in_the_dark(region, *found[r]);
+    });
     for (auto& f : found) receivers_.push_back(std::move(*f));
     roots_.resize(regions);
     for (const Piece& piece : stage_.pieces) {

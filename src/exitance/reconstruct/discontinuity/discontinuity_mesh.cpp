@@ -117,6 +117,8 @@ class Builder {
         parallel_for(regions, 1, [&](std::size_t i) {
             if (stop_.requested()) return;
             receivers[i].emplace(finder.find(RegionId(static_cast<std::uint32_t>(i))));
+            if (options_.indirect)
+                finder.add_contacts_in_the_dark(RegionId(static_cast<std::uint32_t>(i)), *receivers[i]);
             if (!stop_.requested()) triangles[i] = triangulated(*receivers[i]);
         });
         if (stop_.requested()) return;

@@ -85,6 +85,13 @@ void CurveFinder::add_contacts(RegionId region, ReceiverCurves& out) const {
             {out.frame.flat(a), out.frame.flat(b), CurveOrder::d0, CurveCause::contact, RegionId(), HUGE_VAL});
 }
 
+void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out) const {
+    if (!out.light.is_dark() || !out.curves.empty()) return;
+    add_contacts(region, out);
+    ArrangedCurves arranged = arranged_curves(std::move(out.curves), out.loops, nearness * stage_->scene.size());
+    out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
+}
+
 /// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
 double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter& emitter) const {
     Box box;

@@ -37,6 +37,10 @@ class CurveFinder {
 
     ReceiverCurves find(RegionId region) const;
 
+    /// Where no direct light comes there are no curves of it, but what is reflected jumps at contacts all the same:
+    /// adds these to what was found of such a region.
+    void add_contacts_in_the_dark(RegionId region, ReceiverCurves& out) const;
+
   private:
     void add_contacts(RegionId region, ReceiverCurves& out) const;
     void add_events(RegionId region, ReceiverCurves& out) const;
