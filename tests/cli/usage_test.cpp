@@ -97,4 +97,23 @@ TEST(ProgramUsage, AMissingValueOrInputIsAUsageError) {
     EXPECT_EQ(run_program({"stats", "a.h5", "b.h5"}).status, 2);
 }
 
+TEST(ProgramUsage, OptionsOfDiscontinuityMeshingElsewhereAreNamed) {
+    const std::vector<std::vector<std::string>> wrong{
+        {"--eee", "on"},
+        {"--triangulation", "shortest", "--method", "matrix"},
+        {"--dm-sources", "3", "--method", "discontinuity", "--bounces", "0"},
+        {"--premesh", "coarse", "--method", "discontinuity"},
+        {"--dm-sources", "much", "--method", "discontinuity"},
+        {"--dm-sources", "-1W", "--method", "discontinuity"},
+    };
+    const TemporaryFolder folder;
+    for (const auto& words : wrong) {
+        std::vector<std::string> all{"solve", "no_such_scene.obj", "-o", folder / "s.h5"};
+        all.insert(all.end(), words.begin(), words.end());
+        const Finished run = run_program(all);
+        EXPECT_EQ(run.status, 2) << words[0];
+        EXPECT_NE(run.err.find(words[0]), std::string::npos) << run.err;
+    }
+}
+
 }  // namespace exitance::test

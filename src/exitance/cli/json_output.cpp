@@ -152,8 +152,22 @@ std::string forecast_json(const Forecast& f) {
     return dump(json, 2);
 }
 
+namespace {
+
+/// Only where something was asked for, so that the options of other solutions stay as they are.
+Json discontinuity_json(const DiscontinuityChoice& c) {
+    Json json{{"eee", name_or_null(three_edge_names, c.three_edges)},
+              {"triangulation", name_or_null(triangulation_choices, c.triangulation)},
+              {"premesh", name_or_null(premesh_names, c.premesh)}};
+    if (c.sources)
+        json["dm_sources"] = {{"count", value_or_null(c.sources->count)}, {"power", value_or_null(c.sources->power)}};
+    return json;
+}
+
+}  // namespace
+
 std::string options_json(const SolveOptions& o) {
-    const Json json{
+    Json json{
         {"method", name_in(method_names, o.method)},
         {"basis", name_or_null(basis_names, o.basis)},
         {"epsilon", value_or_null(o.epsilon)},
@@ -183,6 +197,7 @@ std::string options_json(const SolveOptions& o) {
         {"keep_links", o.keep_links},
         {"seed", o.seed},
     };
+    if (o.discontinuity.any()) json["discontinuity"] = discontinuity_json(o.discontinuity);
     return dump(json, -1);
 }
 

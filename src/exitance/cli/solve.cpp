@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exitance/cli/classical_solve.hpp"
+#include "exitance/cli/discontinuity_arguments.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/local_pass_check.hpp"
 #include "exitance/cli/processes.hpp"
@@ -202,6 +203,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     }
     if (const Result<void> engine = check_task_engine(arguments); !engine) return terminal.fail(engine.error());
     if (const Result<void> pass = check_local_pass(arguments); !pass) return terminal.fail(pass.error());
+    if (const Result<void> cuts = check_discontinuity(arguments.options); !cuts) return terminal.fail(cuts.error());
     if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
     if (const Result<void> sky = read_sky(arguments); !sky) return terminal.fail(sky.error());
     if (const Result<void> obeyed = check_classical(arguments); !obeyed) return terminal.fail(obeyed.error());

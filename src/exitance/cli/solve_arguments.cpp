@@ -1,4 +1,5 @@
 #include "exitance/cli/classical_arguments.hpp"
+#include "exitance/cli/discontinuity_arguments.hpp"
 #include "exitance/cli/option_kinds.hpp"
 
 namespace exitance {
@@ -130,6 +131,7 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     declare_accuracy(app, o);
     declare_method(app, arguments);
     declare_classical(app, arguments);
+    declare_discontinuity(app, o);
     declare_limits(app, arguments);
     declare_json(app, arguments);
     declare_work(app, arguments, o.threads);

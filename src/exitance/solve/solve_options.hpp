@@ -11,6 +11,7 @@
 #include "exitance/core/schedule.hpp"
 #include "exitance/geometry/vec.hpp"
 #include "exitance/links/error/link_oracle.hpp"
+#include "exitance/solve/discontinuity_choice.hpp"
 #include "exitance/solve/relaxation.hpp"
 
 namespace exitance {
@@ -175,6 +176,8 @@ struct SolveOptions {
     /// Points where light is looked at; links are refined for their sake. Empty: light is as good everywhere.
     std::vector<ImportantPoint> importance = {};
     bool keep_links = false;  ///< Put the links of a hierarchy into the solution, for people to look at.
+
+    DiscontinuityChoice discontinuity = {};  ///< Of discontinuity meshing.
 
     int threads = 0;                         ///< 0: all cores. Results do not depend on it.
     Schedule schedule = Schedule::stealing;  ///< How work comes to threads. Likewise.

@@ -82,7 +82,7 @@ void BlockerEdges::add_sheets(const ConvexPiece& piece, std::span<const Point> c
     sheets_.push_back(across), sheets_.push_back(-across);
 }
 
-bool BlockerEdges::is_outline(const Edge& edge, const Point& p) const {
+std::pair<bool, bool> BlockerEdges::hidden_sides(const Edge& edge, const Point& p) const {
     const Vec3 plane = cross(edge.a - p, edge.b - p);
     const double least = 1e-9 * norm(plane);
     bool left = false, right = false;
@@ -90,7 +90,17 @@ bool BlockerEdges::is_outline(const Edge& edge, const Point& p) const {
         const double side = dot(plane, sheets_[i]);
         left |= side > least, right |= side < -least;
     }
+    return {left, right};
+}
+
+bool BlockerEdges::is_outline(const Edge& edge, const Point& p) const {
+    const auto [left, right] = hidden_sides(edge, p);
     return !(left && right);
+}
+
+int BlockerEdges::free_side(const Edge& edge, const Point& p) const {
+    const auto [left, right] = hidden_sides(edge, p);
+    return left == right ? 0 : left ? -1 : 1;
 }
 
 }  // namespace exitance

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "exitance/geometry/vec.hpp"
@@ -29,10 +30,14 @@ class BlockerEdges {
     /// Seen from p, is there free sight on one side of the edge at least? Else what lies on both of its sides hides
     /// whatever happens there.
     bool is_outline(const Edge& edge, const Point& p) const;
+    /// The side on which sight is free: 1 where cross(a - p, b - p) points to, -1 on the other, 0 where it is on both
+    /// or on neither.
+    int free_side(const Edge& edge, const Point& p) const;
     /// Do the corners lie within rounding of a piece's plane?
     double tolerance() const { return tolerance_; }
 
   private:
+    std::pair<bool, bool> hidden_sides(const Edge& edge, const Point& p) const;
     void find_sheets(const Occluders& occluders);
     void add_sheets(const ConvexPiece& piece, std::span<const Point> corners, Edge& edge);
 

@@ -82,7 +82,7 @@ void ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId nu
     const bool holds_apex = std::abs(piece.plane.signed_distance(wedge.apex)) <= tolerance;
     const bool holds_base = std::abs(piece.plane.signed_distance(wedge.base)) <= tolerance &&
                             std::abs(piece.plane.signed_distance(wedge.base + wedge.along)) <= tolerance;
-    if (holds_base || (holds_apex && wedge.beyond))
+    if (holds_base || (holds_apex && (wedge.beyond || wedge.passes_apex)))
         return;  // it meets the wedge in the sight lines' own corner or edge
     Point c, d;
     if (!crossing(occluders_->corners(number), wedge.apex, normal, tolerance, c, d)) return;
@@ -101,7 +101,7 @@ void ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId nu
         hidden_.emplace_back(std::min(s, t), std::max(s, t));
     };
     add(c, d, 1);
-    if (wedge.beyond) add(c, d, -1);
+    if (wedge.beyond || wedge.passes_apex) add(c, d, -1);
 }
 
 void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std::vector<ShadowEvent>& events) {
@@ -121,7 +121,7 @@ void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std:
         return false;
     };
     // Within the fan only, where sight lines end at the receiver; beyond the apex there are two fans.
-    if (!wedge.beyond)
+    if (!wedge.beyond && !wedge.passes_apex)
         for (const auto& [from, other] : {std::pair{p, q}, std::pair{q, p}}) {
             Vec3 inside = cross(normal, from - wedge.apex);
             if (dot(inside, other - wedge.apex) < 0) inside = -inside;
@@ -194,8 +194,8 @@ void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, s
     keep_visible(wedge, event, events);
 }
 
-void ShadowEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
-                             std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events) {
+void ShadowEventFinder::set(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
+                            std::span<const std::uint32_t> among) {
     frame_ = &receiver, source_ = &source, own_ = own, lo_ = lo, hi_ = hi, among_ = among;
     least_ = 4 * edges_->tolerance();
     corners_.clear(), edges_at_.clear();
@@ -210,6 +210,11 @@ void ShadowEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, 
         std::unique(corners_.begin(), corners_.end(), [](const auto& x, const auto& y) { return x.first == y.first; }),
         corners_.end());
     std::sort(edges_at_.begin(), edges_at_.end());
+}
+
+void ShadowEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
+                             std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events) {
+    set(receiver, own, lo, hi, source, among);
     for (const auto& loop : source.loops)
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const Point &s = loop[i], &next = loop[(i + 1) % loop.size()];

@@ -16,6 +16,7 @@ struct ShadowEvent {
     Vec2 a, b;
     bool is_kink = false;            ///< The light's slope breaks (D1), not only its curvature (D2).
     bool by_edge_of_source = false;  ///< An edge of the source over a blocker's corner (EV), not a corner over an edge.
+    bool by_blockers_alone = false;  ///< A corner of a blocker over another edge of one (NEV), before the source.
     double width = 0;                ///< Of the half-shadow that begins here, metres.
 };
 
@@ -29,7 +30,8 @@ struct EventSource {
     double size = 0;  ///< Metres across.
 };
 
-/// Vertex-edge and edge-vertex events of discontinuity meshing [Heckbert92], without those of three edges.
+/// Vertex-edge and edge-vertex events of discontinuity meshing [Heckbert92]; those of a blocker's corner over another
+/// edge of a blocker in front of the source [Drettakis94]. Those of three edges: three_edge_events.hpp.
 ///
 /// A corner of the source and an edge of a blocker span a wedge; an edge of the source and a corner of a blocker span
 /// two, on either side of the corner. Each meets the receiver's plane in a line. What lies within the wedge hides
@@ -44,6 +46,11 @@ class ShadowEventFinder {
     void find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
               std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events);
 
+    /// The same for corners of blockers over blockers' edges, in front of the source. O(corners edges), of which few
+    /// reach the source.
+    void find_non_emitter(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
+                          std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events);
+
     std::size_t wedges = 0;  ///< Looked at so far.
 
   private:
@@ -54,7 +61,14 @@ class ShadowEventFinder {
         Vec3 along;
         double first = 0, last = 1;
         bool beyond = false;
+        bool passes_apex = false;  ///< The apex is a blocker's corner: lines come from beyond it.
     };
+    void set(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
+             std::span<const std::uint32_t> among);
+    bool is_near_outline(std::uint32_t corner, const Point& from) const;
+    bool clip_to_source(Wedge& wedge, const Vec3& normal) const;
+    void add_corner_before_edge(std::uint32_t corner, const Point& w, const BlockerEdges::Edge& edge, bool beyond,
+                                std::vector<ShadowEvent>& events);
     void add_corner_over_edge(const Point& s, const Vec3& before, const Vec3& after, const BlockerEdges::Edge& edge,
                               std::vector<ShadowEvent>& events);
     void add_edge_over_corner(const Point& q0, const Point& q1, std::uint32_t corner, const Point& w,

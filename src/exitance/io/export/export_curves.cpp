@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "exitance/io/export/export_formats.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 
@@ -16,6 +18,8 @@ const char* name_of(CurveCause cause) {
             return "EV";
         case CurveCause::blocker_edge:
             return "NEV";
+        case CurveCause::three_edges:
+            return "EEE";
     }
     return "";
 }
@@ -32,8 +36,8 @@ Result<void> write_curves(const Solution& solution, const std::string& path) {
     const auto face_of = [&](RegionId r) { return solution.scene.regions()[r].surfaces.front().value; };
     for (const DiscontinuityCurve& c : solution.discontinuity.curves)
         file->write(fmt::format("{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},D{},{},{}\n", face_of(c.region),
-                                c.a.x, c.a.y, c.a.z, c.b.x, c.b.y, c.b.z, static_cast<int>(c.order) - 1,
-                                name_of(c.cause),
+                                c.a.x, c.a.y, c.a.z, c.b.x, c.b.y, c.b.z,
+                                static_cast<int>(std::min(c.order, CurveOrder::d2)) - 1, name_of(c.cause),
                                 c.source.is_none() ? std::string() : std::to_string(face_of(c.source))));
     return file->commit();
 }

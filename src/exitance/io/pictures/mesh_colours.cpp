@@ -7,7 +7,8 @@ namespace {
 
 constexpr Rgb white{255, 255, 255}, night{20, 20, 24};
 constexpr Rgb lit{246, 226, 138}, penumbra{176, 122, 150}, umbra{58, 62, 110};
-constexpr Rgb value_breaks{222, 30, 40}, slope_breaks{0, 150, 90}, curvature_breaks{40, 110, 245}, border{0, 0, 0};
+constexpr Rgb value_breaks{222, 30, 40}, slope_breaks{0, 150, 90}, curvature_breaks{40, 110, 245}, conic{170, 60, 200},
+    border{0, 0, 0};
 
 Rgb colour_of(ShadowClass c) {
     return c == ShadowClass::lit ? lit : c == ShadowClass::penumbra ? penumbra : umbra;
@@ -41,16 +42,20 @@ void draw_ordered_edges(Image& image, std::span<const std::optional<CurveOrder>>
             for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(pixel[c] / 4 * 3);
             continue;
         }
-        const Rgb& colour = *edges[i] == CurveOrder::d0   ? value_breaks
-                            : *edges[i] == CurveOrder::d1 ? slope_breaks
-                            : *edges[i] == CurveOrder::d2 ? curvature_breaks
-                                                          : border;
+        const Rgb& colour = *edges[i] == CurveOrder::d0    ? value_breaks
+                            : *edges[i] == CurveOrder::d1  ? slope_breaks
+                            : *edges[i] == CurveOrder::d2  ? curvature_breaks
+                            : *edges[i] == CurveOrder::eee ? conic
+                                                           : border;
         std::copy(colour.begin(), colour.end(), pixel);
     }
 }
 
 std::vector<KeyEntry> edge_order_key() {
-    return {{"d0 value", value_breaks}, {"d1 slope", slope_breaks}, {"d2 curvature", curvature_breaks}};
+    return {{"d0 value", value_breaks},
+            {"d1 slope", slope_breaks},
+            {"d2 curvature", curvature_breaks},
+            {"eee conic", conic}};
 }
 
 void draw_key(Image& image, std::span<const KeyEntry> key) {

@@ -8,7 +8,7 @@ namespace exitance {
 namespace {
 
 bool is_order(std::uint8_t v) {
-    return v <= 3 || v == 255;
+    return v <= 4 || v == 255;
 }
 
 /// Why the numbers make no mesh, if they do not.
@@ -54,12 +54,14 @@ void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNo
     file.write(in("values"), flat(mesh.values), bands, {"W/m^2", "irradiance at the nodes"});
     file.write(in("nodes"), nodes, 6, {"1", "nodes of a triangle: corners, then the middles of edges 01, 12, 20"});
     file.write(in("region"), region, 1, {"1", "region of a triangle"});
-    file.write(in("edge_order"), edge_order, 3, {"1", "of edges 01, 12, 20: 0 border, 1 D0, 2 D1, 3 D2, 255 none"});
+    file.write(in("edge_order"), edge_order, 3,
+               {"1", "of edges 01, 12, 20: 0 border, 1 D0, 2 D1, 3 D2, 4 EEE, 255 none"});
     file.write(in("shadow"), shadow, 1, {"1", "of a triangle: 0 lit, 1 penumbra, 2 umbra"});
     file.write(in("curve_region"), curve_region, 1, {"1", "region that a curve lies on"});
     file.write(in("curve_ends"), ends, 6, {"m", "where a curve begins and ends"});
-    file.write(in("curve_order"), curve_order, 1, {"1", "order of a curve: 1 D0, 2 D1, 3 D2"});
-    file.write(in("curve_cause"), curve_cause, 1, {"1", "0 contact, 1 vertex-edge, 2 edge-vertex, 3 blocker's edge"});
+    file.write(in("curve_order"), curve_order, 1, {"1", "order of a curve: 1 D0, 2 D1, 3 D2, 4 D2 of three edges"});
+    file.write(in("curve_cause"), curve_cause, 1,
+               {"1", "0 contact, 1 vertex-edge, 2 edge-vertex, 3 blocker's edge, 4 three edges"});
     file.write(in("curve_source"), curve_source, 1, {"1", "region that emits; 4294967295: none"});
 }
 
@@ -83,7 +85,7 @@ SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::
     const bool known = std::all_of(edge_order.begin(), edge_order.end(), is_order) &&
                        std::all_of(shadow.begin(), shadow.end(), [](std::uint8_t v) { return v <= 2; }) &&
                        std::all_of(order.begin(), order.end(), is_order) &&
-                       std::all_of(cause.begin(), cause.end(), [](std::uint8_t v) { return v <= 3; });
+                       std::all_of(cause.begin(), cause.end(), [](std::uint8_t v) { return v <= 4; });
     if (!known) return file.fail(in("edge_order"), "or another one holds a kind that there is not"), SixNodeMesh();
     for (std::size_t i = 0; i < points.size() / 3; ++i) {
         mesh.points.push_back({points[3 * i], points[3 * i + 1], points[3 * i + 2]});

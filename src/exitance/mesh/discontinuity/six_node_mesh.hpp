@@ -11,12 +11,14 @@
 
 namespace exitance {
 
-/// How much of a function breaks across a curve on a receiver: its value, its slope, its curvature.
-enum class CurveOrder : std::uint8_t { border = 0, d0 = 1, d1 = 2, d2 = 3, none = 255 };
+/// How much of a function breaks across a curve on a receiver: its value, its slope, its curvature; `eee`: its
+/// curvature along a stretch of a conic, where edges of three polygons are seen in one line.
+enum class CurveOrder : std::uint8_t { border = 0, d0 = 1, d1 = 2, d2 = 3, eee = 4, none = 255 };
 
 /// What makes a curve: surfaces that touch, a source's corner seen over a blocker's edge, a source's edge seen over a
-/// blocker's corner, a blocker's corner seen over another's edge.
-enum class CurveCause : std::uint8_t { contact, vertex_edge, edge_vertex, blocker_edge };
+/// blocker's corner, a blocker's corner seen over another's edge, an edge of the source and two of blockers in one line
+/// of sight.
+enum class CurveCause : std::uint8_t { contact, vertex_edge, edge_vertex, blocker_edge, three_edges };
 
 /// A stretch of a curve, on a region; `source` is the emitting region, none for contacts.
 struct DiscontinuityCurve {

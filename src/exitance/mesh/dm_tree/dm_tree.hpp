@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "exitance/mesh/dm_tree/triangulation_scheme.hpp"
 #include "exitance/mesh/dm_tree/winged_edge_mesh.hpp"
 #include "exitance/mesh/planar_subdivision.hpp"
 
@@ -40,14 +41,6 @@ class DmTree {
     WingedEdgeMesh mesh_;
     std::vector<Node> nodes_;
     std::size_t border_edges_;
-};
-
-/// How faces become triangles. Source: [Gatenby95]; the last one is ours, without construction edges.
-enum class TriangulationScheme {
-    longest,    ///< The middle of the longest diagonal is joined to all corners.
-    shortest,   ///< The shortest diagonal cuts, again and again.
-    heuristic,  ///< The diagonal cuts that splits the angles at its ends best.
-    delaunay,   ///< Of the curves alone, with the largest smallest angle.
 };
 
 inline constexpr std::array<std::pair<TriangulationScheme, const char*>, 4> triangulation_names{{

@@ -8,7 +8,8 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
-#include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
+#include "exitance/reconstruct/discontinuity/findable.hpp"
+#include "exitance/reconstruct/discontinuity/receiver_triangles.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
@@ -108,24 +109,35 @@ class Builder {
     void find_curves() {
         const BlockerEdges edges(stage_.occluders);
         constexpr double unseen = 0.1, tiny = 1e-5;
-        const CurveFinder finder(
-            stage_, edges,
-            {.least_effect = unseen * options_.largest_error * largest_, .least_area = tiny * area_, .stop = &stop_});
+        // Where light G falls to 0 across w, elements of size h have cubic errors of about G (h/w)^3 / 10, so that the
+        // error T leaves h/w = (10 T/G)^(1/3); a bend 2 G/w^2 within one is off by G (h/w)^2 / 8. That is below T where
+        // G is below 5 T: there, D2 lines do no good.
+        constexpr double bent = 5;
+        const CurveFinder finder(stage_, edges,
+                                 {.least_effect = unseen * options_.largest_error * largest_,
+                                  .least_area = tiny * area_,
+                                  .least_bend = bent * options_.largest_error * largest_,
+                                  .conics = options_.conics,
+                                  .secondary = options_.secondary,
+                                  .stop = &stop_});
         const std::size_t regions = stage_.scene.regions().size();
         std::vector<std::optional<ReceiverCurves>> receivers(regions);
-        std::vector<LabelledTriangles> triangles(regions);
+        std::vector<ReceiverTriangles> triangles(regions);
+        const TriangleOptions cut{options_.triangulation, options_.premesh, options_.penumbra_first,
+                                  1e-7 * stage_.scene.size()};
         parallel_for(regions, 1, [&](std::size_t i) {
             if (stop_.requested()) return;
             receivers[i].emplace(finder.find(RegionId(static_cast<std::uint32_t>(i))));
             if (options_.indirect)
                 finder.add_contacts_in_the_dark(RegionId(static_cast<std::uint32_t>(i)), *receivers[i]);
-            if (!stop_.requested()) triangles[i] = triangulated(*receivers[i]);
+            if (!stop_.requested()) triangles[i] = receiver_triangles(*receivers[i], cut);
         });
         if (stop_.requested()) return;
         std::vector<std::uint32_t> whole;
         for (const RegionId r : stage_.scene.regions().ids()) {
             ReceiverCurves& receiver = *receivers[r.value];
-            mesh_.add(triangles[r.value], receiver.frame);
+            mesh_.add(triangles[r.value].triangles, receiver.frame);
+            report_.winged_edge_bytes += triangles[r.value].winged_edge_bytes;
             region_.resize(mesh_.triangles().size(), r), whole.resize(mesh_.triangles().size(), r.value);
             record(r, receiver);
         }
@@ -140,27 +152,29 @@ class Builder {
                     stage_.direct.prepare(outline(static_cast<std::uint32_t>(f)), light, lights_[f], workspace);
             }
         });
+        std::size_t candidates = 0;
         for (std::uint32_t f = 0; f < lights_.size(); ++f) {
             const ShadowClass c = class_of(f, mesh_.centre(f));
+            if (c == ShadowClass::penumbra) candidates += count_different(lights_[f].candidates);
             ++(c == ShadowClass::lit        ? report_.counts.lit
                : c == ShadowClass::penumbra ? report_.counts.penumbra
                                             : report_.counts.umbra);
         }
-    }
-
-    static LabelledTriangles triangulated(const ReceiverCurves& receiver) {
-        std::vector<LabelledSegment> segments;
-        for (const FlatCurve& c : receiver.curves) segments.push_back({c.a, c.b, static_cast<std::uint8_t>(c.order)});
-        LabelledTriangles out = labelled_triangles(receiver.loops, segments);
-        if (out.corners.empty() && !segments.empty()) out = labelled_triangles(receiver.loops, {});
-        return out;
+        if (report_.counts.penumbra > 0)
+            report_.candidate_share = static_cast<double>(candidates) / static_cast<double>(report_.counts.penumbra) /
+                                      static_cast<double>(stage_.pieces.size());
     }
 
     void record(RegionId r, const ReceiverCurves& receiver) {
         DiscontinuityCounts& counts = report_.counts;
         counts.wedges += receiver.wedges, counts.left_out += receiver.left_out;
         for (const FlatCurve& c : receiver.curves) {
-            ++(c.order == CurveOrder::d0 ? counts.d0 : c.order == CurveOrder::d1 ? counts.d1 : counts.d2);
+            ++(c.order == CurveOrder::d0   ? counts.d0
+               : c.order == CurveOrder::d1 ? counts.d1
+               : c.order == CurveOrder::d2 ? counts.d2
+                                           : counts.eee);
+            report_.secondary_curves += std::any_of(options_.secondary.begin(), options_.secondary.end(),
+                                                    [&](const SecondarySource& o) { return o.region == c.source; });
             curves_.push_back({r, receiver.frame.at(c.a), receiver.frame.at(c.b), c.order, c.cause, c.source});
             touched_[r.value] |= c.order == CurveOrder::d0 && c.cause == CurveCause::contact;
         }
@@ -256,7 +270,7 @@ class Builder {
         const double allowed = tolerance * tolerance * area_;
         constexpr double between = 0.8;  // places that are tried miss some of what lies between them
         const double largest = between * options_.largest_error * largest_;
-        constexpr double unfindable = 3e-7, shortest = 1e-6;
+        constexpr double unfindable = 3e-6, shortest = 1e-6;
         constexpr int most_rounds = 60;
         for (int round = 0; round < most_rounds; ++round) {
             if (!light_nodes()) {
@@ -272,8 +286,12 @@ class Builder {
             const double share =
                 sum <= allowed ? HUGE_VAL : allowed / count * std::min(1.0, 2 * std::sqrt(allowed / sum));
             std::vector<std::uint32_t> coarse;
+            std::vector<double> missing(misfits_.size());
+            for (std::uint32_t t = 0; t < misfits_.size(); ++t)
+                if (misfits_[t].largest > largest) missing[t] = mesh_.area(t);
+            const double least = least_findable(missing, unfindable * area_);
             for (std::uint32_t t = 0; t < misfits_.size(); ++t) {
-                const bool misses = misfits_[t].largest > largest && mesh_.area(t) > unfindable * area_;
+                const bool misses = missing[t] > least;
                 if ((misfits_[t].squared > share || misses) && mesh_.longest_edge(t) > shortest * stage_.scene.size())
                     coarse.push_back(t);
             }
@@ -374,33 +392,6 @@ class Builder {
 SixNodeMesh make_discontinuity_mesh(const Stage& stage, const DiscontinuityOptions& options,
                                     DiscontinuityReport& report, const StopRequest& stop) {
     return Builder(stage, options, report, stop).run();
-}
-
-ElementFunction linear_elements(const SixNodeMesh& mesh, const Scene& scene) {
-    ElementFunction out;
-    std::vector<std::uint32_t> triangle_of;
-    for (std::uint32_t t = 0; t < mesh.size(); ++t) {
-        const auto& n = mesh.nodes[t];
-        const Point& o = mesh.points[n[0]];
-        const Patch patch{o, mesh.points[n[1]] - o, mesh.points[n[2]] - o, Patch::Shape::triangle};
-        const double square = squared_norm(cross(patch.a, patch.b));
-        constexpr double flat = 1e-24;  // (area / size^2)^2: no places can be told from one another within it
-        if (!(square > flat * std::pow(scene.size(), 4))) continue;
-        const ElementId root = out.tree.add_root(mesh.region[t], patch);
-        out.tree.split(root, Cut::both);
-        triangle_of.push_back(t);
-    }
-    out.first_value.resize(out.tree.size());
-    for (std::size_t i = 0; i < out.tree.roots().size(); ++i) {
-        const ElementId root = out.tree.roots()[i];
-        for (const ElementId child : out.tree.children(root)) {
-            out.first_value[child] = static_cast<std::uint32_t>(out.values.size());
-            for (int k = 0; k < 3; ++k)
-                out.add_value(
-                    mesh.at(triangle_of[i], out.tree.patch(root).coordinates(out.tree.patch(child).corner(k))));
-        }
-    }
-    return out;
 }
 
 }  // namespace exitance

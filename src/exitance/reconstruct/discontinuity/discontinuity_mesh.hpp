@@ -4,6 +4,8 @@
 
 #include "exitance/core/progress.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
+#include "exitance/mesh/dm_tree/triangulation_scheme.hpp"
+#include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -16,7 +18,12 @@ struct DiscontinuityOptions {
     double largest_error = 0.03;
     /// Light on top of what is direct, at a place of a region; empty: none.
     std::function<Spectrum(RegionId, const Point&)> indirect = {};
-    Spectrum direct_weight = Spectrum(1.0);  ///< What direct light is to be multiplied by.
+    Spectrum direct_weight = Spectrum(1.0);       ///< What direct light is to be multiplied by.
+    std::vector<SecondarySource> secondary = {};  ///< Cut along their shadows, too.
+    ConicCurves conics = ConicCurves::at_umbras;
+    TriangulationScheme triangulation = TriangulationScheme::delaunay;
+    bool penumbra_first = false;  ///< Longest curves of half-shadows first; not with Delaunay's triangulation.
+    bool premesh = false;         ///< A coarse grid before all curves, likewise.
     std::size_t max_triangles = 2'000'000;
     std::uint64_t seed = 1;  ///< Of the places at which the mesh is tried.
 };
@@ -28,6 +35,9 @@ struct DiscontinuityReport {
     bool interrupted = false;
     DiscontinuityCounts counts;
     double mesh_seconds = 0, direct_seconds = 0;
+    std::size_t secondary_curves = 0;   ///< Of the curves, those of secondary sources.
+    std::size_t winged_edge_bytes = 0;  ///< Of the trees before triangles are made of them; 0 with Delaunay's.
+    double candidate_share = 0;         ///< Mean over faces in penumbra of what may hide a source, of all polygons.
 };
 
 /// Light on six-node triangles that are cut along the curves across which direct light changes its form: contacts, VE

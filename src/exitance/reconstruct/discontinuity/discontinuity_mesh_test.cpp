@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "exitance/core/parallel.hpp"
@@ -133,6 +134,39 @@ TEST(DiscontinuityMesh, HoldsReflectedLightToo) {
     const Solution s = solved(scene, {.method = Method::discontinuity, .error = 0.02});
     ASSERT_FALSE(s.discontinuity.empty());
     for (const auto& value : s.discontinuity.values) EXPECT_NEAR(value[0], 2, 0.1);
+}
+
+TEST(DiscontinuityMesh, TheThesissTriangulationsHoldTheErrorAndLoseNoArea) {
+    const Scene scene = built_scene("table");
+    double all = 0;
+    for (const Region& region : scene.regions()) all += region.area;
+    for (const TriangulationScheme scheme :
+         {TriangulationScheme::longest, TriangulationScheme::shortest, TriangulationScheme::heuristic}) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.02};
+        options.discontinuity.triangulation = scheme;
+        options.discontinuity.premesh = Premesh::coarse;
+        const Solution s = solved(scene, options);
+        double area = 0;
+        for (std::uint32_t t = 0; t < s.discontinuity.size(); ++t) area += s.discontinuity.area(t);
+        EXPECT_NEAR(area, all, 1e-9 * all);
+        EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.02);
+        EXPECT_GT(s.statistics.figures.at("winged_edge_bytes"), 0);
+    }
+}
+
+TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightWhereItIsAskedTo) {
+    // A mirror-bright wall beside the blocker throws its light onto the floor, past the blocker.
+    const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                                    {{{-0.5, -0.5, 0.7}, {0.5, -0.5, 0.7}, {0.5, 0.5, 0.7}, {-0.5, 0.5, 0.7}}, 0},
+                                    {{{-2, 2, 0.5}, {2, 2, 0.5}, {2, 2, 3}, {-2, 2, 3}}, 0},
+                                    {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100}});
+    SolveOptions options{.method = Method::discontinuity, .error = 0.1, .error_interpolant = 0.05};
+    options.discontinuity.sources = SecondarySources{.count = 2};
+    const Solution s = solved(scene, options);
+    EXPECT_EQ(s.statistics.figures.at("secondary_sources"), 2);
+    EXPECT_GT(s.statistics.figures.at("secondary_curves"), 0);
+    const auto of_wall = [](const DiscontinuityCurve& c) { return c.source == RegionId(2); };
+    EXPECT_TRUE(std::any_of(s.discontinuity.curves.begin(), s.discontinuity.curves.end(), of_wall));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <map>
 
 #include "exitance/transport/direct_projection.hpp"
+#include "exitance/visibility/shaft.hpp"
+#include "exitance/visibility/three_edge_events.hpp"
 
 namespace exitance {
 namespace {
@@ -58,10 +60,10 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
     ReceiverCurves out(region);
     DirectLight::Workspace workspace;
     stage_->direct.prepare(convex_around(region, out), region.plane.n, number, out.light, workspace);
-    if (out.light.is_dark()) return out;
+    if (out.light.is_dark() && options_.secondary.empty()) return out;
     add_contacts(number, out);
     if (region.area >= options_.least_area)
-        add_events(number, out);
+        add_events(number, out), add_secondary(number, out);
     else if (!out.light.is_unshadowed())
         out.left_out += out.light.sources.size();
     if (options_.stop && options_.stop->requested()) return out;
@@ -92,20 +94,21 @@ void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out)
     out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
 }
 
-/// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
-double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter& emitter) const {
+/// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M. `weight`:
+/// M times the region's reflectance.
+double CurveFinder::greatest_effect(RegionId region, RegionId source, const Point& centre, double radius,
+                                    double weight) const {
     Box box;
     for (const auto& loop : stage_->scene.regions()[region].loops)
         for (const Point& p : loop) box.add(p);
     double squared_gap = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double gap = std::max({0.0, box.lo[k] - emitter.centre[k], emitter.centre[k] - box.hi[k]});
+        const double gap = std::max({0.0, box.lo[k] - centre[k], centre[k] - box.hi[k]});
         squared_gap += gap * gap;
     }
-    const double distance = std::max(0.0, std::sqrt(squared_gap) - emitter.radius);
-    const double area = stage_->scene.regions()[emitter.region].area;
-    const double factor = area < pi * distance * distance ? area / (pi * distance * distance) : 1;
-    return factor * mean(light_weight(stage_->scene.material(region)) * emitter.exitance);
+    const double distance = std::max(0.0, std::sqrt(squared_gap) - radius);
+    const double area = stage_->scene.regions()[source].area;
+    return weight * (area < pi * distance * distance ? area / (pi * distance * distance) : 1);
 }
 
 void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
@@ -119,7 +122,8 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         if (options_.stop && options_.stop->requested()) return;
         const DirectLight::Emitter& emitter = stage_->direct.emitters()[number];
         if (stage_->direct.is_distant(number)) continue;  // bisection follows the shadows of skies and suns
-        const double gain = greatest_effect(region, emitter);
+        const double gain = greatest_effect(region, emitter.region, emitter.centre, emitter.radius,
+                                            mean(light_weight(stage_->scene.material(region)) * emitter.exitance));
         if (gain < options_.least_effect) {
             ++out.left_out;
             continue;
@@ -158,13 +162,76 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, double 
     std::vector<ShadowEvent> events;
     finder.find(out.frame, region, box.lo, box.hi, source, edges, events);
     out.wedges += finder.wedges;
-    for (const ShadowEvent& e : events)
+    const bool bends = gain >= options_.least_bend;
+    for (const ShadowEvent& e : events) {
+        const bool weak = !source.is_point && !e.is_kink && !bends;
+        out.left_out += weak;
+        if (weak) continue;
         out.curves.push_back({e.a, e.b,
                               source.is_point ? CurveOrder::d0
                               : e.is_kink     ? CurveOrder::d1
                                               : CurveOrder::d2,
                               e.by_edge_of_source ? CurveCause::edge_vertex : CurveCause::vertex_edge, source.region,
                               gain});
+    }
+    if (bends && !source.is_point) add_non_emitter_events(region, source, gain, edges, out);
+}
+
+/// NEV and EEE: pairs of blockers' edges, so that where there are very many they are left to bisection.
+void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& source, double gain,
+                                         std::span<const std::uint32_t> edges, ReceiverCurves& out) const {
+    constexpr std::size_t many = 400;
+    if (edges.size() > many) {
+        ++out.left_out;
+        return;
+    }
+    const FlatBox box(out.loops);
+    ShadowEventFinder finder(stage_->occluders, *edges_);
+    std::vector<ShadowEvent> events;
+    finder.find_non_emitter(out.frame, region, box.lo, box.hi, source, edges, events);
+    out.wedges += finder.wedges;
+    for (const ShadowEvent& e : events)
+        out.curves.push_back({e.a, e.b, CurveOrder::d2, CurveCause::blocker_edge, source.region, gain});
+    if (options_.conics == ConicCurves::none) return;
+    // A polyline beside its conic leaves a strip where the polynomial is the neighbour's: as thin as lines that are
+    // one.
+    constexpr double beside = 1e-3;
+    const double sagitta = beside * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
+    std::vector<ThreeEdgeEvent> conics;
+    ThreeEdgeEventFinder(stage_->occluders, *edges_)
+        .find(out.frame, region, box.lo, box.hi, source, edges, options_.conics == ConicCurves::at_umbras, sagitta,
+              conics);
+    for (const ThreeEdgeEvent& c : conics)
+        for (std::size_t i = 1; i < c.places.size(); ++i)
+            out.curves.push_back(
+                {c.places[i - 1], c.places[i], CurveOrder::eee, CurveCause::three_edges, source.region, gain});
+}
+
+/// What stands between the region and each secondary source is found by the shaft between them.
+void CurveFinder::add_secondary(RegionId region, ReceiverCurves& out) const {
+    const Region& receiver = stage_->scene.regions()[region];
+    const std::vector<Point> outline = convex_around(receiver, out);
+    Shaft shaft;
+    std::vector<PieceId> candidates;
+    for (const SecondarySource& s : options_.secondary) {
+        if (s.region == region || (options_.stop && options_.stop->requested())) continue;
+        const Region& source = stage_->scene.regions()[s.region];
+        const std::vector<Point> from = convex_around(source, ReceiverCurves(source));
+        shaft.set(stage_->occluders, {outline, receiver.plane.n, region}, {from, source.plane.n, s.region});
+        if (shaft.classify(candidates) != View::mixed) continue;
+        Point centre;
+        for (const Point& p : from) centre = centre + (1.0 / static_cast<double>(from.size())) * p;
+        double radius = 0;
+        for (const Point& p : from) radius = std::max(radius, norm(p - centre));
+        const double gain =
+            greatest_effect(region, s.region, centre, radius,
+                            s.radiosity * mean(light_weight(stage_->scene.material(region)) * Spectrum(1.0)));
+        if (gain < options_.least_effect) {
+            ++out.left_out;
+            continue;
+        }
+        add_events(region, {source.loops, source.plane, s.region, false, 2 * radius}, gain, candidates, out);
+    }
 }
 
 }  // namespace exitance

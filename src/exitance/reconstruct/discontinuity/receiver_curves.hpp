@@ -21,14 +21,27 @@ struct ReceiverCurves {
     std::size_t wedges = 0, left_out = 0;  ///< Looked at; sources or curves that change too little.
 };
 
+/// A surface whose reflected light has shadows, too.
+struct SecondarySource {
+    RegionId region;
+    double radiosity = 0;  ///< W/m^2, mean of the bands.
+};
+
+/// Which lines of three edges are looked for.
+enum class ConicCurves { none, at_umbras, all };
+
 struct CurveOptions {
-    double least_effect = 0;            ///< W/m^2 of rho E: sources that bring less than this have no curves.
-    double least_area = 0;              ///< m^2: smaller regions have contacts alone.
-    std::size_t most_curves = 1'000;    ///< On a region.
+    double least_effect = 0;          ///< W/m^2 of rho E: sources that bring less than this have no curves.
+    double least_area = 0;            ///< m^2: smaller regions have contacts alone.
+    std::size_t most_curves = 1'000;  ///< On a region.
+    double least_bend = 0;            ///< W/m^2 of rho E: sources that bring less than this have no D2 curves.
+    ConicCurves conics = ConicCurves::at_umbras;
+    std::vector<SecondarySource> secondary = {};
     const StopRequest* stop = nullptr;  ///< Once it is requested, what is found is not complete.
 };
 
-/// Finds D0, D1 and D2 curves of primary sources: where other polygons touch a region, and its VE and EV events.
+/// Finds D0, D1 and D2 curves of primary sources, and of secondary ones that are asked for: where other polygons touch
+/// a region, and its VE, EV, NEV and EEE events.
 class CurveFinder {
   public:
     /// Both must outlive it.
@@ -46,7 +59,10 @@ class CurveFinder {
     void add_events(RegionId region, ReceiverCurves& out) const;
     void add_events(RegionId region, const EventSource& source, double gain, std::span<const PieceId> blockers,
                     ReceiverCurves& out) const;
-    double greatest_effect(RegionId region, const DirectLight::Emitter& emitter) const;
+    void add_non_emitter_events(RegionId region, const EventSource& source, double gain,
+                                std::span<const std::uint32_t> edges, ReceiverCurves& out) const;
+    void add_secondary(RegionId region, ReceiverCurves& out) const;
+    double greatest_effect(RegionId region, RegionId source, const Point& centre, double radius, double weight) const;
 
     const Stage* stage_;
     const BlockerEdges* edges_;

@@ -1,0 +1,65 @@
+#include "exitance/cli/discontinuity_arguments.hpp"
+
+#include "exitance/cli/option_kinds.hpp"
+
+namespace exitance {
+namespace {
+
+/// "8": so many; "20W": those that send out so much.
+SecondarySources read_sources(const std::string& word) {
+    const char* const name = "--dm-sources";
+    if (word.ends_with("W")) {
+        const double power = read_number(name, word.substr(0, word.size() - 1));
+        if (!(power > 0)) throw CLI::ValidationError(name, fmt::format("must be above 0 W, not {}", word));
+        return {.power = power};
+    }
+    const double count = read_number(name, word);
+    if (count != std::floor(count) || count < 0 || count > 1e6)
+        throw CLI::ValidationError(
+            name, fmt::format("must be a whole number of surfaces, or a power such as 20W, not {}", word));
+    return {.count = static_cast<std::size_t>(count)};
+}
+
+}  // namespace
+
+void declare_discontinuity(CLI::App& app, SolveOptions& options) {
+    DiscontinuityChoice& o = options.discontinuity;
+    const char* const group = "Discontinuity meshing";
+    app.add_option_function<std::string>(
+           "--dm-sources", [&o](const std::string& w) { o.sources = read_sources(w); },
+           "Cut along shadows of reflected light, too: of the N surfaces that reflect the most, or of those that "
+           "reflect at least so many watts (20W)")
+        ->type_name("N|POWER")
+        ->group(group);
+    add_choice(app, "--eee", three_edge_names, o.three_edges,
+               "Curves of three edges; default auto: where they may bound an umbra")
+        ->group(group);
+    add_choice(app, "--triangulation", triangulation_choices, o.triangulation,
+               "Of the faces between curves: Delaunay's (default), or the thesis's on convex receivers")
+        ->group(group);
+    add_choice(app, "--premesh", premesh_names, o.premesh,
+               "With longest, shortest, heuristic: curves that bound half-shadows or a coarse grid before others")
+        ->group(group);
+}
+
+Result<void> check_discontinuity(const SolveOptions& options) {
+    const DiscontinuityChoice& o = options.discontinuity;
+    if (!o.any()) return {};
+    const char* const name = o.sources         ? "--dm-sources"
+                             : o.three_edges   ? "--eee"
+                             : o.triangulation ? "--triangulation"
+                                               : "--premesh";
+    if (options.method != Method::discontinuity)
+        return Error{ErrorCode::usage, "is obeyed by --method discontinuity alone", name,
+                     "exitance solve SCENE -o S.h5 --method discontinuity"};
+    if (o.sources && options.bounces == 0)
+        return Error{ErrorCode::usage, "asks for shadows of reflected light, of which --bounces 0 leaves none",
+                     "--dm-sources", "leave --bounces 0 or --dm-sources out"};
+    const bool by_tree = o.triangulation && *o.triangulation != TriangulationScheme::delaunay;
+    if (o.premesh && *o.premesh != Premesh::off && !by_tree)
+        return Error{ErrorCode::usage, "orders what a tree of lines takes; Delaunay's triangulation takes all at once",
+                     "--premesh", "choose --triangulation longest, shortest or heuristic, too"};
+    return {};
+}
+
+}  // namespace exitance

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "exitance/mesh/dm_tree/triangulation_scheme.hpp"
+
+namespace exitance {
+
+/// Lines of three edges: where they may bound an umbra, everywhere, nowhere.
+enum class ThreeEdgeEvents { automatic, on, off };
+/// In which order a face is cut: all curves at once, those that bound half-shadows first, or a coarse grid before all.
+enum class Premesh { off, penumbra_first, coarse };
+
+inline constexpr std::array<std::pair<ThreeEdgeEvents, std::string_view>, 3> three_edge_names{{
+    {ThreeEdgeEvents::automatic, "auto"},
+    {ThreeEdgeEvents::on, "on"},
+    {ThreeEdgeEvents::off, "off"},
+}};
+inline constexpr std::array<std::pair<Premesh, std::string_view>, 3> premesh_names{{
+    {Premesh::off, "off"},
+    {Premesh::penumbra_first, "penumbra-first"},
+    {Premesh::coarse, "coarse"},
+}};
+inline constexpr std::array<std::pair<TriangulationScheme, std::string_view>, 4> triangulation_choices{{
+    {TriangulationScheme::longest, "longest"},
+    {TriangulationScheme::shortest, "shortest"},
+    {TriangulationScheme::heuristic, "heuristic"},
+    {TriangulationScheme::delaunay, "delaunay"},
+}};
+
+/// Surfaces whose reflected light has shadows of its own to cut along: so many, or those that send out so much, in
+/// order of their power.
+struct SecondarySources {
+    std::optional<std::size_t> count = {};
+    std::optional<double> power = {};  ///< W, in the mean of the bands.
+};
+
+/// How a discontinuity mesh is made. What is empty is as the method would have it.
+struct DiscontinuityChoice {
+    std::optional<SecondarySources> sources = {};
+    std::optional<ThreeEdgeEvents> three_edges = {};
+    std::optional<TriangulationScheme> triangulation = {};
+    std::optional<Premesh> premesh = {};
+
+    bool any() const { return sources || three_edges || triangulation || premesh; }
+};
+
+}  // namespace exitance
