@@ -270,7 +270,7 @@ class Builder {
         const double allowed = tolerance * tolerance * area_;
         constexpr double between = 0.8;  // places that are tried miss some of what lies between them
         const double largest = between * options_.largest_error * largest_;
-        constexpr double unfindable = 3e-6, shortest = 1e-6;
+        constexpr double unfindable = 1e-5, shortest = 1e-6;
         constexpr int most_rounds = 60;
         for (int round = 0; round < most_rounds; ++round) {
             if (!light_nodes()) {

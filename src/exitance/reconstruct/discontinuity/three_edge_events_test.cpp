@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "exitance/scene/scene.hpp"
@@ -89,6 +90,39 @@ TEST(ThreeEdgeEvents, LieOnTheirConicAndBoundTheUmbra) {
             EXPECT_GT(std::max(light(5 * step), light(-5 * step)), 1e-6);
         }
     }
+}
+
+TEST(NonEmitterEvents, LieInThePlaneOfACornerAndAnEdgeAndComeFromTheSource) {
+    // A triangle's corner beneath the lamp, above it a blade.
+    const Scene scene = test::make({{{{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}}, 0},
+                                    {{{-1, 1, 3}, {1, 1, 3}, {1, -1, 3}, {-1, -1, 3}}, 100},
+                                    {{{0, -3, 2}, {0, 3, 2.3}, {-3, 3, 2.3}, {-3, -3, 2}}, 0},
+                                    {{{0.1, 0.05, 1}, {2, -1, 1}, {2, 1, 1.1}}, 0}});
+    const Stage stage(scene);
+    const BlockerEdges edges(stage.occluders);
+    std::vector<std::uint32_t> all(edges.edges().size());
+    std::iota(all.begin(), all.end(), 0u);
+    const Region& lamp = scene.regions()[RegionId(1)];
+    const PlaneFrame frame({0, 0, 0}, scene.regions()[RegionId(0)].plane.n);
+    const EventSource source{lamp.loops, lamp.plane, RegionId(1), false, 2};
+    std::vector<ShadowEvent> events;
+    ShadowEventFinder(stage.occluders, edges)
+        .find_non_emitter(frame, RegionId(0), {-4, -4}, {4, 4}, source, all, events);
+    // The corner under the blade's edge: of all lines of sight through both the event is where they meet the floor.
+    const Point corner{0.1, 0.05, 1};
+    const auto of_corner = [&](const ShadowEvent& e) {
+        for (const Vec2 end : {e.a, e.b}) {
+            const Vec3 d = corner - frame.at(end);
+            const double t = -frame.at(end).x / d.x;  // where the line crosses x = 0
+            const Point at = frame.at(end) + t * d;
+            if (std::abs(at.z - (2 + 0.05 * (at.y + 3))) > 1e-9) return false;
+            const Point on_lamp = frame.at(end) + (3 / d.z) * d;
+            if (std::max(std::abs(on_lamp.x), std::abs(on_lamp.y)) > 1 + 1e-9) return false;
+        }
+        return true;
+    };
+    EXPECT_TRUE(std::any_of(events.begin(), events.end(), of_corner));
+    for (const ShadowEvent& e : events) EXPECT_TRUE(e.by_blockers_alone);
 }
 
 }  // namespace
