@@ -20,6 +20,7 @@ std::vector<std::string> keys(const Json& json) {
 const std::vector<std::string> statistics_keys{"method",
                                                "basis",
                                                "threads",
+                                               "processes",
                                                "schedule",
                                                "surfaces",
                                                "elements",
