@@ -185,9 +185,11 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
     constexpr int most_in_vain = 6;
     struct Open {
         ElementId element;
-        std::size_t lines;                    ///< When they last became fewer by a quarter,
-        int in_vain;                          ///< and how many cuts ago that was.
-        std::size_t given = ~std::size_t(0);  ///< Of those given: which one.
+        std::size_t lines;                        ///< When they last became fewer by a quarter,
+        int in_vain;                              ///< and how many cuts ago that was.
+        std::size_t given = ~std::size_t(0);      ///< Of those given: which one.
+        std::size_t of_parent = ~std::size_t(0);  ///< Lines that the element had before a line cut it,
+        int unchanged = 0;                        ///< and how often a part had no fewer.
     };
     // Most have none: all are looked at on all threads, and what is left to cut is little.
     std::vector<std::vector<std::pair<Vec2, Vec2>>> of_given(from.size());
@@ -201,6 +203,9 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
         open.pop_back();
         const std::vector<std::pair<Vec2, Vec2>> lines =
             now.given < of_given.size() ? std::move(of_given[now.given]) : contacts.within(tree, e);
+        // A line that has cut an element stands in neither part, unless rounding leaves it there, as among nearly
+        // parallel ones that are closer than the cut is exact.
+        if (lines.size() >= now.of_parent && ++now.unchanged > most_in_vain) continue;
         if (lines.size() > many) {
             if (lines.size() < now.lines - now.lines / 4)
                 now = {e, lines.size(), 0, now.given};
@@ -214,7 +219,8 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
             const double length = std::hypot(d.x, d.y);
             const Vec2 normal = {-d.y / length, d.x / length};
             if (!cut_along(tree, e, {normal, dot(normal, a)})) continue;
-            for (ElementId child : tree.children(e)) open.push_back({child, now.lines, now.in_vain});
+            for (ElementId child : tree.children(e))
+                open.push_back({child, now.lines, now.in_vain, ~std::size_t(0), lines.size(), now.unchanged});
             break;  // the children look for their own share of the other contacts
         }
     }
