@@ -78,6 +78,13 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     EXPECT_EQ(kept, made);
 }
 
+TEST(ProgramSolve, ContactsCloserThanRoundingCutElementsOnlySoOften) {
+    const TemporaryFolder folder;
+    const std::string scene = std::string(EXITANCE_SOURCE_DIR) + "/tests/data/nearly_parallel_boxes.obj";
+    const Finished run = run_program({"solve", scene, "-o", folder / "s.h5", "--error", "0.2", "-q"});
+    EXPECT_EQ(run.status, 0) << run.err;
+}
+
 TEST(ProgramSolve, AnUnwritableFolderEndsBeforeTheWorkWithoutAResult) {
     const TemporaryFolder folder;
     const Finished run = run_program({"solve", write_small_room(folder), "-o", folder / "absent/room.h5"});
