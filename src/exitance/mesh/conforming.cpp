@@ -183,7 +183,9 @@ void PlaneNodes::insert_hanging_vertices() {
         Polygon& p = polygons_[h.polygon];
         const auto after = static_cast<std::ptrdiff_t>(h.slot) + 1;
         p.vertex.insert(p.vertex.begin() + after, h.vertex);
-        p.uv.insert(p.uv.begin() + after, tree_.patch(p.leaf).coordinates(places_[h.vertex]));
+        // Joined places are off by a tolerance, which is much of a thin leaf.
+        const Patch& patch = tree_.patch(p.leaf);
+        p.uv.insert(p.uv.begin() + after, into_shape(patch.coordinates(places_[h.vertex]), patch.shape));
         p.is_own.insert(p.is_own.begin() + after, false);
     }
 }

@@ -116,7 +116,13 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
     const std::vector<Vec2> domain = tree.domain(e);
     const double gap = std::max(tolerance_, height_of_jump(tree.area(e)));
     Box box;
-    for (const Point& corner : tree.outline(e)) {
+    double longest = 0;
+    const std::vector<Point> outline = tree.outline(e);
+    for (const Point& corner : outline) longest = std::max(longest, norm(corner - outline[0]));
+    // What contacts turned by tiny angles leave between them is too thin to be cut again with any exactness.
+    constexpr double thinnest = 100;  // in tolerances: 1e-5 of the scene's size
+    if (tree.area(e) <= thinnest * tolerance_ * longest) return {};
+    for (const Point& corner : outline) {
         box.add(corner - tolerance_ * plane.n);
         box.add(corner + gap * plane.n);
     }
