@@ -28,7 +28,7 @@ Result<StudyTables> make_tables(const Study& study, const StudyOptions& options,
     }
     Result<StudyTables> tables = run_study(study, options, progress, stop);
     if (!tables) return tables.error();
-    if (study.equal_time) (*tables)["equal_time"] = equal_time_table((*tables)["results"]);
+    if (study.equal_time) (*tables)["equal_time"] = equal_time_table(study, (*tables)["results"]);
     if (!study.lines.empty()) {
         Result<Table> profiles = profile_table(study, options, progress, stop);
         if (!profiles) return profiles.error();

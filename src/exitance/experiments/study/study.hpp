@@ -27,6 +27,7 @@ struct StudyRow {
     std::string label;
     std::string options;
     std::vector<std::string> settings, quick_settings;      ///< Empty: one run without a setting.
+    bool equal_time = true;                                 ///< Does it take part in the table `equal_time`?
     bool quick = true;                                      ///< Is it run with --quick?
     double most = std::numeric_limits<double>::infinity();  ///< Of the parameter; larger values are not run.
     std::vector<std::string> scenes;                        ///< Empty: all.

@@ -67,6 +67,8 @@ double mean_ratio(const Table& table, const StudyConclusion& c, bool last) {
 }
 
 double measured(const Table& table, const StudyConclusion& c) {
+    if (c.measure == Measure::ratio || c.measure == Measure::last_ratio)  // x may be text there
+        return mean_ratio(table, c, c.measure == Measure::last_ratio);
     const Curve curve = curve_of(table, c.x, c.y, c.where);
     if (curve.y.empty()) return unknown;
     switch (c.measure) {
@@ -82,9 +84,8 @@ double measured(const Table& table, const StudyConclusion& c) {
         case Measure::slope:
             return fit_power(curve.x, curve.y);
         case Measure::ratio:
-            return mean_ratio(table, c, false);
         case Measure::last_ratio:
-            return mean_ratio(table, c, true);
+            break;
         case Measure::crossing:
             return crossing(curve, curve_of(table, c.x, c.y, c.against));
         case Measure::quadratic:
@@ -182,10 +183,16 @@ double fit_power(const std::vector<double>& x, const std::vector<double>& y) {
     return n >= 2 && det > 1e-9 ? (n * sxy - sx * sy) / det : unknown;
 }
 
-Table equal_time_table(const Table& results) {
+Table equal_time_table(const Study& study, const Table& results) {
     std::map<std::pair<std::string, std::string>, std::vector<History>> by_scene;
     std::vector<std::pair<std::string, std::string>> order;
+    const auto takes_part = [&](const std::string& label) {
+        const auto row =
+            std::find_if(study.rows.begin(), study.rows.end(), [&](const auto& r) { return r.label == label; });
+        return row == study.rows.end() || row->equal_time;
+    };
     for (std::size_t row = 0; row < results.rows.size(); ++row) {
+        if (!takes_part(results.text(row, "row"))) continue;
         const std::pair key(results.text(row, "scene"), results.text(row, "parameter"));
         if (!by_scene.contains(key)) order.push_back(key);
         std::vector<History>& histories = by_scene[key];

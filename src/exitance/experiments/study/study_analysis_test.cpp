@@ -76,7 +76,7 @@ TEST(StudyAnalysis, AStatementHoldsWithinItsRange) {
 }
 
 TEST(StudyAnalysis, EqualTimeInterpolatesLogarithms) {
-    const Table table = equal_time_table(two_methods());
+    const Table table = equal_time_table(Study(), two_methods());
     // a ends at 16 s, b at 64; b has 4 * 0.1 x at 4 s and 0.1 x at 64 s: half-way between, 0.2 x.
     ASSERT_EQ(table.rows.size(), 8u);
     for (std::size_t row = 0; row < table.rows.size(); ++row) {

@@ -149,6 +149,7 @@ void read_row(Keys& keys, StudyRow& row) {
     row.quick_settings = row.settings;
     keys.take("quick_settings", row.quick_settings);
     keys.take("quick", row.quick);
+    keys.take("equal_time", row.equal_time);
     keys.take("most", row.most);
     keys.take("scenes", row.scenes);
 }

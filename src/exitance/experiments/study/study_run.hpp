@@ -49,7 +49,7 @@ Result<Table> profile_table(const Study& study, const StudyOptions& options, Pro
                             const StopRequest& stop);
 
 /// For every scene, parameter and setting: the time in which the first row finished, and the error that each row had
-/// then, by interpolation between solutions on the way (both as logarithms). Rows without one by then are left out.
-Table equal_time_table(const Table& results);
+/// then, by interpolation between solutions on the way (both as logarithms). Empty for one without a solution by then.
+Table equal_time_table(const Study& study, const Table& results);
 
 }  // namespace exitance
