@@ -44,12 +44,13 @@ TEST(ProgramClassical, GrowingCellsAreDeliveredAsTheyAreWithoutAGather) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const auto light = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> words{"solve", scene, "-o", folder / "s.h5", "-q", "--method", "growing-cells",
-                                       "--max-units", "16"};
+        std::vector<std::string> words{"solve",         scene,         "-o", folder / "s.h5", "-q", "--method",
+                                       "growing-cells", "--max-units", "16"};
         words.insert(words.end(), more.begin(), more.end());
         const int status = run_program(words).status;
         EXPECT_TRUE(status == 0 || status == 4);
-        return run_program({"probe", folder / "s.h5", "--points", "-"}, "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n3,2,0,0,0,1\n").out;
+        return run_program({"probe", folder / "s.h5", "--points", "-"}, "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n3,2,0,0,0,1\n")
+            .out;
     };
     const std::string raw = light({"--gather", "off"});
     EXPECT_EQ(raw, light({"--smoothing", "off"}));
