@@ -178,7 +178,7 @@ bool LineHierarchy::cut(std::uint32_t node) {
     const std::uint32_t child = tree_.nodes()[node].first_child;
     for (std::uint32_t c = child; c < child + 2; ++c) {
         E_.push_back(E_[node]), b_.push_back(b_[node]), brightest_.push_back(brightest_[node]);
-        direct_.push_back(direct_.empty() ? Spectrum() : direct_[node]);
+        if (!direct_.empty()) direct_.push_back(direct_[node]);  // else none has been found yet
     }
     return true;
 }
