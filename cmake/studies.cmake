@@ -23,3 +23,19 @@ std::span<const BuiltInStudy> built_in_studies() {
 }  // namespace exitance
 ]])
 target_sources(exitance PRIVATE ${PROJECT_BINARY_DIR}/built_in_studies.cpp)
+
+# The scripts in experiments/peers, likewise.
+set(script_file ${PROJECT_SOURCE_DIR}/experiments/peers/blender.py)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script_file})
+file(READ ${script_file} script)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/peer_scripts.cpp @ONLY CONTENT [[
+// Made by cmake/studies.cmake.
+#include "exitance/experiments/peers/peer_scripts.hpp"
+
+namespace exitance {
+
+const std::string_view blender_script = R"script(@script@)script";
+
+}  // namespace exitance
+]])
+target_sources(exitance PRIVATE ${PROJECT_BINARY_DIR}/peer_scripts.cpp)

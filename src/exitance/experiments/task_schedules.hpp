@@ -4,23 +4,40 @@
 #include <string>
 
 #include "exitance/core/progress.hpp"
-#include "exitance/experiments/thesis/csv_text.hpp"
+#include "exitance/core/task_graph.hpp"
+#include "exitance/core/trace.hpp"
+#include "exitance/experiments/study/table.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
 
-inline constexpr const char* schedules_header =
-    "scene,kind,schedule,machine,processors,seconds,speedup,task_seconds,queue_seconds,remote_seconds,idle_seconds,"
-    "serial_seconds,stolen";
-inline constexpr const char* task_graphs_header = "scene,schedule,tasks,critical_seconds,task_seconds";
+/// What is known of schedules; seconds everywhere. The first column of all tables is the scene.
+struct ScheduleTables {
+    /// `program` (engine: the tasks of 1995; production: a solve as users have it), `kind`, `schedule`, `machine`,
+    /// `processors`, `seconds`, `speedup`, and what the seconds of all processors went to. `measured` rows have the
+    /// wall clock, `busiest` ones the processor time of the busiest thread of every iteration (the wall clock of a
+    /// machine with nothing else to do), `simulated` ones that of `simulate_schedule`.
+    Table runs;
+    /// A recorded graph: its tasks, interactions found and predicted, all its tasks' time, and the longest chain.
+    Table graphs;
+    Table iterations;  ///< Of the engine, by one thread: tasks, interactions, seconds by kind, the light after it.
+    Table phases;      ///< Of a production solve, by one thread: seconds, and those in loops that are dealt out.
+};
 
-/// How the schedules of the task engine scale: measured on 1 and 2 threads, and replayed on 1 to 1024 processors from
-/// the graph that one thread has recorded. A row a schedule, machine and number of processors; seconds are the least of
-/// so many repeats. `measured` rows have the engine's own wall time, `busiest` ones the processor time of the busiest
-/// thread of every iteration (the wall clock of a machine with nothing else to do), `simulated` ones that of
-/// `simulate_schedule`. Threshold in W, least area in m^2: as of `--threshold` and `--min-area`.
-void measure_schedules(const std::string& scene_name, const Scene& scene, std::optional<double> threshold,
-                       std::optional<double> min_area, int repeats, CsvText& out, CsvText& graphs,
-                       const StopRequest& stop);
+/// The engine's thresholds in W and m^2, as of `--threshold` and `--min-area`, and of how many runs the least is taken.
+struct ScheduleStudy {
+    std::optional<double> threshold, min_area;
+    int repeats = 1;
+    double error = 0.02;  ///< Asked of the production solve.
+};
+
+/// How schedules scale, on 1 and 2 threads, and replayed on 1 to 1024 processors from the graphs that one thread has
+/// recorded: those of the task engine, and of the parallel loops of a solve.
+void measure_schedules(const std::string& scene_name, const Scene& scene, const ScheduleStudy& study,
+                       ScheduleTables& out, const StopRequest& stop);
+
+/// The loops of a run by one thread as a graph: a loop is an iteration, behind whose barrier stands what is done until
+/// the next one begins; tasks make no tasks.
+TaskGraph graph_of_loops(const TaskTrace& trace);
 
 }  // namespace exitance

@@ -26,6 +26,7 @@ struct StudyScene {
 struct StudyRow {
     std::string label;
     std::string options;
+    std::string peer;  ///< Another program, whose options these are then (`peer_names()`); empty: ours.
     std::vector<std::string> settings, quick_settings;      ///< Empty: one run without a setting.
     bool equal_time = true;                                 ///< Does it take part in the table `equal_time`?
     bool quick = true;                                      ///< Is it run with --quick?

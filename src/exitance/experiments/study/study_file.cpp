@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "exitance/experiments/peers/peers.hpp"
 #include "exitance/experiments/study/study.hpp"
 #include "exitance/io/files/whole_file.hpp"
 
@@ -145,6 +146,9 @@ void read_scene(Keys& keys, StudyScene& scene) {
 void read_row(Keys& keys, StudyRow& row) {
     keys.need("label", row.label);
     keys.need("options", row.options);
+    keys.take("peer", row.peer);
+    if (!row.peer.empty() && find_peer(row.peer) == nullptr)
+        keys.fail(*keys.find("peer"), fmt::format("'{}' is not one of {}", row.peer, fmt::join(peer_names(), ", ")));
     keys.take("settings", row.settings);
     row.quick_settings = row.settings;
     keys.take("quick_settings", row.quick_settings);

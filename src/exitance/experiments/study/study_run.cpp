@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/experiments/study/study_peer.hpp"
 #include "exitance/experiments/study/study_scene.hpp"
-#include "exitance/experiments/study/study_solve.hpp"
 
 namespace exitance {
 namespace {
@@ -40,7 +40,8 @@ bool is_wanted(const StudyRow& row, const StudyOptions& options) {
     if (options.methods.empty()) return true;
     return std::any_of(options.methods.begin(), options.methods.end(), [&](const std::string& method) {
         const std::vector<std::string> words = split_words(row.options);
-        return lower(method) == lower(row.label) || std::find(words.begin(), words.end(), method) != words.end();
+        return lower(method) == lower(row.label) || lower(method) == row.peer ||
+               std::find(words.begin(), words.end(), method) != words.end();
     });
 }
 
@@ -148,8 +149,9 @@ class Runner {
     }
 
     std::optional<Table> solve(const Chain& chain, double value, const StudyStage& stage) {
+        const StudySolve run{study_, options_, *chain.scene, *chain.row, chain.setting, value, stage};
         Result<std::optional<Table>> table =
-            solve_for_study({study_, options_, *chain.scene, *chain.row, chain.setting, value, stage}, mutex_, stop_);
+            chain.row->peer.empty() ? solve_for_study(run, mutex_, stop_) : peer_for_study(run, mutex_, stop_);
         if (table) return std::move(*table);
         const std::lock_guard lock(mutex_);
         if (!failure_) failure_ = table.error();

@@ -28,10 +28,6 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-double time_limit(const StudySolve& run) {
-    return run.options.quick ? run.study.quick_time_limit : run.study.time_limit;
-}
-
 std::string first_error(const std::string& text) {
     const std::size_t at = text.find("error: ");
     if (at == std::string::npos) return "the program ended without a word";
@@ -39,7 +35,7 @@ std::string first_error(const std::string& text) {
 }
 
 std::string status_of(const StudySolve& run, const ProgramRun& program) {
-    const bool late = program.seconds > 0.9 * time_limit(run);
+    const bool late = program.seconds > 0.9 * study_time_limit(run);
     if (program.status == 0) return "done";
     if (program.out_of_time || (late && program.status == not_reached_status)) return "time limit";
     if (program.status == not_reached_status)
@@ -80,20 +76,7 @@ double emitter_share(const Solution& solution) {
 void add_measures(Table& table, const StudySolve& run, const Solution& solution) {
     table.set("emitter_share", field(emitter_share(solution)));
     if (!run.stage.reference) return;
-    const ErrorMeasure error = error_against(solution, *run.stage.reference);
-    table.set("relative_rms_error", field(error.relative_rms_error));
-    table.set("raw_relative_rms_error", field(error.raw_relative_rms_error));
-    table.set("noise", field(error.reference_noise)), table.set("bias", field(error.bias));
-    table.set("points", field(static_cast<double>(error.points)));
-}
-
-void begin_row(Table& table, const StudySolve& run, std::size_t checkpoint) {
-    table.add_row();
-    table.set("study", run.study.name), table.set("scene", run.scene.name);
-    table.set("parameter", field(run.value)), table.set("setting", setting_text(run.row, run.setting));
-    table.set("checkpoint", std::to_string(checkpoint));
-    table.set("row", run.row.label), table.set("level", run.setting);
-    table.set("polygons", std::to_string(run.stage.polygons));
+    add_error(table, error_against(solution, *run.stage.reference));
 }
 
 /// A solution on the way.
@@ -163,6 +146,26 @@ Table measured(const StudySolve& run, const std::string& stem, const ProgramRun&
 
 }  // namespace
 
+double study_time_limit(const StudySolve& run) {
+    return run.options.quick ? run.study.quick_time_limit : run.study.time_limit;
+}
+
+void add_error(Table& table, const ErrorMeasure& error) {
+    table.set("relative_rms_error", field(error.relative_rms_error));
+    table.set("raw_relative_rms_error", field(error.raw_relative_rms_error));
+    table.set("noise", field(error.reference_noise)), table.set("bias", field(error.bias));
+    table.set("points", field(static_cast<double>(error.points)));
+}
+
+void begin_row(Table& table, const StudySolve& run, std::size_t checkpoint) {
+    table.add_row();
+    table.set("study", run.study.name), table.set("scene", run.scene.name);
+    table.set("parameter", field(run.value)), table.set("setting", setting_text(run.row, run.setting));
+    table.set("checkpoint", std::to_string(checkpoint));
+    table.set("row", run.row.label), table.set("level", run.setting);
+    table.set("polygons", std::to_string(run.stage.polygons));
+}
+
 std::string setting_text(const StudyRow& row, const std::string& setting) {
     return setting.empty() ? row.label : row.label + " " + setting;
 }
@@ -176,7 +179,7 @@ std::vector<std::string> solve_words(const StudySolve& run) {
         if (!has(words, option)) words.push_back(option), words.push_back(value);
     };
     add("--threads", std::to_string(run.study.threads));
-    add("--time-limit", fmt::format("{:g}", time_limit(run)));
+    add("--time-limit", fmt::format("{:g}", study_time_limit(run)));
     add("--memory-limit", run.study.memory_limit);
     return words;
 }
@@ -205,7 +208,7 @@ Result<std::optional<Table>> solve_for_study(const StudySolve& run, std::mutex& 
     words.insert(words.begin(), run.options.program);
     for (const std::string& word : {std::string("-o"), stem + ".h5", std::string("--json"), std::string("-q")})
         words.push_back(word);
-    const ProgramRun program = run_program(words, "", patience * time_limit(run) + patience_seconds, stop);
+    const ProgramRun program = run_program(words, "", patience * study_time_limit(run) + patience_seconds, stop);
     if (stop.requested()) return std::optional<Table>();
     const std::lock_guard lock(files);
     Table table = measured(run, stem, program, command);

@@ -144,24 +144,25 @@ Result<StudyTables> kernel_tables(const Study& study, const StudyOptions& option
     return StudyTables{{"results", std::move(*table)}};
 }
 
-/// `threshold_W`, `min_area_m2` and `repeats` are arguments.
+/// `threshold_W`, `min_area_m2`, `repeats` and `error` (of the production solve) are arguments.
 Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& options, Progress& progress,
                                     const StopRequest& stop) {
-    CsvText text, graphs;
-    text.print("%s\n", schedules_header), graphs.print("%s\n", task_graphs_header);
-    const double threshold = argument(study, "threshold_W", 0), least = argument(study, "min_area_m2", 0);
-    const int repeats = options.quick ? 1 : static_cast<int>(argument(study, "repeats", 3));
-    const auto given = [](double value) { return value > 0 ? std::optional(value) : std::nullopt; };
+    const auto given = [&](const char* name) {
+        const double value = argument(study, name, 0);
+        return value > 0 ? std::optional(value) : std::nullopt;
+    };
+    ScheduleStudy asked{given("threshold_W"), given("min_area_m2"), 1, argument(study, "error", 0.02)};
+    if (!options.quick) asked.repeats = static_cast<int>(argument(study, "repeats", 3));
+    ScheduleTables tables;
     const Result<void> done =
         for_scenes(study, options, progress, stop, [&](const std::string& name, double value, const Scene& scene) {
-            measure_schedules(fmt::format("{} {:g}", name, value), scene, given(threshold), given(least), repeats, text,
-                              graphs, stop);
+            measure_schedules(fmt::format("{} {:g}", name, value), scene, asked, tables, stop);
         });
     if (!done) return done.error();
-    Result<Table> table = parse_csv(text.text(), study.table), of_graphs = parse_csv(graphs.text(), study.table);
-    if (!table) return table.error();
-    if (!of_graphs) return of_graphs.error();
-    return StudyTables{{"results", std::move(*table)}, {"graphs", std::move(*of_graphs)}};
+    return StudyTables{{"results", std::move(tables.runs)},
+                       {"graphs", std::move(tables.graphs)},
+                       {"iterations", std::move(tables.iterations)},
+                       {"phases", std::move(tables.phases)}};
 }
 
 /// Joins tables of several scenes; their first column names the scene.

@@ -96,9 +96,9 @@ bool is_program(const std::string& name) {
 }
 
 ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
-                       const StopRequest& stop) {
+                       const StopRequest& stop, const std::string& input) {
     ProgramRun run;
-    const File in(std::fopen("/dev/null", "r"), &std::fclose);
+    const File in(std::fopen(input.empty() ? "/dev/null" : input.c_str(), "r"), &std::fclose);
     const File out(std::tmpfile(), &std::fclose), err(std::tmpfile(), &std::fclose);
     ChildProcess child;
     const Stopwatch watch;

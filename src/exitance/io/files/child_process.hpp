@@ -55,8 +55,8 @@ struct ProgramRun {
 };
 
 /// Runs a program to its end. After `most_seconds`, or when a stop is asked for, it is asked to end, and made to two
-/// seconds later.
+/// seconds later. Its standard input is `input`, a file (empty: nothing).
 ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
-                       const StopRequest& stop);
+                       const StopRequest& stop, const std::string& input = "");
 
 }  // namespace exitance

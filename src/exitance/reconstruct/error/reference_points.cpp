@@ -13,12 +13,15 @@ std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<
     return out;
 }
 
-ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference, Evaluated what) {
-    const Locator locator(solution.scene);
+ErrorMeasure error_against(std::span<const Spectrum> irradiance, const ReferencePoints& reference, const Scene& scene) {
+    const Locator locator(scene);
     std::vector<SurfaceId> surfaces;
     for (const ProbePoint& point : reference.points) surfaces.push_back(locator.find(point.x, point.n));
-    const std::vector<Spectrum> irradiance = irradiance_at(solution, reference.points, what);
-    return measure_error({irradiance, reference.irradiance, reference.standard_errors, surfaces}, solution.scene);
+    return measure_error({irradiance, reference.irradiance, reference.standard_errors, surfaces}, scene);
+}
+
+ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference, Evaluated what) {
+    return error_against(irradiance_at(solution, reference.points, what), reference, solution.scene);
 }
 
 }  // namespace exitance

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "exitance/reconstruct/error/compare.hpp"
@@ -21,6 +22,8 @@ enum class Evaluated : std::uint8_t { function, interpolant };
 std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points,
                                     Evaluated what = Evaluated::function);
 
+/// How far irradiance at the reference's points is from it, W/m^2.
+ErrorMeasure error_against(std::span<const Spectrum> irradiance, const ReferencePoints& reference, const Scene& scene);
 ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference,
                            Evaluated what = Evaluated::function);
 
