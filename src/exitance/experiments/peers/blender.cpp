@@ -15,11 +15,15 @@ Result<std::vector<std::string>> prepare(const PeerTask& task) {
     const auto options = named_options(task, {{"samples", "64"}, {"bounces", "64"}});
     if (!options) return options.error();
     std::string triangles, points;
-    for (const PeerScene::Triangle& t : task.scene.triangles) {
-        for (const Point& p : t.corners) triangles += fmt::format("{:.9g},{:.9g},{:.9g},", p.x, p.y, p.z);
-        const Spectrum &r = t.reflectance, &m = t.exitance;
-        triangles += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", r[0], r[1], r[2], m[0], m[1], m[2]);
-    }
+    for (const PeerScene::Face& face : task.scene.faces)
+        for (const auto& corners : face.triangles) {
+            for (const std::uint32_t corner : corners) {
+                const Point& p = face.outline[corner];
+                triangles += fmt::format("{:.9g},{:.9g},{:.9g},", p.x, p.y, p.z);
+            }
+            const Spectrum &r = face.reflectance, &m = face.exitance;
+            triangles += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", r[0], r[1], r[2], m[0], m[1], m[2]);
+        }
     for (const auto& [point, rho, m] : task.scene.places) {
         const auto& [x, n] = point;
         points += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", x.x, x.y, x.z, n.x, n.y, n.z);

@@ -33,8 +33,8 @@ PeerScene peer_scene(const Scene& scene, const ReferencePoints& reference) {
     for (const SurfaceId s : scene.surfaces().ids()) {
         const std::span<const Point> outline = scene.outline(s);
         const Material& material = scene.material(s);
-        for (const auto& [a, b, c] : triangulate(outline, scene.surfaces()[s].normal))
-            out.triangles.push_back({{outline[a], outline[b], outline[c]}, material.reflectance, material.exitance});
+        out.faces.push_back(
+            {outline, triangulate(outline, scene.surfaces()[s].normal), material.reflectance, material.exitance});
         for (const Point& p : outline) box.add(p);
         out.most_light = std::max(out.most_light, max(material.exitance));
     }

@@ -14,10 +14,11 @@
 
 namespace exitance {
 
-/// A scene as other programs take it: triangles that reflect and emit from their fronts, black behind; metres, W/m^2.
+/// A scene as other programs take it: polygons that reflect and emit from their fronts, black behind; metres, W/m^2.
 struct PeerScene {
-    struct Triangle {
-        std::array<Point, 3> corners;
+    struct Face {
+        std::span<const Point> outline;
+        std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Of its corners.
         Spectrum reflectance, exitance;
     };
     /// A point of a surface, where light is wanted.
@@ -25,7 +26,7 @@ struct PeerScene {
         ProbePoint point;
         Spectrum reflectance, exitance;
     };
-    std::vector<Triangle> triangles;
+    std::vector<Face> faces;
     std::vector<Place> places;
     double size = 0;        ///< The diagonal of its box.
     double most_light = 0;  ///< No smaller than the largest radiosity at the places, W/m^2.
@@ -68,7 +69,8 @@ std::vector<std::string_view> peer_names();
 /// None of that name: null.
 const Peer* find_peer(std::string_view name);
 
-/// The scene, and points with the light that is expected there. Points in free space reflect nothing.
+/// The scene, which outlives what is returned, and points with the light that is expected there. Points in free space
+/// reflect nothing.
 PeerScene peer_scene(const Scene& scene, const ReferencePoints& reference);
 
 /// Words `name=value` over defaults. Error: usage, for a name that has no default.

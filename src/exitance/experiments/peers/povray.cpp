@@ -22,7 +22,7 @@ std::string vector_text(Point p) {
 }
 
 /// POV-Ray's emission and its reflection are shares of one colour. Both sides are alike.
-std::string texture_of(const PeerScene::Triangle& t, double scale) {
+std::string texture_of(const PeerScene::Face& t, double scale) {
     Spectrum colour, emission;
     const bool reflects = max(t.reflectance) > 0;
     for (std::size_t i = 0; i < bands; ++i) {
@@ -55,10 +55,11 @@ Result<std::vector<std::string>> prepare(const PeerTask& task) {
         "recursion_limit {} nearest_count {} brightness 1 gray_threshold 0 adc_bailout 0.0001 pretrace_start 0.08 "
         "pretrace_end 0.004 always_sample on}}}}\n",
         options->at("count"), options->at("error_bound"), options->at("recursion_limit"), options->at("nearest_count"));
-    for (const PeerScene::Triangle& t : scene.triangles)
-        text += fmt::format("triangle{{{},{},{} {}}}\n", vector_text(metre * t.corners[0]),
-                            vector_text(metre * t.corners[1]), vector_text(metre * t.corners[2]),
-                            texture_of(t, scale(scene)));
+    for (const PeerScene::Face& face : scene.faces)
+        for (const auto& [a, b, c] : face.triangles)
+            text += fmt::format("triangle{{{},{},{} {}}}\n", vector_text(metre * face.outline[a]),
+                                vector_text(metre * face.outline[b]), vector_text(metre * face.outline[c]),
+                                texture_of(face, scale(scene)));
     text += "camera{mesh_camera{1 0 mesh{\n";
     for (const PeerScene::Place& place : scene.places) text += camera_triangle(place.point, metre);
     text += fmt::format("}}}} location<0,0,{:.9g}> direction<0,0,-1>}}\n", 0.01);

@@ -9,22 +9,25 @@
 namespace exitance {
 namespace {
 
-std::string polygon_text(const PeerScene::Triangle& t, std::size_t number) {
-    const bool emits = max(t.exitance) > 0;
-    const Spectrum& c = emits ? t.exitance : t.reflectance;
-    const double share = emits ? 1 / std::numbers::pi : 1;
+/// What emits is a source ("illum") with another material in its place for rays that meet it.
+std::string polygon_text(const PeerScene::Face& face, std::size_t number) {
+    const Spectrum &rho = face.reflectance, &m = face.exitance;
     std::string text =
-        fmt::format("void {} m{}\n0\n0\n{} {:.9g} {:.9g} {:.9g}{}\n", emits ? "light" : "plastic", number,
-                    emits ? 3 : 5, share * c[0], share * c[1], share * c[2], emits ? "" : " 0 0");
-    text += fmt::format("m{} polygon p{}\n0\n0\n9", number, number);
-    for (const Point& p : t.corners) text += fmt::format(" {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z);
+        fmt::format("void plastic r{}\n0\n0\n5 {:.9g} {:.9g} {:.9g} 0 0\n", number, rho[0], rho[1], rho[2]);
+    const bool emits = max(m) > 0;
+    if (emits) {
+        const Spectrum radiance = m * (1 / std::numbers::pi);
+        text += fmt::format("void illum m{}\n1 r{}\n0\n3 {:.9g} {:.9g} {:.9g}\n", number, number, radiance[0],
+                            radiance[1], radiance[2]);
+    }
+    text += fmt::format("{}{} polygon p{}\n0\n0\n{}", emits ? "m" : "r", number, number, 3 * face.outline.size());
+    for (const Point& p : face.outline) text += fmt::format(" {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z);
     return text + "\n";
 }
 
-/// What emits reflects nothing there.
 Result<std::vector<std::string>> prepare(const PeerTask& task) {
     std::string scene, points;
-    for (std::size_t i = 0; i < task.scene.triangles.size(); ++i) scene += polygon_text(task.scene.triangles[i], i);
+    for (std::size_t i = 0; i < task.scene.faces.size(); ++i) scene += polygon_text(task.scene.faces[i], i);
     for (const auto& [point, rho, m] : task.scene.places) {
         const Point x = point.x + 1e-4 * task.scene.size * point.n;
         points +=

@@ -74,6 +74,7 @@ class Shooting {
     }
 
     SolveReport run();
+    double unshot_share() const;
     void report(ClassicalLight& light) const;
 
   private:
@@ -319,6 +320,11 @@ void Shooting::gather_anew(std::span<const std::uint32_t> fresh) {
     });
 }
 
+/// Of the power that there was at first.
+double Shooting::unshot_share() const {
+    return first_power_ > 0 ? unshot_power(unshot_, patch_area_) / first_power_ : 0;
+}
+
 SolveReport Shooting::run() {
     const auto& c = input_.classical;
     const bool refines = c.refine_gradient.has_value();
@@ -335,6 +341,7 @@ SolveReport Shooting::run() {
                 ClassicalLight so_far;
                 this->report(so_far);
                 so_far.report.iterations = shots_;
+                so_far.report.residual = unshot_share();
                 return so_far;
             });
         }
@@ -344,7 +351,7 @@ SolveReport Shooting::run() {
     for (int depth = 0; refines && !during && depth < most_depth && !input_.stop.requested() && refine() > 0; ++depth) {
     }
     report.iterations = shots_;
-    report.residual = first_power_ > 0 ? unshot_power(unshot_, patch_area_) / first_power_ : 0;
+    report.residual = unshot_share();
     report.converged = report.residual <= input_.knobs.residual;
     return report;
 }

@@ -158,15 +158,17 @@ TEST(Classical, SnapshotsFollowTheShotsAndAmbientLightFillsThem) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     ClassicalOptions c = raw;
     c.snapshots.shots = {5, 2};
+    std::vector<double> unshot;
     const auto flux = [&](bool ambient) {
         c.ambient = ambient;
         std::vector<double> out;
+        unshot.clear();
         solve(scene, {.method = Method::progressive, .mesh_size = 0.5}, c, [&](const Solution& s, std::size_t number) {
             EXPECT_EQ(number, out.size() + 1);
             double sum = 0;
             for (ElementId e : s.indirect.tree.leaves())
                 sum += s.indirect.tree.area(e) * s.indirect.at({e, s.indirect.tree.centre(e)})[0];
-            out.push_back(sum);
+            out.push_back(sum), unshot.push_back(s.statistics.residual);
             return Result<void>();
         });
         return out;
@@ -175,6 +177,8 @@ TEST(Classical, SnapshotsFollowTheShotsAndAmbientLightFillsThem) {
     ASSERT_EQ(bare.size(), 2u);
     ASSERT_EQ(filled.size(), 2u);
     EXPECT_LT(bare[0], bare[1]);
+    EXPECT_GT(unshot[0], unshot[1]) << "what is left to be shot, of all that there was";
+    EXPECT_GT(unshot[1], 0);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_GT(filled[i], bare[i]);
 }
 
