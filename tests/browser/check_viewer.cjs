@@ -3,7 +3,7 @@ const fs = require('fs'), path = require('path');
 const {execFileSync, spawn} = require('child_process');
 const {chromium} = require('playwright-core');
 const {EXITANCE: exitance, SOLUTION: solution, SCENE: scene, WORK: folder} = process.env;
-const size = [640, 400];
+const size = [940, 400];
 let failed = 0;
 const programs = [];
 process.on('exit', () => programs.forEach(p => p.kill()));
@@ -41,6 +41,41 @@ async function difference(page, a, b) {
     }, [a, b]);
 }
 
+const png = file => 'data:image/png;base64,' + fs.readFileSync(file).toString('base64');
+
+/** Raw, delivered and exact light: alone, split, side by side. */
+async function compare(page, picture) {
+    const keep = async name => {
+        const shown = await page.evaluate(() => exitance.canvas());
+        if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, name + '.png'), Buffer.from(shown.split(',')[1], 'base64'));
+        return shown;
+    };
+    const delivered = await keep('delivered');
+    await page.selectOption('#source', 'exact');
+    await page.waitForFunction(() => exitance.whole());
+    const exact = await keep('exact'), apart = await difference(page, exact, png(picture));
+    check(apart < 0.01, `the exact picture differs from render by ${(100 * apart).toFixed(2)}% of white (1% allowed)`);
+    await page.selectOption('#source', 'raw');
+    await page.waitForFunction(() => document.body.dataset.raw);
+    const raw = await keep('raw'), rough = await difference(page, raw, delivered);
+    check(rough > 0.003 && rough < 0.2, `raw elements differ from the delivered light by ${(100 * rough).toFixed(2)}% of white`);
+    await page.selectOption('#arrangement', 'split');
+    await page.waitForFunction(() => exitance.whole());
+    await page.focus('.divider');
+    for (let i = 0; i < 40; ++i) await page.keyboard.press('ArrowLeft');
+    await page.focus('.divider >> nth=1');
+    for (let i = 0; i < 80; ++i) await page.keyboard.press('ArrowLeft');
+    check(await difference(page, await keep('split'), exact) < 0.002, 'dividers at the left leave the exact picture');
+    for (let i = 0; i < 100; ++i) await page.keyboard.press('ArrowRight');
+    check(await difference(page, await keep('split'), delivered) < 0.002, 'and at either side the delivered light');
+    await page.selectOption('#arrangement', 'panes');
+    await page.waitForFunction(() => exitance.whole());
+    await keep('panes');
+    check(await page.textContent('#panes') === 'rawdeliveredexact', 'three panes with their names');
+    await page.selectOption('#arrangement', 'one');
+    await page.selectOption('#source', 'delivered');
+}
+
 async function check_solution(page) {
     const {program, origin} = await start(solution);
     const begin = Date.now(), foreign = [];
@@ -49,17 +84,18 @@ async function check_solution(page) {
     await page.waitForFunction('document.body.dataset.first');
     console.log(`first picture ${Date.now() - begin} ms after the page was asked for`);
     await page.waitForFunction('document.body.dataset.ready');
-    const [words, exposure] = await page.evaluate(() => [exitance.words(), exitance.exposure()]);
+    const [words, exposure, drawn] = await page.evaluate(() => [exitance.words(), exitance.exposure(), exitance.size()]);
     const picture = path.join(folder, 'render.png');
-    execFileSync(exitance, ['render', solution, '-o', picture, '--size', size.join('x'), '--camera', words,
+    execFileSync(exitance, ['render', solution, '-o', picture, '--size', drawn.join('x'), '--camera', words,
         '--exposure', exposure + 'x', '--tone-map', 'filmic', '-q']);
     const shown = await page.evaluate(() => exitance.canvas());
     if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, 'viewer.png'), Buffer.from(shown.split(',')[1], 'base64'));
-    const apart = await difference(page, shown, 'data:image/png;base64,' + fs.readFileSync(picture).toString('base64'));
+    const apart = await difference(page, shown, png(picture));
     check(apart < 0.03, `differs from render by ${(100 * apart).toFixed(2)}% of white on average (3% allowed)`);
-    await page.mouse.click(size[0] * 0.75, size[1] * 0.75);
+    await page.mouse.click(size[0] * 0.75, size[1] * 0.6);
     await page.waitForFunction(() => /element/.test(document.getElementById('point').textContent), null, {timeout: 10000});
     check(true, 'picks: ' + (await page.textContent('#point')).replaceAll('\n', '; ').slice(0, 120));
+    await compare(page, picture);
     await page.selectOption('#quantity', 'irradiance');
     check(await page.isVisible('#legend') && /W\/m²|lx/.test(await page.textContent('#legend')), 'a legend with units');
     await page.focus('#picture');
