@@ -170,6 +170,10 @@ TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
     EXPECT_EQ(get("/data/frame?camera=0.1,0.1,0.5,1.5,0.5,0.5,70&size=1e6,1e6&samples=1", host), "HTTP/1.1 400");
     EXPECT_EQ(get("/data/point?at=1,2", host), "HTTP/1.1 400");
     EXPECT_EQ(get("/data/line?at=0,0,0,1,1,1,0,0,0", host), "HTTP/1.1 400");
+    // Nothing is compressed, which would take longer than all else.
+    const std::string plain = ask(port, "GET / HTTP/1.1\r\n" + host + "Accept-Encoding: gzip, br\r\n\r\n");
+    EXPECT_EQ(plain.find("Content-Encoding"), std::string::npos);
+    EXPECT_NE(plain.find("</html>"), std::string::npos);
     EXPECT_EQ(get("/../../../../etc/passwd", host), "HTTP/1.1 404");
     EXPECT_EQ(get("/%2e%2e/%2e%2e/etc/passwd", host), "HTTP/1.1 404");
     EXPECT_EQ(get("/data/scene", host + "Origin: http://example.org\r\n"), "HTTP/1.1 403");
