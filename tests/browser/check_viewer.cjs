@@ -110,6 +110,40 @@ async function check_solution(page) {
     program.kill();
 }
 
+/** Sliders against a server that answers half the light for a dimmed group: what is asked for and how often. */
+async function check_sliders(page) {
+    const {program, origin} = await start(solution), asked = [];
+    const facts = await (await fetch(origin + 'data/scene')).json();
+    const lamp = facts.groups[0] ?? 'none', wall = facts.materials[0].name;
+    await page.route('**/groups', route => route.fulfill({json: {groups: [{name: lamp, factor: 1}], materials: [facts.materials[0]]}}));
+    await page.route(/data\/part.*(dim|paint)=/, async route => {
+        const url = new URL(route.request().url());
+        asked.push([url.searchParams.get('dim'), url.searchParams.get('paint')]);
+        for (const word of ['dim', 'paint', 'only']) url.searchParams.delete(word);
+        const body = Buffer.from(await (await fetch(url)).arrayBuffer()), v = body.readUInt32LE(4);
+        for (let i = 0; i < 3 * v; ++i) body.writeFloatLE(0.5 * body.readFloatLE(12 + 12 * v + 4 * i), 12 + 12 * v + 4 * i);
+        await route.fulfill({body, contentType: 'application/octet-stream'});
+    });
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.whatif');
+    const before = await page.evaluate(() => exitance.canvas());
+    await page.focus('#group_0');
+    for (let i = 0; i < 50; ++i) await page.keyboard.press('ArrowLeft');
+    await page.waitForFunction(lamp => JSON.parse(document.body.dataset.refilled ?? '{}').change?.dim === lamp + ':0.5', lamp);
+    check(asked.length <= 51 && asked.at(-1)[0] === lamp + ':0.5', `a slider asked ${asked.length} times in 50 steps, last for ${asked.at(-1)[0]}`);
+    const after = await difference(page, before, await page.evaluate(() => exitance.canvas()));
+    check(after > 0.05, `the light follows: ${(100 * after).toFixed(1)}% of white`);
+    await page.fill('#material_0', '#808080');
+    await page.waitForFunction(() => JSON.parse(document.body.dataset.refilled).change.paint);
+    check(asked.at(-1)[1] === wall + ':0.2159/0.2159/0.2159', `a colour paints ${asked.at(-1)[1]}`);
+    await page.click('#change button');
+    await page.waitForFunction(() => { const {change} = JSON.parse(document.body.dataset.refilled); return !change.dim && !change.paint; });
+    const back = await difference(page, before, await page.evaluate(() => exitance.canvas()));
+    check(back < 1e-6, 'and goes back to what was solved');
+    await page.unrouteAll();
+    program.kill();
+}
+
 async function check_scene(page) {
     const {program, origin} = await start(scene, '--error', '0.1', '--save', path.join(folder, 'saved.h5'));
     await page.goto(origin);
@@ -129,6 +163,7 @@ async function check_scene(page) {
     const page = await browser.newPage({viewport: {width: size[0], height: size[1]}, bypassCSP: true});
     page.on('pageerror', error => check(false, 'page: ' + error));
     await check_solution(page);
+    await check_sliders(page);
     if (scene) await check_scene(page);
     await browser.close();
     process.exit(failed > 0 ? 1 : 0);

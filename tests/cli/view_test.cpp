@@ -204,6 +204,44 @@ TEST(ProgramRender, TakesNumberedPicturesAlongAPath) {
     EXPECT_EQ(with({folder / "bad.csv"}).status, 3);
 }
 
+TEST(ProgramRender, MakesAVideoByFfmpegAndSaysWhereThatIsMissing) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    // Unequal rows: 0.24 s at 25 pictures a second are 7.
+    write_text(folder / "p.csv", "0,-1,1,1,2,2,1,60\n0.2,-2,1,1,2,2,1,60\n0.24,-3,1,1,2,2,1,60\n");
+    // It counts the pictures and writes its last word, the video.
+    write_text(folder / "ffmpeg",
+               "#!/bin/bash\nfor last; do :; done\nfor ((i = 1; i <= $#; ++i)); do [[ ${!i} == -i ]] && j=$((i + 1)); "
+               "done\nset -- \"${!j%/*}\"/frame.*.png\necho \"$# pictures\" >\"$last\"\n[[ $1 != *.0001.png ]]; exit "
+               "$((1 - $?))\n");
+    std::filesystem::permissions(folder / "ffmpeg", std::filesystem::perms::owner_all);
+    const std::string path = getenv("PATH");
+    const auto with = [&](const std::string& search, const std::string& output, const std::string& cameras) {
+        setenv("PATH", search.c_str(), 1);
+        const Finished run = run_program({"render", folder / "s.h5", "-o", folder / output, "--size", "16x10",
+                                          "--samples", "1", "--path", folder / cameras});
+        setenv("PATH", path.c_str(), 1);
+        return run;
+    };
+    const Finished missing = with("/nowhere", "w.mp4", "p.csv");
+    EXPECT_EQ(missing.status, 5);
+    EXPECT_NE(missing.err.find("ffmpeg, which is not installed"), std::string::npos) << missing.err;
+    const std::string search = std::filesystem::path(folder / "ffmpeg").parent_path().string() + ":" + path;
+    const Finished run = with(search, "w.mp4", "p.csv");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(read_text(folder / "w.mp4"), "7 pictures\n");
+    write_text(folder / "falls.csv", "1,-1,1,1,2,2,1,60\n0.2,-2,1,1,2,2,1,60\n");
+    EXPECT_EQ(with(search, "v.mp4", "falls.csv").status, 3);
+    write_text(folder / "long.csv", "0,-1,1,1,2,2,1,60\n1e9,-2,1,1,2,2,1,60\n");
+    EXPECT_EQ(with(search, "v.mp4", "long.csv").status, 3);
+    EXPECT_EQ(run_program({"render", folder / "s.h5", "-o", folder / "w.mp4"}).status, 2);
+    write_text(folder / "ffmpeg", "#!/bin/bash\necho no such codec >&2\nexit 1\n");
+    const Finished failed = with(search, "u.mp4", "p.csv");
+    EXPECT_EQ(failed.status, 5);
+    EXPECT_NE(failed.err.find("no such codec"), std::string::npos) << failed.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "u.mp4"));
+}
+
 TEST(ProgramHelp, MakesAManualPageAndACompletionOfItsOptions) {
     const Finished man = run_program({"--man"}), completion = run_program({"--completion", "bash"});
     EXPECT_EQ(man.status, 0);

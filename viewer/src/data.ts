@@ -31,6 +31,9 @@ export interface Frame { width: number; height: number; light: Float32Array; res
 export interface Change { dim: string; paint: string }
 export const unchanged: Change = {dim: '', paint: ''};
 
+/** What can be dimmed and repainted; empty where the solution keeps nothing for it. */
+export interface Changes { groups: {name: string; factor: number}[]; materials: {name: string; reflectance: Triple}[] }
+
 export class Refused extends Error {
     constructor(readonly status: number, message: string) { super(message); }
 }
@@ -58,6 +61,16 @@ export const load_point = (at: number[], change: Change) =>
     answer(query('/data/point', {at: at.join(',')}, change)).then(r => r.json() as Promise<Light>);
 export const load_line = (at: number[], change: Change) =>
     answer(query('/data/line', {at: at.join(',')}, change)).then(r => r.json() as Promise<{length: number; values: number[]}>);
+
+export async function load_changes(): Promise<Changes> {
+    try {
+        const found = await (await answer('/groups')).json() as Partial<Changes>;
+        return {groups: found.groups ?? [], materials: found.materials ?? []};
+    } catch (error) {
+        if (error instanceof Refused && error.status === 404) return {groups: [], materials: []};
+        throw error;
+    }
+}
 
 export async function load_part(layer: Layer, part: number, change: Change): Promise<Part> {
     const bytes = await bytes_of(query('/data/part', {layer, part: String(part)}, change));

@@ -5,6 +5,7 @@ import {by_id, draw_outlines, point_words, profile_csv, show_plot, type Profile}
 import {Panes, type Arrangement, type Source} from './panes';
 import {class_colours, css, round_steps, Shading, type Shown} from './shading';
 import {Viewpoint} from './camera';
+import {WhatIf} from './what_if';
 
 performance.mark('script');
 const asked_state = load_state(), asked_facts = asked_state.then(state => state.solving ? null : load_facts());
@@ -168,13 +169,16 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
     // What was there stays in sight until there is something new.
     await fresh.layers.delivered.load(fresh.change, () => {
+        performance.mark('buffers');
         if (panes !== fresh) {
             panes = fresh;
             old?.dispose();
             if (first) {
                 view = new Viewpoint(facts, canvas, redraw);
                 view.controls.addEventListener('end', () => view.to_address());
+                performance.mark('viewpoint');
                 resize();
+                performance.mark('resized');
                 draw(performance.now());
             }
             show_facts();
@@ -190,6 +194,8 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     await panes.load();
     apply();
     document.body.dataset.ready = '1';
+    await new WhatIf(facts, panes, shading, apply).show();
+    document.body.dataset.whatif = '1';
 }
 
 /** A running solve tells what it does, and when there is better light. */
