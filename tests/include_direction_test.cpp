@@ -15,10 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders in the order in which they may include: each includes itself, its own subfolders and those before it.
-const std::vector<std::string> order{"core",       "geometry",     "joining",     "scene",       "form_factors",
-                                     "visibility", "mesh",         "basis",       "direct",      "transport",
-                                     "links",      "view_factors", "solve",       "reconstruct", "accuracy",
-                                     "methods",    "io",           "experiments", "cli"};
+const std::vector<std::string> order{"core",         "calibration", "geometry",     "joining",     "scene",
+                                     "form_factors", "visibility",  "mesh",         "basis",       "direct",
+                                     "transport",    "links",       "view_factors", "solve",       "reconstruct",
+                                     "accuracy",     "methods",     "io",           "experiments", "cli"};
 
 /// The files that may include a third-party library, by the first folder or the name of its headers.
 struct Door {

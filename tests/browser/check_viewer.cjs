@@ -3,7 +3,7 @@ const fs = require('fs'), path = require('path');
 const {execFileSync, spawn} = require('child_process');
 const {chromium} = require('playwright-core');
 const {EXITANCE: exitance, SOLUTION: solution, SCENE: scene, WORK: folder} = process.env;
-const size = [640, 400];
+const size = [940, 400];
 let failed = 0;
 const programs = [];
 process.on('exit', () => programs.forEach(p => p.kill()));
@@ -41,6 +41,41 @@ async function difference(page, a, b) {
     }, [a, b]);
 }
 
+const png = file => 'data:image/png;base64,' + fs.readFileSync(file).toString('base64');
+
+/** Raw, delivered and exact light: alone, split, side by side. */
+async function compare(page, picture) {
+    const keep = async name => {
+        const shown = await page.evaluate(() => exitance.canvas());
+        if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, name + '.png'), Buffer.from(shown.split(',')[1], 'base64'));
+        return shown;
+    };
+    const delivered = await keep('delivered');
+    await page.selectOption('#source', 'exact');
+    await page.waitForFunction(() => exitance.whole());
+    const exact = await keep('exact'), apart = await difference(page, exact, png(picture));
+    check(apart < 0.01, `the exact picture differs from render by ${(100 * apart).toFixed(2)}% of white (1% allowed)`);
+    await page.selectOption('#source', 'raw');
+    await page.waitForFunction(() => document.body.dataset.raw);
+    const raw = await keep('raw'), rough = await difference(page, raw, delivered);
+    check(rough > 0.003 && rough < 0.2, `raw elements differ from the delivered light by ${(100 * rough).toFixed(2)}% of white`);
+    await page.selectOption('#arrangement', 'split');
+    await page.waitForFunction(() => exitance.whole());
+    await page.focus('.divider');
+    for (let i = 0; i < 40; ++i) await page.keyboard.press('ArrowLeft');
+    await page.focus('.divider >> nth=1');
+    for (let i = 0; i < 80; ++i) await page.keyboard.press('ArrowLeft');
+    check(await difference(page, await keep('split'), exact) < 0.002, 'dividers at the left leave the exact picture');
+    for (let i = 0; i < 100; ++i) await page.keyboard.press('ArrowRight');
+    check(await difference(page, await keep('split'), delivered) < 0.002, 'and at either side the delivered light');
+    await page.selectOption('#arrangement', 'panes');
+    await page.waitForFunction(() => exitance.whole());
+    await keep('panes');
+    check(await page.textContent('#panes') === 'rawdeliveredexact', 'three panes with their names');
+    await page.selectOption('#arrangement', 'one');
+    await page.selectOption('#source', 'delivered');
+}
+
 async function check_solution(page) {
     const {program, origin} = await start(solution);
     const begin = Date.now(), foreign = [];
@@ -49,17 +84,18 @@ async function check_solution(page) {
     await page.waitForFunction('document.body.dataset.first');
     console.log(`first picture ${Date.now() - begin} ms after the page was asked for`);
     await page.waitForFunction('document.body.dataset.ready');
-    const [words, exposure] = await page.evaluate(() => [exitance.words(), exitance.exposure()]);
+    const [words, exposure, drawn] = await page.evaluate(() => [exitance.words(), exitance.exposure(), exitance.size()]);
     const picture = path.join(folder, 'render.png');
-    execFileSync(exitance, ['render', solution, '-o', picture, '--size', size.join('x'), '--camera', words,
+    execFileSync(exitance, ['render', solution, '-o', picture, '--size', drawn.join('x'), '--camera', words,
         '--exposure', exposure + 'x', '--tone-map', 'filmic', '-q']);
     const shown = await page.evaluate(() => exitance.canvas());
     if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, 'viewer.png'), Buffer.from(shown.split(',')[1], 'base64'));
-    const apart = await difference(page, shown, 'data:image/png;base64,' + fs.readFileSync(picture).toString('base64'));
+    const apart = await difference(page, shown, png(picture));
     check(apart < 0.03, `differs from render by ${(100 * apart).toFixed(2)}% of white on average (3% allowed)`);
-    await page.mouse.click(size[0] * 0.75, size[1] * 0.75);
+    await page.mouse.click(size[0] * 0.75, size[1] * 0.6);
     await page.waitForFunction(() => /element/.test(document.getElementById('point').textContent), null, {timeout: 10000});
     check(true, 'picks: ' + (await page.textContent('#point')).replaceAll('\n', '; ').slice(0, 120));
+    await compare(page, picture);
     await page.selectOption('#quantity', 'irradiance');
     check(await page.isVisible('#legend') && /W\/m²|lx/.test(await page.textContent('#legend')), 'a legend with units');
     await page.focus('#picture');
@@ -71,6 +107,40 @@ async function check_solution(page) {
         .filter(e => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim())).length);
     check(unnamed === 0, `${unnamed} controls without a name`);
     check(foreign.length === 0, `${foreign.length} calls elsewhere`);
+    program.kill();
+}
+
+/** Sliders against a server that answers half the light for a dimmed group: what is asked for and how often. */
+async function check_sliders(page) {
+    const {program, origin} = await start(solution), asked = [];
+    const facts = await (await fetch(origin + 'data/scene')).json();
+    const lamp = facts.groups[0] ?? 'none', wall = facts.materials[0].name;
+    await page.route('**/groups', route => route.fulfill({json: {groups: [{name: lamp, factor: 1}], materials: [facts.materials[0]]}}));
+    await page.route(/data\/part.*(dim|paint)=/, async route => {
+        const url = new URL(route.request().url());
+        asked.push([url.searchParams.get('dim'), url.searchParams.get('paint')]);
+        for (const word of ['dim', 'paint', 'only']) url.searchParams.delete(word);
+        const body = Buffer.from(await (await fetch(url)).arrayBuffer()), v = body.readUInt32LE(4);
+        for (let i = 0; i < 3 * v; ++i) body.writeFloatLE(0.5 * body.readFloatLE(12 + 12 * v + 4 * i), 12 + 12 * v + 4 * i);
+        await route.fulfill({body, contentType: 'application/octet-stream'});
+    });
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.whatif');
+    const before = await page.evaluate(() => exitance.canvas());
+    await page.focus('#group_0');
+    for (let i = 0; i < 50; ++i) await page.keyboard.press('ArrowLeft');
+    await page.waitForFunction(lamp => JSON.parse(document.body.dataset.refilled ?? '{}').change?.dim === lamp + ':0.5', lamp);
+    check(asked.length <= 51 && asked.at(-1)[0] === lamp + ':0.5', `a slider asked ${asked.length} times in 50 steps, last for ${asked.at(-1)[0]}`);
+    const after = await difference(page, before, await page.evaluate(() => exitance.canvas()));
+    check(after > 0.05, `the light follows: ${(100 * after).toFixed(1)}% of white`);
+    await page.fill('#material_0', '#808080');
+    await page.waitForFunction(() => JSON.parse(document.body.dataset.refilled).change.paint);
+    check(asked.at(-1)[1] === wall + ':0.2159/0.2159/0.2159', `a colour paints ${asked.at(-1)[1]}`);
+    await page.click('#change button');
+    await page.waitForFunction(() => { const {change} = JSON.parse(document.body.dataset.refilled); return !change.dim && !change.paint; });
+    const back = await difference(page, before, await page.evaluate(() => exitance.canvas()));
+    check(back < 1e-6, 'and goes back to what was solved');
+    await page.unrouteAll();
     program.kill();
 }
 
@@ -93,6 +163,7 @@ async function check_scene(page) {
     const page = await browser.newPage({viewport: {width: size[0], height: size[1]}, bypassCSP: true});
     page.on('pageerror', error => check(false, 'page: ' + error));
     await check_solution(page);
+    await check_sliders(page);
     if (scene) await check_scene(page);
     await browser.close();
     process.exit(failed > 0 ? 1 : 0);

@@ -6,7 +6,8 @@
 #include <cstring>
 
 #include "cli/small_scene.hpp"
-#include "exitance/io/export/viewer_data.hpp"
+#include "exitance/io/export/viewer_frame.hpp"
+#include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "support/sample_solution.hpp"
 
@@ -47,27 +48,103 @@ int free_port() {
 
 }  // namespace
 
+/// A part as the page reads it.
+struct ReadPart {
+    explicit ReadPart(const std::string& bytes) {
+        std::uint32_t counts[2];
+        std::memcpy(counts, bytes.data() + 4, sizeof counts);
+        positions.resize(std::size_t{3} * counts[0]), light.resize(positions.size());
+        faces.resize(std::size_t{5} * counts[1]);
+        const std::size_t bytes_of_vertices = 4 * positions.size();
+        whole = bytes.starts_with("EXV2") && bytes.size() == 12 + 2 * bytes_of_vertices + 4 * faces.size();
+        if (!whole) return;
+        std::memcpy(positions.data(), bytes.data() + 12, bytes_of_vertices);
+        std::memcpy(light.data(), bytes.data() + 12 + bytes_of_vertices, bytes_of_vertices);
+        std::memcpy(faces.data(), bytes.data() + 12 + 2 * bytes_of_vertices, 4 * faces.size());
+    }
+    bool whole = false;
+    std::vector<float> positions, light;
+    std::vector<std::uint32_t> faces;
+};
+
 TEST(ViewerData, APartHoldsAllElementsAndTheirLight) {
     const Solution solution = sample_solution();
+    const RadiosityFunction light(solution);
     ASSERT_EQ(viewer_part_count(solution, ViewerLayer::exported), 1u);
-    const std::string part = viewer_part(solution, ViewerLayer::exported, 0);
-    ASSERT_TRUE(part.starts_with("EXV1"));
-    std::uint32_t counts[3];
-    std::memcpy(counts, part.data() + 4, sizeof counts);
-    const auto [v, t, e] = counts;
-    EXPECT_EQ(part.size(), 16 + std::size_t{4} * (3 * v + 3 * v + v + v + 3 * t + 2 * e + e));
-    // The triangles cover what the leaves cover.
-    std::vector<float> p(3 * v);
-    std::vector<std::uint32_t> corners(3 * t);
-    std::memcpy(p.data(), part.data() + 16, 4 * p.size());
-    std::memcpy(corners.data(), part.data() + 16 + 4 * 8 * std::size_t{v}, 4 * corners.size());
-    const auto at = [&](std::uint32_t i) { return Point{p[3 * i], p[3 * i + 1], p[3 * i + 2]}; };
+    const std::string bytes = viewer_part(light, ViewerLayer::exported, 0);
+    const ReadPart part(bytes);
+    ASSERT_TRUE(part.whole);
+    // The faces cover what the leaves cover.
+    const auto at = [&](std::size_t i) {
+        return Point{part.positions[3 * i], part.positions[3 * i + 1], part.positions[3 * i + 2]};
+    };
     double area = 0, leaves = 0;
-    for (std::size_t i = 0; i < t; ++i)
-        area +=
-            0.5 * norm(cross(at(corners[3 * i + 1]) - at(corners[3 * i]), at(corners[3 * i + 2]) - at(corners[3 * i])));
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < part.faces.size(); f += 5) {
+        const std::size_t shape = part.faces[f], corners = shape == 262 ? 3 : shape;
+        for (std::size_t i = 1; i + 1 < corners; ++i)
+            area += 0.5 * norm(cross(at(first + i) - at(first), at(first + i + 1) - at(first)));
+        first += shape & 255;
+    }
+    EXPECT_EQ(3 * first, part.positions.size());
     for (const ElementId leaf : solution.interpolant.tree.leaves()) leaves += solution.interpolant.tree.area(leaf);
     EXPECT_NEAR(area, leaves, 1e-5 * leaves);
+    // Light alone is the same light.
+    const std::string alone = viewer_part_light(light, ViewerLayer::exported, 0);
+    ASSERT_TRUE(alone.starts_with("EXL1"));
+    EXPECT_EQ(alone.substr(8), bytes.substr(12 + 4 * part.positions.size(), 4 * part.light.size()));
+}
+
+TEST(ViewerData, RawElementsOfAConstantBasisHaveOneValueWithDirectLightAtTheirCentres) {
+    Solution solution = sample_solution();
+    solution.statistics.basis = "constant";
+    const RadiosityFunction light(solution);
+    const ReadPart part(viewer_part(light, ViewerLayer::raw, 0));
+    ASSERT_TRUE(part.whole);
+    std::size_t first = 0, checked = 0;
+    double brightest = 0;
+    for (std::size_t f = 0; f < part.faces.size(); f += 5) {
+        const std::size_t corners = part.faces[f];
+        const ElementId e{part.faces[f + 2]};
+        Point centre;
+        for (std::size_t i = 0; i < corners; ++i) {
+            for (std::size_t c = 0; c < 3; ++c)
+                ASSERT_EQ(part.light[3 * (first + i) + c], part.light[3 * first + c]) << "face " << f / 5;
+            const float* p = part.positions.data() + 3 * (first + i);
+            centre = centre + (1.0 / static_cast<double>(corners)) * Vec3{p[0], p[1], p[2]};
+        }
+        const Normal n = solution.scene.regions()[solution.indirect.tree.region(e)].plane.n;
+        const ProbePoint point{centre, n};
+        const double direct = light.at(std::span(&point, 1), Component::direct)[0].irradiance[0];
+        double reflected = 0;
+        for (const Vec2 uv : solution.indirect.tree.domain(e))
+            reflected += solution.indirect.at({e, uv})[0] / static_cast<double>(corners);
+        EXPECT_NEAR(part.light[3 * first], reflected + light.exact_share()[0] * direct,
+                    1e-4 * (1 + reflected + direct));
+        brightest = std::max(brightest, direct);
+        first += corners, ++checked;
+    }
+    EXPECT_EQ(checked, solution.indirect.tree.leaves().size());
+    EXPECT_GT(brightest, 0);
+}
+
+TEST(ViewerData, AFrameHoldsThePictureFromTheBottomUp) {
+    const Solution solution = sample_solution();
+    const RadiosityFunction light(solution);
+    Progress quiet;
+    PictureOptions options;
+    options.camera = {{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70}, options.size = {7, 5};
+    const Picture picture = take_picture(light, options, quiet, StopRequest());
+    const std::string frame = viewer_frame(picture);
+    ASSERT_EQ(frame.size(), 12 + 4u * 6 * 35);
+    ASSERT_TRUE(frame.starts_with("EXF1"));
+    std::vector<float> numbers(6 * 35);
+    std::memcpy(numbers.data(), frame.data() + 12, 4 * numbers.size());
+    const Pixel& lowest = picture.pixels[28];
+    EXPECT_GT(lowest.front, 0);
+    EXPECT_EQ(numbers[0], static_cast<float>(lowest.radiosity[0]));
+    EXPECT_EQ(numbers[3], lowest.front);
+    EXPECT_EQ(numbers[4 * 35], static_cast<float>(mean(lowest.irradiance)));
 }
 
 TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
@@ -86,8 +163,17 @@ TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
     EXPECT_EQ(get("/data/part?layer=exported&part=0", host), "HTTP/1.1 200");
     EXPECT_EQ(get("/data/part?layer=exported&part=7", host), "HTTP/1.1 400");
     EXPECT_EQ(get("/data/part?layer=exported&part=nan", host), "HTTP/1.1 400");
+    EXPECT_EQ(get("/data/part?layer=raw&part=0", host), "HTTP/1.1 200");
+    EXPECT_EQ(get("/data/part?layer=raw&part=0&only=light", host), "HTTP/1.1 200");
+    EXPECT_EQ(get("/data/frame?camera=0.1,0.1,0.5,1.5,0.5,0.5,70&size=16,10&samples=1", host), "HTTP/1.1 200");
+    EXPECT_EQ(get("/data/frame?camera=0.1,0.1,0.5,0.1,0.1,0.5,70&size=16,10&samples=1", host), "HTTP/1.1 400");
+    EXPECT_EQ(get("/data/frame?camera=0.1,0.1,0.5,1.5,0.5,0.5,70&size=1e6,1e6&samples=1", host), "HTTP/1.1 400");
     EXPECT_EQ(get("/data/point?at=1,2", host), "HTTP/1.1 400");
     EXPECT_EQ(get("/data/line?at=0,0,0,1,1,1,0,0,0", host), "HTTP/1.1 400");
+    // Nothing is compressed, which would take longer than all else.
+    const std::string plain = ask(port, "GET / HTTP/1.1\r\n" + host + "Accept-Encoding: gzip, br\r\n\r\n");
+    EXPECT_EQ(plain.find("Content-Encoding"), std::string::npos);
+    EXPECT_NE(plain.find("</html>"), std::string::npos);
     EXPECT_EQ(get("/../../../../etc/passwd", host), "HTTP/1.1 404");
     EXPECT_EQ(get("/%2e%2e/%2e%2e/etc/passwd", host), "HTTP/1.1 404");
     EXPECT_EQ(get("/data/scene", host + "Origin: http://example.org\r\n"), "HTTP/1.1 403");
@@ -116,6 +202,44 @@ TEST(ProgramRender, TakesNumberedPicturesAlongAPath) {
     EXPECT_EQ(with({folder / "p.csv", "--isolux"}).status, 2);
     write_text(folder / "bad.csv", "time,ex,ey,ez,tx,ty,tz,fov\n0,-1,1,1,2,2,60\n");
     EXPECT_EQ(with({folder / "bad.csv"}).status, 3);
+}
+
+TEST(ProgramRender, MakesAVideoByFfmpegAndSaysWhereThatIsMissing) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    // Unequal rows: 0.24 s at 25 pictures a second are 7.
+    write_text(folder / "p.csv", "0,-1,1,1,2,2,1,60\n0.2,-2,1,1,2,2,1,60\n0.24,-3,1,1,2,2,1,60\n");
+    // It counts the pictures and writes its last word, the video.
+    write_text(folder / "ffmpeg",
+               "#!/bin/bash\nfor last; do :; done\nfor ((i = 1; i <= $#; ++i)); do [[ ${!i} == -i ]] && j=$((i + 1)); "
+               "done\nset -- \"${!j%/*}\"/frame.*.png\necho \"$# pictures\" >\"$last\"\n[[ $1 != *.0001.png ]]; exit "
+               "$((1 - $?))\n");
+    std::filesystem::permissions(folder / "ffmpeg", std::filesystem::perms::owner_all);
+    const std::string path = getenv("PATH");
+    const auto with = [&](const std::string& search, const std::string& output, const std::string& cameras) {
+        setenv("PATH", search.c_str(), 1);
+        const Finished run = run_program({"render", folder / "s.h5", "-o", folder / output, "--size", "16x10",
+                                          "--samples", "1", "--path", folder / cameras});
+        setenv("PATH", path.c_str(), 1);
+        return run;
+    };
+    const Finished missing = with("/nowhere", "w.mp4", "p.csv");
+    EXPECT_EQ(missing.status, 5);
+    EXPECT_NE(missing.err.find("ffmpeg, which is not installed"), std::string::npos) << missing.err;
+    const std::string search = std::filesystem::path(folder / "ffmpeg").parent_path().string() + ":" + path;
+    const Finished run = with(search, "w.mp4", "p.csv");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(read_text(folder / "w.mp4"), "7 pictures\n");
+    write_text(folder / "falls.csv", "1,-1,1,1,2,2,1,60\n0.2,-2,1,1,2,2,1,60\n");
+    EXPECT_EQ(with(search, "v.mp4", "falls.csv").status, 3);
+    write_text(folder / "long.csv", "0,-1,1,1,2,2,1,60\n1e9,-2,1,1,2,2,1,60\n");
+    EXPECT_EQ(with(search, "v.mp4", "long.csv").status, 3);
+    EXPECT_EQ(run_program({"render", folder / "s.h5", "-o", folder / "w.mp4"}).status, 2);
+    write_text(folder / "ffmpeg", "#!/bin/bash\necho no such codec >&2\nexit 1\n");
+    const Finished failed = with(search, "u.mp4", "p.csv");
+    EXPECT_EQ(failed.status, 5);
+    EXPECT_NE(failed.err.find("no such codec"), std::string::npos) << failed.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "u.mp4"));
 }
 
 TEST(ProgramHelp, MakesAManualPageAndACompletionOfItsOptions) {

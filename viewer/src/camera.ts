@@ -16,6 +16,7 @@ export class Viewpoint {
     path: Station[] = [];
     recording = false;
     private started = 0;
+    private fitted = 0;
 
     constructor(private facts: Facts, canvas: HTMLCanvasElement, private changed: () => void) {
         this.camera.up.set(0, 0, 1);
@@ -27,6 +28,7 @@ export class Viewpoint {
             const key = event.key.toLowerCase();
             if (fly_keys[key] && !event.ctrlKey && !event.metaKey) { this.down.add(key); changed(); }
         });
+        canvas.addEventListener('keydown', event => this.turn_by_key(event));
         canvas.addEventListener('keyup', event => this.down.delete(event.key.toLowerCase()));
         canvas.addEventListener('blur', () => this.down.clear());
         if (!this.from_address()) this.set(facts.camera.eye, facts.camera.target, facts.camera.fov);
@@ -47,7 +49,8 @@ export class Viewpoint {
     }
 
     resize(aspect: number): void {
-        this.camera.aspect = aspect;
+        if (aspect === this.camera.aspect && this.fov === this.fitted) return;
+        this.camera.aspect = aspect, this.fitted = this.fov;
         this.camera.fov = 2 * Math.atan(Math.tan(this.fov * Math.PI / 360) / aspect) * 180 / Math.PI;
         this.camera.updateProjectionMatrix();
     }
@@ -74,10 +77,31 @@ export class Viewpoint {
         return true;
     }
 
+    /** Arrows turn about the target, + and - come closer and go away. */
+    private turn_by_key(event: KeyboardEvent): void {
+        const turns: Record<string, [number, number, number]> = {ArrowLeft: [-1, 0, 1], ArrowRight: [1, 0, 1],
+            ArrowUp: [0, -1, 1], ArrowDown: [0, 1, 1], '+': [0, 0, 0.9], '=': [0, 0, 0.9], '-': [0, 0, 1 / 0.9]};
+        const turn = turns[event.key];
+        if (!turn || event.ctrlKey || event.metaKey) return;
+        event.preventDefault();
+        const away = this.camera.position.clone().sub(this.controls.target), step = 0.06;
+        const length = away.length(), pole = Math.min(Math.max(Math.acos(away.z / length) + step * turn[1], 0.02), Math.PI - 0.02);
+        const round = Math.atan2(away.y, away.x) + step * turn[0];
+        away.set(Math.sin(pole) * Math.cos(round), Math.sin(pole) * Math.sin(round), Math.cos(pole)).multiplyScalar(length * turn[2]);
+        this.camera.position.copy(this.controls.target).add(away);
+        this.controls.update();
+        this.changed();
+    }
+
+    /** Eye, target and angle. */
+    numbers(): number[] {
+        return [...this.camera.position.toArray(), ...this.controls.target.toArray(), this.fov].map(x => Number(x.toPrecision(7)));
+    }
+
     /** As --camera of `render` takes it. */
     words(): string {
-        const short = (v: THREE.Vector3) => v.toArray().map(x => Number(x.toPrecision(7))).join(',');
-        return `${short(this.camera.position)} ${short(this.controls.target)} ${this.fov}`;
+        const n = this.numbers();
+        return `${n.slice(0, 3)} ${n.slice(3, 6)} ${n[6]}`;
     }
 
     to_address(): void {

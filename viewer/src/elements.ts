@@ -1,76 +1,175 @@
-// The elements as three.js draws them, a part at a time.
+// The elements of one layer as three.js draws them, a part at a time.
 import * as THREE from 'three';
-import {load_part, type Facts, type Part} from './data';
+import {face_words, load_light, load_part, no_group, six_nodes, type Change, type Facts, type Layer, type Part, type Triple} from './data';
 import type {Shading} from './shading';
 
-/** Of edges by the order of the discontinuity along them (CurveOrder): border, D0, D1, D2. */
-const order_colours: Record<number, Triple3> = {0: [0.9, 0.9, 0.9], 1: [0.9, 0.1, 0.1], 2: [0.95, 0.6, 0.1], 3: [0.2, 0.5, 0.95]};
-const plain: Triple3 = [0.25, 0.25, 0.28];
-type Triple3 = [number, number, number];
+/** Of edges by the order of the discontinuity along them (CurveOrder), as `render --mesh` has them. */
+export const order_colours: Record<number, [string, Triple]> = {0: ['border', [230, 230, 230]], 1: ['D0 value', [222, 30, 40]],
+    2: ['D1 slope', [0, 150, 90]], 3: ['D2 curvature', [40, 110, 245]], 4: ['conic', [170, 60, 200]]};
+const plain: Triple = [64, 64, 72];
 
-interface Loaded { part: Part; mesh: THREE.Mesh; light: THREE.BufferAttribute }
+interface Loaded { part: Part; mesh: THREE.Mesh; first: Uint32Array; materials: Float32Array }
+
+/** Which vertices make triangles: a fan a face, four a quadratic triangle. */
+function triangles_of(faces: Uint32Array): {index: Uint32Array; first: Uint32Array} {
+    const first = new Uint32Array(faces.length / face_words);
+    let count = 0;
+    for (let f = 0; f < first.length; ++f) {
+        const shape = faces[face_words * f];
+        count += shape === six_nodes ? 12 : 3 * Math.max(0, shape - 2);
+    }
+    const index = new Uint32Array(count);
+    let at = 0, v = 0;
+    for (let f = 0; f < first.length; ++f) {
+        const shape = faces[face_words * f];
+        first[f] = v;
+        if (shape === six_nodes) {
+            for (const k of [0, 3, 5, 3, 1, 4, 5, 4, 2, 3, 4, 5]) index[at++] = v + k;
+            v += 6;
+        } else {
+            for (let i = 1; i + 1 < shape; ++i) index[at++] = v, index[at++] = v + i, index[at++] = v + i + 1;
+            v += shape;
+        }
+    }
+    return {index, first};
+}
 
 export class Elements {
     readonly whole = new THREE.Group();
     readonly lines = new THREE.Group();
     private loaded: Loaded[] = [];
+    private loading: Promise<void> | null = null;
+    /** Has the light changed since it was loaded? */
+    stale = false;
 
-    constructor(private facts: Facts, private shading: Shading) {}
+    constructor(private facts: Facts, private shading: Shading, readonly layer: Layer) { this.lines.visible = false; }
 
-    async load(layer: 'exported' | 'method', changed: () => void): Promise<void> {
-        const fresh: Loaded[] = [];
-        const old = this.loaded;
-        for (let i = 0; i < this.facts.parts[layer]; ++i) {
-            const part = await load_part(layer, i);
-            if (i === 0) this.clear(old);
-            fresh.push(this.add(part));
-            this.loaded = fresh;
+    /** Once; further calls wait for the same. */
+    async load(change: Change, changed: () => void): Promise<void> {
+        if (this.loading && this.stale) { await this.refill(change); changed(); }
+        this.loading ??= this.load_parts(change, changed);
+        return this.loading;
+    }
+
+    private async load_parts(change: Change, changed: () => void): Promise<void> {
+        // The next part travels while one is made.
+        let next = load_part(this.layer, 0, change);
+        for (let i = 0; i < this.facts.parts[this.layer]; ++i) {
+            const part = await next;
+            if (i + 1 < this.facts.parts[this.layer]) { next = load_part(this.layer, i + 1, change); next.catch(() => {}); }
+            this.add(part);
             changed();
         }
     }
 
-    private clear(old: Loaded[]): void {
-        for (const {mesh} of old) mesh.geometry.dispose();
-        for (const line of this.lines.children) (line as THREE.LineSegments).geometry.dispose();
+    /** New light on the same elements. */
+    async refill(change: Change): Promise<void> {
+        if (!this.loading) return;
+        await this.loading;
+        this.stale = false;
+        const all = await Promise.all(this.loaded.map((_, i) => load_light(this.layer, i, change)));
+        all.forEach((light, i) => {
+            const attribute = this.loaded[i].mesh.geometry.getAttribute('irradiance') as THREE.BufferAttribute;
+            if (light.length !== attribute.array.length) throw new Error('the light is of other elements');
+            (attribute.array as Float32Array).set(light);
+            attribute.needsUpdate = true;
+        });
+    }
+
+    dispose(): void {
+        for (const group of [this.whole, this.lines])
+            for (const child of group.children) (child as THREE.Mesh).geometry.dispose();
         this.whole.clear();
         this.lines.clear();
+        this.loaded = [];
     }
 
-    private add(part: Part): Loaded {
+    private add(part: Part): void {
+        const {index, first} = triangles_of(part.faces), count = part.positions.length / 3;
+        const materials = new Float32Array(count), groups = new Float32Array(count), shadow = new Float32Array(count);
+        const none = this.facts.groups.length;
+        for (let f = 0; f < first.length; ++f) {
+            const at = face_words * f, end = f + 1 < first.length ? first[f + 1] : count;
+            materials.fill(part.faces[at + 1], first[f], end);
+            groups.fill(part.faces[at + 3] === no_group ? none : part.faces[at + 3], first[f], end);
+            shadow.fill(part.faces[at + 4] & 255, first[f], end);
+        }
         const geometry = new THREE.BufferGeometry();
-        const light = new THREE.BufferAttribute(part.irradiance, 3);
+        const scalars = {material: materials, group: groups, shadow};
         geometry.setAttribute('position', new THREE.BufferAttribute(part.positions, 3));
-        geometry.setAttribute('irradiance', light);
-        geometry.setAttribute('material', new THREE.BufferAttribute(Float32Array.from(part.materials), 1));
-        geometry.setIndex(new THREE.BufferAttribute(part.triangles, 1));
+        geometry.setAttribute('irradiance', new THREE.BufferAttribute(part.irradiance, 3));
+        for (const [name, values] of Object.entries(scalars)) geometry.setAttribute(name, new THREE.BufferAttribute(values, 1));
+        geometry.setIndex(new THREE.BufferAttribute(index, 1));
         const mesh = new THREE.Mesh(geometry, this.shading.material);
         this.whole.add(mesh);
-        const ends = new Float32Array(3 * part.edges.length), colours = new Float32Array(3 * part.edges.length);
-        part.edges.forEach((v, i) => {
-            const colour = order_colours[part.orders[i >> 1]] ?? plain;
-            for (let c = 0; c < 3; ++c) ends[3 * i + c] = part.positions[3 * v + c], colours[3 * i + c] = colour[c];
-        });
-        const edges = new THREE.BufferGeometry();
-        edges.setAttribute('position', new THREE.BufferAttribute(ends, 3));
-        edges.setAttribute('color', new THREE.BufferAttribute(colours, 3));
-        this.lines.add(new THREE.LineSegments(edges, new THREE.LineBasicMaterial({vertexColors: true, toneMapped: false})));
-        return {part, mesh, light};
+        this.loaded.push({part, mesh, first, materials});
+        if (this.lines.visible) this.add_lines(this.loaded.length - 1);
     }
 
-    /** The range of what is shown, a hundredth left out at either end, emitters too. */
-    range(radiosity: boolean): [number, number] {
+    /** Materials of three.js may have changed. */
+    shade(): void {
+        for (const {mesh} of this.loaded) mesh.material = this.shading.material;
+    }
+
+    /** Edges are made when they are asked for. */
+    show_lines(visible: boolean): void {
+        this.lines.visible = visible;
+        while (visible && this.lines.children.length < this.loaded.length) this.add_lines(this.lines.children.length);
+    }
+
+    private add_lines(number: number): void {
+        const {part, first} = this.loaded[number], edges: number[] = [], colours: number[] = [];
+        for (let f = 0; f < first.length; ++f) {
+            const shape = part.faces[face_words * f], labels = part.faces[face_words * f + 4];
+            const corners = shape === six_nodes ? 3 : shape;
+            for (let i = 0; i < corners; ++i) {
+                const order = i < 3 ? (labels >>> (8 * (i + 1))) & 255 : 255;
+                const colour = order_colours[order]?.[1] ?? plain;
+                for (const v of [first[f] + i, first[f] + (i + 1) % corners]) {
+                    edges.push(part.positions[3 * v], part.positions[3 * v + 1], part.positions[3 * v + 2]);
+                    colours.push(colour[0] / 255, colour[1] / 255, colour[2] / 255);
+                }
+            }
+        }
+        const geometry = new THREE.BufferGeometry();
+        geometry.setAttribute('position', new THREE.BufferAttribute(Float32Array.from(edges), 3));
+        geometry.setAttribute('color', new THREE.BufferAttribute(Float32Array.from(colours), 3));
+        this.lines.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({vertexColors: true, toneMapped: false})));
+    }
+
+    /** The corners of the face that a hit of a ray is on. */
+    outline(hit: THREE.Intersection): THREE.Vector3[] {
+        const found = this.loaded.find(l => l.mesh === hit.object);
+        if (!found || !hit.face) return [];
+        let low = 0, high = found.first.length - 1;
+        while (low < high) {
+            const middle = (low + high + 1) >> 1;
+            if (found.first[middle] <= hit.face.a) low = middle; else high = middle - 1;
+        }
+        const shape = found.part.faces[face_words * low], corners = shape === six_nodes ? 3 : shape;
+        return Array.from({length: corners}, (_, i) => new THREE.Vector3().fromArray(found.part.positions, 3 * (found.first[low] + i)));
+    }
+
+    /** Values that are shown, some tens of thousands of them; emitters left out. */
+    private values(radiosity: boolean): number[] {
         const values: number[] = [];
-        for (const {part, light} of this.loaded) {
-            const E = light.array as Float32Array, every = Math.max(1, Math.floor(part.materials.length / 50000));
-            for (let v = 0; v < part.materials.length; v += every) {
-                const m = this.facts.materials[part.materials[v]];
+        for (const {part, materials} of this.loaded) {
+            const E = part.irradiance, every = Math.max(1, Math.floor(materials.length / 20000));
+            for (let v = 0; v < materials.length; v += every) {
+                const m = this.facts.materials[materials[v]];
                 if (Math.max(...m.exitance) > 0) continue;
                 let sum = 0;
                 for (let c = 0; c < 3; ++c) sum += (radiosity ? m.reflectance[c] : 1) * E[3 * v + c] / 3;
                 values.push(sum);
             }
+            if (values.length > 200000) break;
         }
-        values.sort((a, b) => a - b);
+        return values.sort((a, b) => a - b);
+    }
+
+    /** The range of what is shown, a hundredth left out at either end. */
+    range(radiosity: boolean): [number, number] {
+        const values = this.values(radiosity);
         if (values.length === 0) return [0, 1];
         const cut = Math.floor(values.length / 100);
         return [values[cut], values[values.length - 1 - cut]];

@@ -1,139 +1,201 @@
 import * as THREE from 'three';
-import {load_facts, load_line, load_point, post, type Facts, type Light, type Triple} from './data';
-import {Elements} from './elements';
-import {round_steps, Shading} from './shading';
+import {load_facts, load_line, load_point, load_state, post, type Facts} from './data';
+import {order_colours} from './elements';
+import {by_id, draw_outlines, point_words, profile_csv, show_plot, type Profile} from './measure';
+import {Panes, type Arrangement, type Source} from './panes';
+import {class_colours, css, round_steps, Shading, type Shown} from './shading';
 import {Viewpoint} from './camera';
+import {WhatIf} from './what_if';
 
-const by_id = <T extends Element = HTMLElement>(id: string) => document.getElementById(id) as unknown as T;
-const canvas = by_id<HTMLCanvasElement>('picture');
+performance.mark('script');
+const asked_state = load_state(), asked_facts = asked_state.then(state => state.solving ? null : load_facts());
+asked_facts.catch(() => {});  // told below
+const canvas = by_id<HTMLCanvasElement>('picture'), place = by_id('view');
 const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
 renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shader encodes by itself, as `render` does
-const stage = new THREE.Scene();
+performance.mark('renderer');
 const chosen = new THREE.Group();
-let facts: Facts, shading: Shading, elements: Elements, view: Viewpoint;
-let wanted = true, measuring: THREE.Vector3[] | null = null;
+const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
+let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint;
+let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '';
 
 const redraw = () => { wanted = true; };
+const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, place.clientHeight);
+
+function paint(): void {
+    renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue('--sky').trim());
+    panes.draw(renderer, view, width(), height(), box('mesh').checked);
+}
 
 function draw(last: number): void {
     requestAnimationFrame(now => {
         if (view.fly((now - last) / 1000)) redraw();
         view.keep();
-        if (wanted) {
-            wanted = false;
-            renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue('--sky').trim());
-            renderer.render(stage, view.camera);
-        }
+        if (wanted) { wanted = false; paint(); }
         draw(now);
     });
 }
 
 function resize(): void {
     renderer.setPixelRatio(window.devicePixelRatio);
-    renderer.setSize(window.innerWidth, window.innerHeight, false);
-    view.resize(window.innerWidth / window.innerHeight);
+    renderer.setSize(width(), height(), false);
+    show_panes();
     redraw();
 }
 
 const unit_of = (radiosity: boolean) => radiosity ? (facts.photometric ? 'exitance, lm/m²' : 'radiosity, W/m²')
     : (facts.photometric ? 'illuminance, lx' : 'irradiance, W/m²');
 
+function legend_row(colour: string, words: string, line = false): HTMLElement {
+    const row = document.createElement('div'), mark = document.createElement('i');
+    if (line) mark.className = 'line', mark.style.borderColor = colour;
+    else mark.style.background = colour;
+    row.append(mark, words);
+    return row;
+}
+
+function show_legend(shown: Shown, isolux: boolean): void {
+    const legend = by_id('legend'), rows: (HTMLElement | string)[] = [], values = shown === 'radiosity' || shown === 'irradiance';
+    if (values || isolux) rows.push(Object.assign(document.createElement('strong'), {textContent: unit_of(shown === 'radiosity')}));
+    for (const {colour, from, to} of values || isolux ? shading.legend() : [])
+        rows.push(values ? legend_row(colour, `${from} – ${to}`) : legend_row(colour, `${from}`, true));
+    if (shown === 'classes') for (const [name, colour] of class_colours) rows.push(legend_row(css(colour), name));
+    if (box('mesh').checked && facts.discontinuities)
+        for (const [name, colour] of Object.values(order_colours)) rows.push(legend_row(css(colour), name, true));
+    legend.hidden = rows.length === 0;
+    legend.replaceChildren(...rows);
+}
+
 /** Everything that the settings say. */
 function apply(): void {
-    const quantity = by_id<HTMLSelectElement>('quantity').value, u = shading.material.uniforms;
-    const stops = Number(by_id<HTMLInputElement>('exposure').value), isolux = by_id<HTMLInputElement>('isolux').checked;
-    u.shown.value = quantity === 'shaded' ? 0 : quantity === 'radiosity' ? 1 : 2;
-    u.curve.value = Number(by_id<HTMLSelectElement>('tone').value);
-    u.scale.value = facts.exposure * 2 ** stops;
-    u.isolux.value = isolux;
+    const shown = choice('quantity') as Shown, stops = Number(box('exposure').value), isolux = box('isolux').checked;
+    shading.show(shown, isolux);
+    shading.uniforms.curve.value = Number(choice('tone'));
+    shading.uniforms.scale.value = facts.exposure * 2 ** stops;
     by_id('exposure_text').textContent = `${stops >= 0 ? '+' : ''}${stops.toFixed(1)} stops`;
-    elements.lines.visible = by_id<HTMLInputElement>('mesh').checked;
-    shading.set_steps(round_steps(...elements.range(quantity === 'radiosity')));
-    const legend = by_id('legend');
-    legend.hidden = quantity === 'shaded' && !isolux;
-    legend.replaceChildren(Object.assign(document.createElement('strong'), {textContent: unit_of(quantity === 'radiosity')}));
-    for (const {colour, from, to} of shading.legend()) {
-        const row = document.createElement('div'), box = document.createElement('i');
-        box.style.background = quantity === 'shaded' ? 'transparent' : colour;
-        row.append(box, `${from} – ${to}`);
-        legend.append(row);
-    }
+    if (shown !== 'picture' || isolux) shading.set_steps(round_steps(...panes.layers.delivered.range(shown === 'radiosity')));
+    show_legend(shown, isolux);
     redraw();
 }
 
-const three_digits = (v: Triple) => v.map(x => Number(x.toPrecision(4))).join('  ');
+const titles: Record<Source, string> = {raw: 'raw', delivered: 'delivered', exact: 'exact', method: 'reflected'};
 
-function show_point(light: Light, at: THREE.Vector3): void {
-    const lines = [`at ${at.toArray().map(x => x.toFixed(3)).join(', ')} m`, `E ${three_digits(light.irradiance)}`,
-        `direct ${three_digits(light.direct)}`, `reflected ${three_digits(light.indirect)}`];
-    if (light.radiosity) lines.push(`B ${three_digits(light.radiosity)}`);
-    if (light.surface !== undefined)
-        lines.push(`face ${light.surface}${light.line ? ` (line ${light.line})` : ''}, ${light.group || 'no group'}, ` +
-            `${light.material}`, `element ${light.element ?? 'none'}, ${light.links?.length ?? 0} links`);
-    by_id('point').textContent = lines.join('\n');
-    chosen.clear();
-    const add_line = (points: THREE.Vector3[], colour: number) => chosen.add(new THREE.Line(
-        new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({color: colour, toneMapped: false})));
-    for (const {outline} of light.links ?? []) {
-        const corners = outline.map(p => new THREE.Vector3(...p));
-        add_line([...corners, corners[0]], 0x2f7de1);
-        const middle = corners.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(corners.length);
-        add_line([at, middle], 0x2f7de1);
-    }
+/** Names of the panes, and the dividers between them. */
+function show_panes(): void {
+    if (!panes) return;
+    const all = panes.panes(width()), split = panes.arrangement === 'split';
+    by_id('panes').replaceChildren(...(all.length === 1 ? [] : all.filter(p => p.right - p.left > 30).map(p => {
+        const name = Object.assign(document.createElement('span'), {textContent: titles[p.source]});
+        name.style.left = `${p.left + 10}px`;
+        return name;
+    })));
+    document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
+        divider.hidden = !split;
+        divider.style.left = `${panes.dividers[i] * width()}px`;
+        divider.setAttribute('aria-valuenow', String(Math.round(100 * panes.dividers[i])));
+    });
     redraw();
 }
 
-function show_plot(length: number, values: number[]): void {
-    const most = Math.max(...values, 1e-12), plot = by_id<SVGSVGElement>('plot');
-    const path = values.map((v, i) => `${i ? 'L' : 'M'}${30 + 220 * i / (values.length - 1)} ${105 - 90 * v / most}`).join('');
-    plot.innerHTML = `<text x="2" y="18">${most.toPrecision(3)}</text><text x="2" y="105">0</text>` +
-        `<text x="30" y="118">0</text><text x="215" y="118">${length.toPrecision(3)} m</text><path d="${path}"/>`;
-    plot.removeAttribute('hidden');
+async function arrange(): Promise<void> {
+    panes.arrangement = choice('arrangement') as Arrangement;
+    panes.source = choice('source') as Source;
+    by_id<HTMLSelectElement>('source').disabled = panes.arrangement !== 'one';
+    show_panes();
+    try { await panes.load(); } catch (error) { by_id('point').textContent = String(error); }
+    if (panes.sources().includes('raw')) document.body.dataset.raw = '1';
+    apply();
+}
+
+function move_divider(i: number, to: number): void {
+    const d = panes.dividers;
+    d[i] = Math.min(Math.max(to, i === 0 ? 0 : d[0]), i === 0 ? d[1] : 1);
+    show_panes();
 }
 
 async function pick(x: number, y: number): Promise<void> {
-    const ray = new THREE.Raycaster();
-    ray.setFromCamera(new THREE.Vector2(2 * x / window.innerWidth - 1, 1 - 2 * y / window.innerHeight), view.camera);
-    const hit = ray.intersectObjects(elements.whole.children)[0];
-    if (!hit || !hit.face) { by_id('point').textContent = 'nothing there'; return; }
-    const n = hit.face.normal;
+    const found = panes.hit(x, y, width(), height(), view);
+    if (!found || !found.hit.face) { by_id('point').textContent = 'nothing there'; return; }
+    const point = found.hit.point, normal = found.hit.face.normal;
     try {
-        if (measuring) {
-            measuring.push(hit.point);
-            if (measuring.length === 2) {
-                const [a, b] = measuring;
-                measuring = null;
-                const {length, values} = await load_line([...a.toArray(), ...b.toArray(), ...n.toArray()]);
-                by_id('point').textContent = `irradiance along ${length.toPrecision(4)} m`;
-                show_plot(length, values);
-            } else by_id('point').textContent = 'now the other end';
-            return;
-        }
-        show_point(await load_point([...hit.point.toArray(), ...n.toArray()]), hit.point);
+        if (measuring) return await add_end(point, normal);
+        const light = await load_point([...point.toArray(), ...normal.toArray()], panes.change);
+        by_id('point').textContent = point_words(light, point, facts.photometric ? 'lx' : 'W/m²');
+        chosen.clear();
+        draw_outlines(chosen, [found.outline], 0xff7a1a);
+        const linked = (light.links ?? []).map(l => l.outline.map(p => new THREE.Vector3(...p)));
+        draw_outlines(chosen, linked, 0x2f7de1);
+        draw_outlines(chosen, linked.map(corners => [point, corners.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(corners.length)]),
+            0x2f7de1, false);
+        redraw();
     } catch (error) { by_id('point').textContent = String(error); }
 }
 
-async function load(first: boolean): Promise<void> {
-    facts = await load_facts();
-    if (!first) { stage.clear(); }
-    shading = new Shading(facts);
-    elements = new Elements(facts, shading);
-    stage.add(elements.whole, elements.lines, chosen);
+async function add_end(point: THREE.Vector3, normal: THREE.Vector3): Promise<void> {
+    measuring!.push({point, normal: normal.clone()});
+    if (measuring!.length < 2) { by_id('point').textContent = 'now the other end'; return; }
+    const [a, b] = measuring!;
+    measuring = null;
+    chosen.clear();
+    draw_outlines(chosen, [[a.point, b.point]], 0xff7a1a, false);
+    redraw();
+    const profile = await load_line([...a.point.toArray(), ...b.point.toArray(), ...b.normal.toArray()], panes.change) as Profile;
+    const unit = facts.photometric ? 'lx' : 'W/m²';
+    by_id('point').textContent = `light along ${profile.length.toPrecision(4)} m: ${Math.min(...profile.values).toPrecision(4)} to ` +
+        `${Math.max(...profile.values).toPrecision(4)} ${unit}, mean of the bands`;
+    csv = profile_csv(profile, a.point, b.point, unit);
+    show_plot(profile, unit);
+}
+
+function measure(): void {
+    measuring = [];
+    by_id('point').textContent = 'click on one end, or Enter for the cross in the middle';
+}
+
+function show_facts(): void {
     by_id('name').textContent = facts.file.split('/').pop() ?? 'exitance';
-    by_id('facts').textContent = `${facts.method}, ${facts.surfaces} faces, ${facts.elements} elements` +
+    by_id('facts').textContent = `${facts.method}, ${facts.basis} basis, ${facts.surfaces} faces, ${facts.elements} elements` +
         (facts.error === null ? '' : `, error ${(100 * facts.error).toPrecision(2)}%`);
-    if (first) {
-        view = new Viewpoint(facts, canvas, redraw);
-        view.controls.addEventListener('end', () => view.to_address());
-        resize();
-        draw(performance.now());
-    }
-    elements.lines.visible = false;
-    await elements.load(by_id<HTMLSelectElement>('layer').value as 'exported' | 'method', () => {
-        if (!document.body.dataset.first) document.body.dataset.first = performance.now().toFixed(0);
+    const classes = by_id<HTMLSelectElement>('quantity').querySelector<HTMLOptionElement>('[value=classes]')!;
+    classes.hidden = classes.disabled = !facts.shadow_classes;
+}
+
+async function load(first: boolean, known: Facts | null = null): Promise<void> {
+    facts = known ?? await load_facts();
+    performance.mark('facts');
+    const old = panes;
+    shading = new Shading(facts);
+    const fresh = new Panes(facts, shading, chosen, redraw);
+    if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
+    // What was there stays in sight until there is something new.
+    await fresh.layers.delivered.load(fresh.change, () => {
+        performance.mark('buffers');
+        if (panes !== fresh) {
+            panes = fresh;
+            old?.dispose();
+            if (first) {
+                view = new Viewpoint(facts, canvas, redraw);
+                view.controls.addEventListener('end', () => view.to_address());
+                performance.mark('viewpoint');
+                resize();
+                performance.mark('resized');
+                draw(performance.now());
+            }
+            show_facts();
+        }
         apply();
+        if (!document.body.dataset.first) {
+            performance.mark('elements');
+            paint();
+            performance.mark('first');
+            document.body.dataset.first = performance.now().toFixed(0);
+        }
     });
+    await panes.load();
+    apply();
     document.body.dataset.ready = '1';
+    await new WhatIf(facts, panes, shading, apply).show();
+    document.body.dataset.whatif = '1';
 }
 
 /** A running solve tells what it does, and when there is better light. */
@@ -160,42 +222,76 @@ function follow(): void {
     });
 }
 
-for (const id of ['quantity', 'tone', 'exposure', 'mesh', 'isolux']) by_id(id).addEventListener('input', () => elements && apply());
-by_id('layer').addEventListener('input', () => elements.load(by_id<HTMLSelectElement>('layer').value as 'exported' | 'method', apply));
+function save_file(name: string, type: string, text: string): void {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([text], {type}));
+    link.download = name;
+    link.click();
+}
+
+for (const id of ['quantity', 'tone', 'exposure', 'mesh', 'isolux']) by_id(id).addEventListener('input', () => panes && apply());
+for (const id of ['source', 'arrangement']) by_id(id).addEventListener('input', () => panes && void arrange());
 by_id('fit').addEventListener('click', () => { view.fit(); view.to_address(); });
-by_id('line').addEventListener('click', () => { measuring = []; by_id('point').textContent = 'click on one end'; });
+by_id('line').addEventListener('click', measure);
 by_id('record').addEventListener('click', () => {
     view.record();
     by_id('record').textContent = view.recording ? 'Stop recording' : 'Record path';
     for (const id of ['replay', 'save_path']) by_id(id).hidden = view.recording || view.path.length === 0;
 });
 by_id('replay').addEventListener('click', () => view.replay());
-by_id('save_path').addEventListener('click', () => {
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(new Blob([view.path_text()], {type: 'text/csv'}));
-    link.download = 'path.csv';
-    link.click();
-});
+by_id('save_path').addEventListener('click', () => save_file('path.csv', 'text/csv', view.path_text()));
+by_id('copy').addEventListener('click', () => navigator.clipboard.writeText(csv).then(() => { by_id('point').textContent = 'copied'; },
+    () => save_file('line.csv', 'text/csv', csv)));
 by_id('stop').addEventListener('click', () => post('/data/stop').catch(error => { by_id('phase').textContent = String(error); }));
 by_id('save').addEventListener('click', () => post('/data/save').then(text => { by_id('phase').textContent = text; },
     error => { by_id('phase').textContent = String(error); }));
+document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
+    divider.addEventListener('pointerdown', event => divider.setPointerCapture(event.pointerId));
+    divider.addEventListener('pointermove', event => {
+        if (divider.hasPointerCapture(event.pointerId)) move_divider(i, (event.clientX - place.getBoundingClientRect().left) / width());
+    });
+    divider.addEventListener('keydown', event => {
+        const step = (event.shiftKey ? 0.05 : 0.01) * (event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0);
+        if (step !== 0) { event.preventDefault(); move_divider(i, panes.dividers[i] + step); }
+    });
+});
 let pressed: [number, number] = [0, 0];
 canvas.addEventListener('pointerdown', event => { pressed = [event.clientX, event.clientY]; canvas.focus(); });
 canvas.addEventListener('pointerup', event => {
-    if (elements && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4) void pick(event.clientX, event.clientY);
+    if (panes && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4) void pick(event.offsetX, event.offsetY);
 });
 canvas.addEventListener('keyup', event => {
-    const toggle = (id: string) => { const box = by_id<HTMLInputElement>(id); box.checked = !box.checked; apply(); };
-    if (event.key === 'f') view.fit();
-    if (event.key === 'm') toggle('mesh');
-    if (event.key === 'i') toggle('isolux');
-    if (event.key === 'Enter') void pick(window.innerWidth / 2, window.innerHeight / 2);
+    if (!panes || event.ctrlKey || event.metaKey) return;
+    const toggle = (id: string) => { box(id).checked = !box(id).checked; apply(); };
+    const key = event.key.toLowerCase();
+    if (key === 'f') view.fit();
+    if (key === 'm') toggle('mesh');
+    if (key === 'i') toggle('isolux');
+    if (key === 'l') measure();
+    if (key === 'c') {
+        const select = by_id<HTMLSelectElement>('arrangement');
+        select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
+        void arrange();
+    }
+    if (key === 'enter') {
+        const middle = panes.panes(width())[panes.arrangement === 'panes' ? 1 : 0];
+        void pick(middle.view_left + middle.view_width / 2, height() / 2);
+    }
     view.to_address();
+});
+window.addEventListener('keyup', event => {
+    const typing = event.target instanceof HTMLInputElement && event.target.type !== 'checkbox' && event.target.type !== 'range';
+    if (event.key.toLowerCase() === 'h' && !event.ctrlKey && !typing) { document.body.classList.toggle('alone'); if (view) resize(); }
 });
 window.addEventListener('resize', () => view && resize());
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
+const debug = renderer.getContext().getExtension('WEBGL_debug_renderer_info');
+const processor = debug ? String(renderer.getContext().getParameter(debug.UNMASKED_RENDERER_WEBGL)) : '';
+by_id('software').hidden = !/swiftshader|llvmpipe|software|basic render/i.test(processor);
 
-fetch('/data/state').then(r => r.json()).then(state => state.solving ? follow() : load(true))
+asked_state.then(async state => state.solving ? follow() : load(true, await asked_facts))
     .catch(error => { by_id('facts').textContent = String(error); });
-Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.material.uniforms.scale.value,
-    canvas: () => { renderer.render(stage, view.camera); return canvas.toDataURL(); }}});
+Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.uniforms.scale.value as number,
+    size: () => [width(), height()], canvas: () => { paint(); return canvas.toDataURL(); },
+    whole: () => [shading.uniforms.light.value, shading.uniforms.rest.value].every(t => t && (t as THREE.DataTexture).image.width === Math.round(
+        panes.panes(width()).at(-1)!.view_width * renderer.getPixelRatio()))}});

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
+
 namespace exitance {
 
 double ToleranceLaw::factor(double error, double allowed) {
-    constexpr double least = 0.03, most = 0.9;  // no step that helps little or cannot be foreseen
-    constexpr double steepest = 3, aim = 0.95;
+    const double steepest = calibrated::steepest_tolerance, aim = calibrated::tolerance_aim;
     double exponent = exponent_;
     if (round_ > 1 && last_factor_ < 1) {
         const double fallen =
@@ -16,7 +17,9 @@ double ToleranceLaw::factor(double error, double allowed) {
     }
     ++round_;
     last_error_ = error;
-    last_factor_ = error > allowed ? std::clamp(std::pow(aim * allowed / error, exponent), least, most) : 1;
+    last_factor_ = error > allowed ? std::clamp(std::pow(aim * allowed / error, exponent),
+                                                calibrated::largest_tolerance_step, calibrated::first_tolerance_factor)
+                                   : 1;
     return last_factor_;
 }
 

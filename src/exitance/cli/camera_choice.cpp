@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <sstream>
 
-#include "exitance/io/files/whole_file.hpp"
 #include "exitance/reconstruct/pictures/automatic_camera.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -49,35 +46,6 @@ Result<Camera> choose_camera(const RenderArguments& arguments, const RadiosityFu
     if (camera.projection == Projection::orthographic) camera.fov = solution.scene.size();
     if (arguments.fov) camera.fov = *arguments.fov;
     return camera;
-}
-
-Result<std::vector<Camera>> load_camera_path(const std::string& file) {
-    const Result<std::string> text = read_whole_file(file);
-    if (!text) return text.error();
-    std::istringstream in(*text);
-    std::vector<Camera> cameras;
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number) {
-        if (line.ends_with('\r')) line.pop_back();
-        if (line.empty() || (number == 1 && line.starts_with("time"))) continue;
-        double n[8] = {};
-        const char *at = line.data(), *const end = at + line.size();
-        std::size_t count = 0;
-        for (; count < 8; ++count) {
-            const auto [next, failed] = std::from_chars(at, end, n[count]);
-            if (failed != std::errc() || !std::isfinite(n[count])) break;
-            at = next;
-            if (count < 7 && (at == end || *at++ != ',')) break;
-        }
-        const Camera camera{{n[1], n[2], n[3]}, {n[4], n[5], n[6]}, n[7]};
-        if (count != 8 || at != end || !(n[7] >= 1 && n[7] <= 170) || camera.eye == camera.target)
-            return Error{ErrorCode::bad_input, fmt::format("'{:.60}' is no camera", line),
-                         fmt::format("{}:{}", file, number), "a row is time,ex,ey,ez,tx,ty,tz,fov"};
-        cameras.push_back(camera);
-    }
-    if (cameras.empty())
-        return Error{ErrorCode::bad_input, "holds no camera", file, "a row is time,ex,ey,ez,tx,ty,tz,fov"};
-    return cameras;
 }
 
 std::string describe(const Camera& c) {

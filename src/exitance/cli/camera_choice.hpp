@@ -10,9 +10,6 @@ namespace exitance {
 /// shows the scene well. An error of code `usage` where the scene has none of that name.
 Result<Camera> choose_camera(const RenderArguments& arguments, const RadiosityFunction& light);
 
-/// The cameras of --path, a row each; an error names the line.
-Result<std::vector<Camera>> load_camera_path(const std::string& file);
-
 /// A camera as --camera takes it.
 std::string describe(const Camera& camera);
 

@@ -5,9 +5,12 @@
 #include <cmath>
 
 #include "exitance/cli/camera_choice.hpp"
+#include "exitance/cli/camera_path.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/io/files/film.hpp"
+#include "exitance/io/files/scratch_folder.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/isolux.hpp"
@@ -26,14 +29,19 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
     const auto usage = [](const std::string& message, const std::string& where, const std::string& hint) {
         return Error{ErrorCode::usage, message, where, hint};
     };
-    if (end != ".png" && end != ".exr" && end != ".hdr")
-        return usage(fmt::format("pictures are written as .png, .exr or .hdr, not '{}'", end), a.output,
-                     "name the output something.png");
+    const bool films = is_film(a.output);
+    if (films && a.path.empty())
+        return usage("a video needs a path of cameras", a.output, "add --path P.csv, as the viewer records it");
+    if (!films && end != ".png" && end != ".exr" && end != ".hdr")
+        return usage(fmt::format("pictures are written as .png, .exr or .hdr, videos as .mp4, .mkv, .webm or .gif, not "
+                                 "'{}'",
+                                 end),
+                     a.output, "name the output something.png");
     if (a.has_scale && !a.false_colour && !a.isolux)
         return usage("has nothing to colour", "--scale, --bands, --palette", "they go with --false-colour or --isolux");
     if (a.unit.choice != UnitChoice::scene && !a.false_colour && !a.isolux)
         return usage("has no numbers to tell", "--unit", "it goes with --false-colour or --isolux");
-    if (end != ".png" && (a.false_colour || a.isolux || a.mesh || a.shadow_classes))
+    if (end != ".png" && !films && (a.false_colour || a.isolux || a.mesh || a.shadow_classes))
         return usage(fmt::format("{} holds radiance, and nothing is drawn into it", end), a.output,
                      "--false-colour, --isolux, --mesh and --shadow-classes go with .png");
     if (a.false_colour && a.shadow_classes)
@@ -141,6 +149,28 @@ ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>
     return ExitCode::done;
 }
 
+/// A video: pictures at equal times along the path, in a folder that is gone afterwards.
+ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraStation>& stations,
+                     const RadiosityFunction& light, Terminal& terminal) {
+    constexpr double rate = 25;  // pictures a second
+    constexpr std::size_t most = 9999;
+    if (const Result<void> found = find_film_program(arguments.output); !found) return terminal.fail(found.error());
+    const auto falls = [](const CameraStation& a, const CameraStation& b) { return b.time < a.time; };
+    const std::vector<Camera> cameras = std::adjacent_find(stations.begin(), stations.end(), falls) == stations.end()
+                                            ? at_equal_times(stations, rate, most)
+                                            : std::vector<Camera>();
+    if (cameras.empty())
+        return terminal.fail(Error{ErrorCode::bad_input, "times of a video must rise, over 400 s at most",
+                                   arguments.path, "the first number of a row is its time in seconds"});
+    const Result<ScratchFolder> folder = ScratchFolder::make("exitance-film");
+    if (!folder) return terminal.fail(folder.error());
+    RenderArguments frames = arguments;
+    frames.output = folder->path() + "/frame.png";
+    if (const ExitCode code = render_path(frames, cameras, light, terminal); code != ExitCode::done) return code;
+    const Result<void> written = write_film(folder->path(), rate, arguments.output);
+    return written ? ExitCode::done : terminal.fail(written.error());
+}
+
 }  // namespace
 
 /// exitance render SOLUTION -o PICTURE
@@ -157,8 +187,12 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
 
     const RadiosityFunction light(*solution);
     if (!arguments.path.empty()) {
-        const Result<std::vector<Camera>> cameras = load_camera_path(arguments.path);
-        return cameras ? render_path(arguments, *cameras, light, terminal) : terminal.fail(cameras.error());
+        const Result<std::vector<CameraStation>> stations = load_camera_path(arguments.path);
+        if (!stations) return terminal.fail(stations.error());
+        if (is_film(arguments.output)) return render_film(arguments, *stations, light, terminal);
+        std::vector<Camera> cameras;
+        for (const CameraStation& station : *stations) cameras.push_back(station.camera);
+        return render_path(arguments, cameras, light, terminal);
     }
     const Result<Camera> camera = choose_camera(arguments, light);
     if (!camera) return terminal.fail(camera.error());

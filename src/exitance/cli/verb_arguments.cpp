@@ -169,7 +169,10 @@ void declare(CLI::App& app, ExportArguments& arguments) {
 
 void declare(CLI::App& app, RenderArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output, "Picture to write: .png, or linear radiance as .exr or .hdr")
+    app.add_option(
+           "-o,--output", arguments.output,
+           "Picture to write: .png, or linear radiance as .exr or .hdr; with --path also a video, by ffmpeg: .mp4, "
+           ".mkv, .webm, .gif")
         ->type_name("FILE")
         ->required();
     app.add_option_function<std::string>(
@@ -179,7 +182,7 @@ void declare(CLI::App& app, RenderArguments& arguments) {
         ->type_name("CAMERA");
     app.add_option("--path", arguments.path,
                    "Cameras to take numbered pictures from (P.0001.png, ...): CSV time,ex,ey,ez,tx,ty,tz,fov, as the "
-                   "viewer records them; one exposure for all")
+                   "viewer records them; one exposure for all. A video has 25 pictures a second, between the rows, too")
         ->type_name("FILE");
     add_choice(app, "--projection", projection_names, arguments.projection,
                "Default perspective; fisheye: equidistant; panorama: 360 x 180 degrees");

@@ -1,19 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <deque>
-#include <optional>
-#include <sstream>
 #include <thread>
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/cli/view_events.hpp"
-#include "exitance/cli/view_server.hpp"
+#include "exitance/cli/view_frames.hpp"
+#include "exitance/cli/view_words.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/export/viewer_data.hpp"
+#include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
@@ -55,65 +54,49 @@ class Gallery {
     std::deque<std::unique_ptr<Viewed>> all_;
 };
 
-std::string text_of(const Parameters& parameters, const std::string& name) {
-    const auto found = parameters.find(name);
-    return found == parameters.end() ? "" : found->second;
-}
-
-/// Finite numbers between commas; none where there are not `count` of them.
-std::optional<std::vector<double>> numbers_of(const Parameters& parameters, const std::string& name,
-                                              std::size_t count) {
-    std::istringstream in(text_of(parameters, name));
-    std::vector<double> out;
-    for (std::string word; std::getline(in, word, ',');) {
-        char* end = nullptr;
-        const double x = std::strtod(word.c_str(), &end);
-        if (word.empty() || *end != 0 || !(std::abs(x) < 1e12)) return std::nullopt;
-        out.push_back(x);
-    }
-    if (out.size() != count) return std::nullopt;
-    return out;
-}
-
-const ViewAnswer bad{400, "text/plain", "not understood"}, absent{404, "text/plain", "there is no light yet"};
-
 /// Requests that read the newest solution.
-void serve_light(ViewServer& server, const Gallery& gallery) {
+void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames) {
     const auto with_light = [&gallery](auto answer) {
         return [&gallery, answer](const Parameters& parameters) {
             const Viewed* viewed = gallery.newest();
-            return viewed ? answer(*viewed, parameters) : absent;
+            return viewed ? answer(*viewed, parameters) : view_absent;
         };
     };
     server.get("/data/scene", with_light([](const Viewed& v, const Parameters&) {
                    return ViewAnswer{200, "application/json", viewer_scene_json(v.light, v.camera)};
                }));
     server.get("/data/part", with_light([](const Viewed& v, const Parameters& parameters) {
-                   const std::string name = text_of(parameters, "layer");
-                   const auto part = numbers_of(parameters, "part", 1);
-                   const ViewerLayer layer = name == "method" ? ViewerLayer::method : ViewerLayer::exported;
-                   if ((name != "method" && name != "exported") || !part || (*part)[0] < 0 ||
+                   const std::string name = view_text(parameters, "layer");
+                   const auto part = view_numbers(parameters, "part", 1);
+                   ViewerLayer layer{};
+                   if (!find_viewer_layer(name, layer) || !part || (*part)[0] < 0 ||
                        (*part)[0] >= static_cast<double>(viewer_part_count(v.solution, layer)))
-                       return bad;
+                       return view_misunderstood;
+                   const auto number = static_cast<std::size_t>((*part)[0]);
                    return ViewAnswer{200, "application/octet-stream",
-                                     viewer_part(v.solution, layer, static_cast<std::size_t>((*part)[0]))};
+                                     view_text(parameters, "only") == "light"
+                                         ? viewer_part_light(v.light, layer, number)
+                                         : viewer_part(v.light, layer, number)};
+               }));
+    server.get("/data/frame", with_light([&frames](const Viewed& v, const Parameters& parameters) {
+                   return frames.take(v.light, parameters);
                }));
     server.get("/data/point", with_light([](const Viewed& v, const Parameters& parameters) {
-                   const auto at = numbers_of(parameters, "at", 6);
-                   if (!at) return bad;
+                   const auto at = view_numbers(parameters, "at", 6);
+                   if (!at) return view_misunderstood;
                    const std::vector<double>& n = *at;
                    const Vec3 normal{n[3], n[4], n[5]};
-                   if (!(norm(normal) > 0)) return bad;
+                   if (!(norm(normal) > 0)) return view_misunderstood;
                    return ViewAnswer{200, "application/json",
                                      viewer_point_json(v.light, {{n[0], n[1], n[2]}, normalized(normal)})};
                }));
     server.get("/data/line", with_light([](const Viewed& v, const Parameters& parameters) {
                    constexpr std::size_t points = 129;
-                   const auto at = numbers_of(parameters, "at", 9);
-                   if (!at) return bad;
+                   const auto at = view_numbers(parameters, "at", 9);
+                   if (!at) return view_misunderstood;
                    const std::vector<double>& n = *at;
                    const Vec3 normal{n[6], n[7], n[8]};
-                   if (!(norm(normal) > 0)) return bad;
+                   if (!(norm(normal) > 0)) return view_misunderstood;
                    return ViewAnswer{
                        200, "application/json",
                        viewer_line_json(v.light, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, normalized(normal), points)};
@@ -162,7 +145,7 @@ class RunningSolve {
   private:
     ViewAnswer save() {
         const Viewed* viewed = gallery_.newest();
-        if (!viewed) return absent;
+        if (!viewed) return view_absent;
         const Result<void> written = write_solution(arguments_.save, viewed->solution);
         if (!written) return {500, "text/plain", written.error().message};
         return {200, "text/plain", "saved as " + arguments_.save};
@@ -197,9 +180,10 @@ ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
     if (!page) return terminal.fail(page.error());
     set_threads(arguments.options.threads);
     Gallery gallery;
+    ViewFrames frames;
     ViewServer server;
     if (const Result<void> read = server.serve_page(*page); !read) return terminal.fail(read.error());
-    serve_light(server, gallery);
+    serve_light(server, gallery, frames);
     const bool solves = arguments.scene.files.size() > 1 || !arguments.scene.files[0].ends_with(".h5");
     server.get("/data/state", [solves](const Parameters&) {
         return ViewAnswer{200, "application/json", solves ? R"({"solving": true})" : R"({"solving": false})"};

@@ -39,20 +39,23 @@ bool ViewEvents::wait(std::size_t& next, std::string& text) {
 void ViewProgress::phase(std::string_view name) {
     phase_ = name;
     inner_.phase(name);
-    tell(0);
+    tell(0, "");
 }
 
 void ViewProgress::advance(double fraction, std::string_view detail) {
     inner_.advance(fraction, detail);
     constexpr double every = 0.1;  // seconds
     if (since_.seconds() < every) return;
-    tell(fraction);
+    tell(fraction, detail);
 }
 
-void ViewProgress::tell(double fraction) {
+void ViewProgress::tell(double fraction, std::string_view detail) {
     since_.restart();
+    std::string words = fmt::format("{}{}{}{}", round_, phase_, detail.empty() ? "" : ", ", detail);
+    std::replace_if(
+        words.begin(), words.end(), [](char c) { return c == '"' || c == '\\' || (c >= 0 && c < ' '); }, '\'');
     events_.tell_progress(
-        fmt::format(R"({{"phase": "{}{}", "fraction": {:.3f}}})", round_, phase_, std::clamp(fraction, 0.0, 1.0)));
+        fmt::format(R"({{"phase": "{}", "fraction": {:.3f}}})", words, std::clamp(fraction, 0.0, 1.0)));
 }
 
 }  // namespace exitance

@@ -41,7 +41,7 @@ class ViewProgress : public Progress {
     void set_round(std::string words) { round_ = std::move(words); }
 
   private:
-    void tell(double fraction);
+    void tell(double fraction, std::string_view detail);
 
     ViewEvents& events_;
     Progress& inner_;

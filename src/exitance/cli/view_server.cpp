@@ -21,9 +21,15 @@ std::string type_of(const fs::path& file) {
     return found == types.end() ? "application/octet-stream" : found->second;
 }
 
-void give(httplib::Response& response, const ViewAnswer& answer) {
+/// Sends an answer as it is. Handed over as text, cpp-httplib would compress it by brotli's slowest setting, which
+/// takes over a second for the page's script, to spare what costs nothing on one machine.
+void give(httplib::Response& response, ViewAnswer answer) {
     response.status = answer.status;
-    response.set_content(answer.body, answer.type.c_str());
+    const auto body = std::make_shared<const std::string>(std::move(answer.body));
+    response.set_content_provider(body->size(), answer.type.c_str(),
+                                  [body](std::size_t from, std::size_t length, httplib::DataSink& sink) {
+                                      return sink.write(body->data() + from, length);
+                                  });
 }
 
 }  // namespace

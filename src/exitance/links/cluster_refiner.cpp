@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/core/trace.hpp"
@@ -63,14 +64,13 @@ class ClusterRefiner::Judge {
         if (!R.is_cluster() && !S.is_cluster()) return Verdict::leave_to_elements;
         const Vec3 d = bodies_.centre(R) - bodies_.centre(S);
         const double r = norm(d), reach = bodies_.radius(R) + bodies_.radius(S);
-        constexpr double too_near = 0.7;
-        if (reach > too_near * r) return larger_part(R, S);
+        if (reach > calibrated::cluster_reach * r) return larger_part(R, S);
         const Arrival light = arrival(R, S, (1 / r) * d, reach / r);
         if (light.most == 0) return Verdict::drop;
         const double allowed = tolerance_.error;
         const double extent = tolerance_.systematic * reach / r * light.most;
         if (extent > allowed) return larger_part(R, S);
-        const bool tiny = light.most < 0.3 * allowed;
+        const bool tiny = light.most < calibrated::weak_link_share * allowed;
         constexpr unsigned few = 4, enough = 16;
         const unsigned wanted = tiny ? few : enough;
         if (wanted > pair.rays) cast(pair, wanted);

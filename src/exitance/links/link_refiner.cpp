@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -74,7 +75,7 @@ double LinkRefiner::growth(const NodalField& b, ElementId source) const {
     const double growth = std::sqrt(now / then);
     for (std::size_t k = 0; k < n; ++k)
         changed += sites_.weight(source, k) * squared(b.node(source, k) - growth * judged_.node(source, k));
-    constexpr double negligible_change = 0.1;  // of what there is: links' errors are known less well
+    const double negligible_change = calibrated::negligible_source_change;
     return changed <= negligible_change * negligible_change * now ? growth : -1;
 }
 
@@ -82,7 +83,7 @@ double LinkRefiner::growth(const NodalField& b, ElementId source) const {
 /// light. Returns the others, as pairs.
 std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const LinkTolerance& tolerance) {
     // With a stricter tolerance a link would have been judged by better rules: what it misses has to be well below.
-    constexpr double kept_share = 0.3;
+    const double kept_share = calibrated::kept_link_share;
     const double allowed = kept_share * kept_share * tolerance.error * tolerance.error;
     Field<ElementId, float> growth_of(tree_.size(), -1.0f);
     if (tolerance.oracle == LinkOracle::transport && importance_.empty())
@@ -283,7 +284,7 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
         if (too_much[e]) cut.push_back(e);
     open(std::move(cut));
     // A link that hardly departs stays; all such ones of a receiver together are a share of what is allowed.
-    const double negligible = 0.03 * tolerance.interpolation;
+    const double negligible = calibrated::negligible_departure_share * tolerance.interpolation;
     enum : std::uint8_t { untouched, left, handed_on };
     const auto fate_of = [&](const FoundLink& found) -> std::uint8_t {
         const ElementId p = found.link.receiver;

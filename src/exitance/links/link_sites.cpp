@@ -34,10 +34,10 @@ Patch LinkSites::inertia_parallelogram(ElementId e) const {
         xy += twice * (2 * a.x * a.y + a.x * b.y + b.x * a.y + 2 * b.x * b.y) / 24;
     }
     xx /= area, xy /= area, yy /= area;
-    const double l = std::sqrt(std::max(xx, 1e-30)), m = xy / l;
-    const double k = std::sqrt(std::max(yy - m * m, 1e-30));
+    const double l = std::sqrt(std::max(xx, 1e-30)), m = xy / l;  // given by rounding
+    const double k = std::sqrt(std::max(yy - m * m, 1e-30));      // given by rounding
     const Patch& frame = tree_->patch(e);
-    const Vec3 s = std::sqrt(3.0) * (l * frame.a + m * frame.b), t = std::sqrt(3.0) * k * frame.b;
+    const Vec3 s = std::sqrt(3.0) * (l * frame.a + m * frame.b), t = std::sqrt(3.0) * k * frame.b;  // given by geometry
     return {frame.at(c) - s - t, 2 * s, 2 * t, Patch::Shape::parallelogram};
 }
 
@@ -47,7 +47,7 @@ Patch LinkSites::frame(ElementId e) const {
 }
 
 Point LinkSites::within(ElementId e, const Point& x) const {
-    constexpr double inside = 0.999;
+    constexpr double inside = 0.999;  // given by rounding
     if (!tree_->is_cell(e)) return x;
     const double reach = tree_->reach(e, tree_->patch(e).coordinates(x));
     if (reach == 1) return x;
@@ -108,7 +108,8 @@ LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
                 for (std::size_t j = 0; j < n_; ++j) gram[i * n_ + j] += pull[i * n_ + k] * push[k * n_ + j];
             }
     }
-    for (std::size_t j = 0; j < n_; ++j) gram[j * n_ + j] *= 1 + 1e-12;  // slivers say little of some functions
+    for (std::size_t j = 0; j < n_; ++j)
+        gram[j * n_ + j] *= 1 + 1e-12;  // slivers say little of some functions (given by rounding)
     out.gram = std::move(gram);
     return out;
 }

@@ -1,5 +1,7 @@
 #include "exitance/links/received_light.hpp"
 
+#include "exitance/calibration/numbers.hpp"
+
 namespace exitance {
 
 FoundLink::FoundLink(const LinkDecision& decision, bool is_open)
@@ -27,8 +29,8 @@ double ReceivedLight::squared_error(const LinkSites& sites, ElementId e) const {
         const double w = sites.weight(e, k);
         mean += w * shadowed[k], square += w * shadowed[k] * shadowed[k], noise += w * variance[k];
     }
-    constexpr double of_linear = 0.5, of_quadratic = 0.75;  // quadratics overshoot beside shadows
-    const double share = sites.nodes() > 4 ? of_quadratic : of_linear;
+    constexpr double of_linear = 0.5;
+    const double share = sites.nodes() > 4 ? calibrated::shadow_share_of_quadratics : of_linear;
     return mean_square(departure) + share * share * std::max(0.0, square - mean * mean - noise);
 }
 

@@ -1,11 +1,10 @@
 #include "exitance/io/export/viewer_data.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 
 namespace exitance {
@@ -13,71 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-static_assert(std::endian::native == std::endian::little, "numbers travel as they lie in memory");
-
 /// Of the links that a picked element has, so many are drawn.
 constexpr std::size_t most_links = 400;
-
-struct Part {
-    std::vector<float> positions, irradiance;
-    std::vector<std::uint32_t> materials, elements, triangles, edges, orders;
-
-    std::uint32_t add(const Point& p, const Spectrum& value, MaterialId material, std::uint32_t element) {
-        for (const double x : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(x));
-        for (const double e : red_green_blue(value)) irradiance.push_back(static_cast<float>(e));
-        materials.push_back(material.value), elements.push_back(element);
-        return static_cast<std::uint32_t>(materials.size() - 1);
-    }
-    void add_edge(std::uint32_t a, std::uint32_t b, CurveOrder order) {
-        edges.push_back(a), edges.push_back(b), orders.push_back(static_cast<std::uint32_t>(order));
-    }
-};
-
-template <class T>
-void append(std::string& out, const std::vector<T>& values) {
-    out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
-
-std::string packed(const Part& part) {
-    const std::vector<std::uint32_t> counts{static_cast<std::uint32_t>(part.materials.size()),
-                                            static_cast<std::uint32_t>(part.triangles.size() / 3),
-                                            static_cast<std::uint32_t>(part.orders.size())};
-    std::string out = "EXV1";
-    append(out, counts), append(out, part.positions), append(out, part.irradiance), append(out, part.materials);
-    append(out, part.elements), append(out, part.triangles), append(out, part.edges), append(out, part.orders);
-    return out;
-}
-
-const ElementFunction& function_of(const Solution& solution, ViewerLayer layer) {
-    return layer == ViewerLayer::exported ? solution.interpolant : solution.indirect;
-}
-
-/// Is what `export` writes a mesh of triangles with six nodes?
-bool has_triangles(const Solution& solution, ViewerLayer layer) {
-    return layer == ViewerLayer::exported && !solution.discontinuity.empty();
-}
-
-void add_leaf(Part& part, const Scene& scene, const ElementFunction& f, ElementId e) {
-    const std::vector<Vec2> domain = f.tree.domain(e);
-    const MaterialId material = scene.regions()[f.tree.region(e)].material;
-    const auto first = static_cast<std::uint32_t>(part.materials.size());
-    const auto n = static_cast<std::uint32_t>(domain.size());
-    for (const Vec2 uv : domain) part.add(f.tree.patch(e).at(uv), f.at({e, uv}), material, e.value);
-    for (std::uint32_t i = 0; i + 2 < n; ++i)
-        for (const std::uint32_t k : {0u, i + 1, i + 2}) part.triangles.push_back(first + k);
-    for (std::uint32_t i = 0; i < n; ++i) part.add_edge(first + i, first + (i + 1) % n, CurveOrder::none);
-}
-
-/// A quadratic triangle as four plain ones.
-void add_triangle(Part& part, const Scene& scene, const SixNodeMesh& mesh, std::uint32_t t) {
-    const MaterialId material = scene.regions()[mesh.region[t]].material;
-    std::array<std::uint32_t, 6> v{};
-    for (std::size_t i = 0; i < 6; ++i)
-        v[i] = part.add(mesh.points[mesh.nodes[t][i]], mesh.value(mesh.nodes[t][i]), material, t);
-    for (const std::array<std::size_t, 3>& c : {std::array<std::size_t, 3>{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}})
-        for (const std::size_t k : c) part.triangles.push_back(v[k]);
-    for (std::size_t i = 0; i < 3; ++i) part.add_edge(v[i], v[(i + 1) % 3], mesh.edge_order[t][i]);
-}
 
 json numbers(const Point& p) {
     return {p.x, p.y, p.z};
@@ -112,34 +48,14 @@ json links_at(const Solution& solution, RegionId region, const Point& x) {
 
 }  // namespace
 
-std::size_t viewer_part_count(const Solution& solution, ViewerLayer layer) {
-    const std::size_t leaves = has_triangles(solution, layer) ? solution.discontinuity.size()
-                                                              : function_of(solution, layer).tree.leaves().size();
-    return std::max<std::size_t>(1, (leaves + viewer_part_leaves - 1) / viewer_part_leaves);
-}
-
-std::string viewer_part(const Solution& solution, ViewerLayer layer, std::size_t number) {
-    Part part;
-    const std::size_t first = number * viewer_part_leaves;
-    if (has_triangles(solution, layer)) {
-        const SixNodeMesh& mesh = solution.discontinuity;
-        for (std::size_t t = first; t < std::min(mesh.size(), first + viewer_part_leaves); ++t)
-            add_triangle(part, solution.scene, mesh, static_cast<std::uint32_t>(t));
-        return packed(part);
-    }
-    const ElementFunction& f = function_of(solution, layer);
-    const std::vector<ElementId> leaves = f.tree.leaves();
-    for (std::size_t i = first; i < std::min(leaves.size(), first + viewer_part_leaves); ++i)
-        add_leaf(part, solution.scene, f, leaves[i]);
-    return packed(part);
-}
-
 std::string viewer_scene_json(const RadiosityFunction& light, const Camera& camera) {
     const Solution& solution = light.solution();
     json materials = json::array();
     for (const Material& m : solution.scene.materials())
         materials.push_back(
             {{"name", m.name}, {"reflectance", numbers(m.reflectance)}, {"exitance", numbers(m.exitance)}});
+    json groups = json::array();
+    for (const std::string& name : solution.scene.groups()) groups.push_back(name);
     const Box& box = solution.scene.box();
     json out{{"file", solution.scene.file()},
              {"photometric", solution.scene.is_photometric()},
@@ -152,7 +68,12 @@ std::string viewer_scene_json(const RadiosityFunction& light, const Camera& came
              {"box", {numbers(box.lo), numbers(box.hi)}},
              {"parts",
               {{"exported", viewer_part_count(solution, ViewerLayer::exported)},
-               {"method", viewer_part_count(solution, ViewerLayer::method)}}},
+               {"method", viewer_part_count(solution, ViewerLayer::method)},
+               {"raw", viewer_part_count(solution, ViewerLayer::raw)}}},
+             {"basis", solution.statistics.basis},
+             {"groups", std::move(groups)},
+             {"shadow_classes", !solution.discontinuity.shadow.empty()},
+             {"discontinuities", !solution.discontinuity.empty()},
              {"links", solution.links.links.size()}};
     const auto& error = solution.statistics.relative_error_estimate;
     out["error"] = error ? json(*error) : json(nullptr);
@@ -190,9 +111,15 @@ std::string viewer_line_json(const RadiosityFunction& light, const Point& from, 
         const double t = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
         points.push_back({from + t * (to - from), n});
     }
-    json values = json::array();
+    json values = json::array(), delivered = json::array(), raw = json::array();
     for (const Light& l : light.at(points)) values.push_back(mean(l.irradiance));
-    return json{{"length", norm(to - from)}, {"values", std::move(values)}}.dump();
+    for (const Light& l : light.interpolant_at(points)) delivered.push_back(mean(l.irradiance));
+    for (const Spectrum& e : viewer_raw_at(light, points)) raw.push_back(mean(e));
+    return json{{"length", norm(to - from)},
+                {"values", std::move(values)},
+                {"delivered", std::move(delivered)},
+                {"raw", std::move(raw)}}
+        .dump();
 }
 
 }  // namespace exitance

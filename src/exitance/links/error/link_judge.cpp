@@ -4,22 +4,19 @@
 #include <cmath>
 #include <optional>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/links/error/undersampling.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
 namespace {
 
-/// Share of a link's tolerance below which a departure needs no polynomial: departures of many links add up.
-constexpr double negligible_share = 0.2;
-
 /// Rays that one number takes, and those of a weak link.
 constexpr unsigned rays_a_link = 16, rays_of_a_weak_link = 4;
 
 /// Of light below this share of the tolerance, no more than a few rays tell what stands in between.
 bool is_weak(double light, double allowed) {
-    constexpr double weak_share = 0.3;
-    return light < weak_share * allowed;
+    return light < calibrated::weak_link_share * allowed;
 }
 
 /// The standard error of so many rays with half of the light hidden, W/m^2.
@@ -83,7 +80,7 @@ std::optional<LinkDecision> LinkJudge::judge_as_constant(LinkPair& pair, std::sp
     const double rule_error = even.rule_error + tolerance_.systematic * residual;
     if (rule_error > allowed) return std::nullopt;
     for (double d : even.departure)
-        if (std::abs(d) > negligible_share * allowed) return std::nullopt;
+        if (std::abs(d) > calibrated::negligible_link_share * allowed) return std::nullopt;
 
     const double light = std::abs(even.form_factor * b);
     const bool weak = is_weak(light, allowed);

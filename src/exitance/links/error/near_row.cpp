@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {
@@ -32,7 +33,7 @@ void NearRow::add(const Point& x, const Normal& n, const Box& box, int depth) {
     const Point origin = frame_.at(box.origin);
     const Point middle = triangle ? origin + (a + b) / 3 : origin + 0.5 * (a + b);
     const double squared_radius =
-        0.25 * std::max(squared_norm(a + b), squared_norm(a - b)) * (triangle ? 16.0 / 9 : 1.0);
+        0.25 * std::max(squared_norm(a + b), squared_norm(a - b)) * (triangle ? 16.0 / 9 : 1.0);  // given by geometry
     const Vec3 d = middle - x;
     const double squared_distance = squared_norm(d), here = dot(n, d);
     if (here < 0 && here * here > squared_radius) return;
@@ -40,8 +41,7 @@ void NearRow::add(const Point& x, const Normal& n, const Box& box, int depth) {
         return Vec2{box.origin.x + s * box.size.x, box.origin.y + t * box.size.y};
     };
     const double area = norm(cross(a, b)) * (triangle ? 0.5 : 1.0);
-    constexpr double small = 0.3;
-    if (squared_radius < small * squared_distance) {
+    if (squared_radius < calibrated::near_row_rule_ratio * squared_distance) {
         const auto rule = triangle ? triangle_rule(2) : square_rule(2);
         for (const PlanarNode& node : rule) {
             const Vec3 w = origin + node.at.x * a + node.at.y * b - x;
@@ -89,7 +89,7 @@ double NearRow::operator()(const Point& x, const Normal& n, double* out) {
         basis.from_monomials(frame_.shape, sum_, std::span(out, count));
     double all = 0;
     for (std::size_t l = 0; l < count; ++l) all += out[l];
-    if (all > 1e-12 * F) {
+    if (all > 1e-12 * F) {  // given by rounding
         for (std::size_t l = 0; l < count; ++l) out[l] *= F / all;
     } else {  // what is seen is a sliver between the rule's points
         for (std::size_t l = 0; l < count; ++l) out[l] = F * basis.nodes(frame_.shape)[l].weight;

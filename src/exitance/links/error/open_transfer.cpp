@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {
 namespace {
-
-/// The rule's error relative to what it gives is rule_constant (size / distance)^(2 M). Above `near_ratio` rows are
-/// integrated in any case, below `far_ratio` in none.
-constexpr double rule_constant = 0.3, near_ratio = 0.7, far_ratio = 0.1;
-
-/// Share of a link's tolerance below which an error needs no better rule: errors of many links add up.
-constexpr double negligible_share = 0.2;
 
 /// Scale from what a rule sends to what is exact. Beyond these bounds the horizon cuts the source.
 double scale_to(double exact, double rule) {
@@ -30,7 +24,7 @@ double OpenTransfer::largest_light(std::size_t nodes) const {
 }
 
 double OpenTransferRule::ratio(ElementId receiver, ElementId source) const {
-    constexpr double least_gap = 1e-3;  // of the source's size: rounding
+    constexpr double least_gap = 1e-3;  // of the source's size: rounding (given by rounding)
     const double radius = sites_.radius(source);
     const double gap = norm(sites_.centre(source) - sites_.centre(receiver)) - sites_.radius(receiver);
     return radius / std::max(gap, least_gap * radius);
@@ -85,7 +79,7 @@ double OpenTransferRule::set_rows(OpenTransfer& transfer, ElementId receiver, co
 /// that is most: of small or dim sources little, near as they are.
 double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId receiver, const SourceLight& source) const {
     if (nodes_ == 1) return 0;
-    constexpr double least = 1e-3;  // of their sizes: single precision loses nodes that are nearer
+    constexpr double least = 1e-3;  // of their sizes: single precision loses nodes that are nearer (given by rounding)
     const double nearest = least * (sites_.radius(receiver) + sites_.radius(source.element));
     std::array<NodeRow, 9> kernel;
     double exact = 0, rule = 0;
@@ -99,7 +93,7 @@ double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId recei
         }
     }
     const double scale = transfer.kernel_scale = scale_to(exact, rule);
-    constexpr double rounding = 1e-6;
+    constexpr double rounding = 1e-6;                                        // given by rounding
     if (std::abs(scale * rule - exact) > rounding * exact) return HUGE_VAL;  // errors of one sign would add up
     double most = 0;
     for (std::size_t k = 0; k < nodes_; ++k)
@@ -112,20 +106,22 @@ OpenTransfer OpenTransferRule::send(ElementId receiver, const SourceLight& sourc
     const int M = sites_.basis().order();
     OpenTransfer out;
     out.ratio = ratio(receiver, source.element);
-    const double relative_error = tolerance_.systematic * rule_constant * std::pow(out.ratio, 2 * M);
+    const double relative_error = tolerance_.systematic * calibrated::kernel_rule_error * std::pow(out.ratio, 2 * M);
     double mean_form_factor = 0, kernel_error = 0;
-    if (out.ratio <= near_ratio) {
+    if (out.ratio <= calibrated::nearest_integrated_ratio) {
         mean_form_factor = set_rows(out, receiver, source);
         // Strength says nothing of the rule: there the good one is taken.
-        const bool is_rough = !by_error || out.largest_light(nodes_) * relative_error > negligible_share * allowed;
-        out.near = out.ratio > far_ratio && is_rough;
+        const bool is_rough =
+            !by_error || out.largest_light(nodes_) * relative_error > calibrated::negligible_link_share * allowed;
+        out.near = out.ratio > calibrated::farthest_integrated_ratio && is_rough;
     }
-    if (out.ratio > near_ratio || out.near) {
+    if (out.ratio > calibrated::nearest_integrated_ratio || out.near) {
         out.near = true;
         near_row_.set_source(source.element);
         mean_form_factor = set_rows(out, receiver, source);
         kernel_error = tolerance_.systematic * error_of_kernel(out, receiver, source);
-        const bool will_do = by_error && kernel_error <= negligible_share * allowed && allowed < HUGE_VAL;
+        const bool will_do =
+            by_error && kernel_error <= calibrated::negligible_link_share * allowed && allowed < HUGE_VAL;
         out.has_block = nodes_ > 1 && !will_do;
         if (out.has_block) kernel_error = 0;
     }
@@ -151,10 +147,12 @@ EvenTransfer OpenTransferRule::send_evenly(ElementId receiver, const SourceLight
     const Patch frame = sites_.frame(receiver);
     const Point middle = sites_.centre(source.element);
     const double ratio = this->ratio(receiver, source.element);
-    const double relative_error = tolerance_.systematic * rule_constant * ratio * ratio;
+    const double relative_error = tolerance_.systematic * calibrated::kernel_rule_error * ratio * ratio;
     EvenTransfer out;
     out.rule_error = relative_error * std::abs(b) * source.kernel_from(middle, frame.centre(), n);
-    const bool is_near = ratio > near_ratio || (ratio > far_ratio && out.rule_error > negligible_share * allowed);
+    const bool is_near =
+        ratio > calibrated::nearest_integrated_ratio ||
+        (ratio > calibrated::farthest_integrated_ratio && out.rule_error > calibrated::negligible_link_share * allowed);
     if (is_near) {
         outline_ = sites_.tree().outline(source.element);
         out.rule_error = 0;
@@ -182,9 +180,8 @@ double OpenTransferRule::interpolated(const OpenTransfer& transfer, ElementId re
 }
 
 double OpenTransferRule::scale_of_kernel(const OpenTransfer& transfer, ElementId receiver, const SourceLight& source) {
-    constexpr double negligible_error = 1e-5;  // of what arrives
     if (transfer.near) return transfer.kernel_scale;
-    if (std::pow(transfer.ratio, 2 * sites_.basis().order()) < negligible_error) return 1;
+    if (std::pow(transfer.ratio, 2 * sites_.basis().order()) < calibrated::kernel_scale_error) return 1;
     const Normal& n = sites_.normal(receiver);
     const std::vector<Point> outline = sites_.tree().outline(source.element);
     double exact = 0, rule = 0;

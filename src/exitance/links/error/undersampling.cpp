@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/geometry/polygon.hpp"
 
 namespace exitance {
@@ -57,29 +58,31 @@ class Undersampling {
             return part.drawn_in(patch.at(into_shape(patch.coordinates(x), patch.shape)), 0);
         };
         // In shares of the source's thickness and of the receiver: points stand off borders by these.
-        constexpr double in_front = 0.5, at_border = 0.02, off_border = 0.1;
+        constexpr double in_front = 0.5;
         const double thickness = source.thickness();
         const Point before = nearest(receiver_frame, receiver, source.middle + in_front * thickness * source_.normal);
         Point close = nearest(receiver_frame, receiver, source.middle);
         for (int i = 0; i < 4; ++i)  // alternating projections
             close = nearest(receiver_frame, receiver, nearest(source_frame, source, close));
         const double depth = norm(receiver.middle - close);
-        const double off = std::min(off_border, in_front * thickness / std::max(depth, thickness));
+        const double off = std::min(calibrated::peak_largest_border, in_front * thickness / std::max(depth, thickness));
         const auto error = [&](const Point& x) {
             return error_at(x, norm(nearest(source_frame, source, x) - x), source);
         };
-        return std::max(error(receiver.drawn_in(before, at_border)), error(receiver.drawn_in(close, off)));
+        return std::max(error(receiver.drawn_in(before, calibrated::peak_border)),
+                        error(receiver.drawn_in(close, off)));
     }
 
     /// `allowed`, W/m^2: errors below are not looked for.
     double fall(double allowed) const {
-        // A fall counts where the polynomial is at least `least_factor` times what arrives and off by a large share of
-        // the brightest point; it spans about `area_share` of the receiver.
-        constexpr double least_factor = 4, least_share = 0.5, off_border = 0.03, area_share = 0.02;
+        // A fall counts where the polynomial is at least `least_factor` times what arrives and off by half of
+        // the brightest point; it spans about `fall_area` of the receiver.
+        const double area_share = calibrated::fall_area;
+        constexpr double least_factor = 4, least_share = 0.5;
         if (source_.nodes == 1 || std::sqrt(area_share) * transfer_.brightest <= allowed) return 0;
         double most = 0;
         for (const Point& corner : sites_.tree().outline(receiver_)) {
-            const Point x = corner + off_border * (sites_.centre(receiver_) - corner);
+            const Point x = corner + calibrated::fall_border * (sites_.centre(receiver_) - corner);
             const double exact = light_at(x), polynomial = rule_.interpolated(transfer_, receiver_, x),
                          error = std::abs(polynomial - exact);
             if (std::abs(polynomial) > least_factor * std::abs(exact) && error > least_share * transfer_.brightest)
@@ -98,7 +101,7 @@ class Undersampling {
     double error_at(const Point& x, double gap, const FrontPart& source) const {
         const double least_factor = source_.nodes == 1 ? 8
                                     : certainly_open_  ? 4
-                                                       : 1.3,
+                                                       : calibrated::peak_factor_hidden,
                      least = least_factor * transfer_.brightest;
         const double F = rule_.form_factor(x, sites_.normal(receiver_), source.outline),
                      residual = F * source_.roughness;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -9,8 +10,8 @@ namespace {
 
 /// Cuts leaves, for the sake of what is handed on, until linear functions hold what quadratic ones have found.
 void cut_for_delivery(Hierarchy& h, const NodalLight& E) {
-    constexpr double share = 0.3;  // of the error that links may have
-    const double allowed = share * h.input.knobs.link_error * h.light_norm() / std::sqrt(h.input.stage.area);
+    const double allowed =
+        calibrated::delivery_share * h.input.knobs.link_error * h.light_norm() / std::sqrt(h.input.stage.area);
     ElementTree& tree = h.light.tree;
     std::vector<ElementId> active = tree.leaves();
     constexpr int most_levels = 3;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exitance/accuracy/tolerance_law.hpp"
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/hierarchical/link_importance.hpp"
@@ -15,32 +16,33 @@ namespace {
 /// Errors in the first round's tolerance, in shares of the demand. The fewer links there are in a sum, which is where
 /// little is asked for and where orders are high, the larger a single one's may be.
 double first_error(const Hierarchy& h, double demand) {
-    constexpr double fine = 0.00225, delivering = 0.3, of_order_three = 1.4;
-    const double few = std::clamp(std::sqrt(h.input.knobs.link_error / fine), 1.0, 2.0);
-    return (h.light.delivers ? delivering : h.basis.order() == 3 ? of_order_three : 1) * few * demand;
+    const double few = std::clamp(std::sqrt(h.input.knobs.link_error / calibrated::first_round_fine), 1.0, 2.0);
+    const double share = h.light.delivers       ? calibrated::first_round_delivering
+                         : h.basis.order() == 3 ? calibrated::first_round_order_three
+                                                : 1;
+    return share * few * demand;
 }
 
 /// Where links are judged by their strength, what they may have in the first round; it falls with the error.
 double first_strength(const Hierarchy& h, double error) {
-    constexpr double of_form_factors = 10, of_light = 0.1;
-    return h.input.options.oracle == LinkOracle::form_factor ? of_form_factors * error / h.light_norm()
-                                                             : of_light * error * std::sqrt(h.input.stage.area);
+    return h.input.options.oracle == LinkOracle::form_factor
+               ? calibrated::first_form_factor * error / h.light_norm()
+               : calibrated::first_strength * error * std::sqrt(h.input.stage.area);
 }
 
 /// Weight of what a source's polynomial leaves out: bilinear sources miss most beside near receivers, all with one
 /// sign. Where rays correct it, that does not matter.
 double residual_weight(const Hierarchy& h) {
-    constexpr double usual = 0.5, of_bilinear = 1.5;
-    return h.light.delivers && h.basis.order() == 2 ? of_bilinear : usual;
+    constexpr double usual = 0.5;
+    return h.light.delivers && h.basis.order() == 2 ? calibrated::residual_weight_of_bilinear : usual;
 }
 
 /// Ratio of the links' error to what the method's is to be: where rays correct the means of leaves, links tell only how
 /// light varies within them, and it is gathered once more; where links deliver it, no gather takes a share of the error
 /// asked for.
 double share_of_links(const Hierarchy& h) {
-    constexpr double rays_correct = 8, without_gather = 1.7;
-    if (h.light.delivers) return h.input.options.epsilon ? 1 : without_gather;
-    return h.input.options.smoothing ? 1 : rays_correct;
+    if (h.light.delivers) return h.input.options.epsilon ? 1 : calibrated::link_error_without_gather;
+    return h.input.options.smoothing ? 1 : calibrated::link_error_under_rays;
 }
 
 /// As many links as there is room for.
@@ -57,10 +59,10 @@ std::size_t most_links(const Hierarchy& h) {
 /// correct it.
 double systematic_weight(const Hierarchy& h) {
     if (!h.light.delivers) return 1;
-    constexpr double within_a_sum = 2, most_reflections = 10;
+    constexpr double within_a_sum = 2;
     double reflected = 0;
     for (ElementId e : h.light.tree.roots()) reflected += h.light.tree.area(e) * mean(h.material(e).reflectance);
-    return within_a_sum * std::min(most_reflections, 1 / (1 - reflected / h.input.stage.area));
+    return within_a_sum * std::min(calibrated::largest_reflection_count, 1 / (1 - reflected / h.input.stage.area));
 }
 
 /// The rounds of one solve.
@@ -70,9 +72,8 @@ class Rounds {
         : h_(h), of_links_(first_exponent(h.light.delivers)), of_receivers_(first_exponent(h.light.delivers)) {
         // Light is reflected once, at first; then it is all of it, unless rays correct what links miss.
         if (!h.light.delivers && !has_importance_) h.refiner.keep_light();
-        constexpr double before_importance = 16;  // the first round does not know it
-        const double first =
-            (has_importance_ ? before_importance : 1) * first_error(h, h.input.knobs.link_error * h.light_norm());
+        const double first = (has_importance_ ? calibrated::first_round_before_importance : 1) *
+                             first_error(h, h.input.knobs.link_error * h.light_norm());
         tolerance_ = link_tolerance(h, first);
         tolerance_.oracle = h.input.options.oracle;
         tolerance_.residual_weight = residual_weight(h);
@@ -105,7 +106,9 @@ class Rounds {
 
   private:
     /// Where links deliver light, what falls first is how much of it comes back from reflections.
-    static double first_exponent(bool delivers) { return delivers ? 0.8 : 1.7; }
+    static double first_exponent(bool delivers) {
+        return delivers ? calibrated::first_exponent_delivering : calibrated::first_exponent_gathered;
+    }
 
     template <class Archive>
     void archive_state(Archive& a) {
@@ -126,8 +129,6 @@ class Rounds {
     }
 
     bool is_good_enough(double by_link, double by_receiver) {
-        constexpr double accepted_excess =
-            1.15;  // when rays correct the result: one more round costs more than it gains
         const double error = std::hypot(by_link, by_receiver), norm = h_.light_norm();
         demand_ = h_.input.knobs.link_error * share_of_links(h_) * norm;
         h_.input.progress.note(
@@ -139,7 +140,7 @@ class Rounds {
         h_.light.limited_by_memory = h_.refiner.is_limited();
         if (h_.input.stop.requested() || h_.light.limited_by_memory) return true;
         const bool knows_all_light = round_ > 0 || (!has_importance_ && !h_.light.delivers);
-        return knows_all_light && error <= (h_.light.delivers ? 1 : accepted_excess) * demand_;
+        return knows_all_light && error <= (h_.light.delivers ? 1 : calibrated::accepted_link_excess) * demand_;
     }
 
     /// Each of the two may have half of what is allowed, squared, and what the other leaves.
@@ -164,13 +165,12 @@ class Rounds {
 }  // namespace
 
 LinkTolerance link_tolerance(const Hierarchy& h, double error) {
-    constexpr double least_area_share = 1e-7;  // of all surfaces
     const SolveOptions& o = h.input.options;
     return {.error = error,
             .interpolation = error,
             .systematic = systematic_weight(h),
             .most_links = most_links(h),
-            .least_area = o.min_area.value_or(least_area_share * h.input.stage.area),
+            .least_area = o.min_area.value_or(calibrated::least_link_area * h.input.stage.area),
             .fractional = o.visibility == VisibilityKind::fractional,
             .quadrature = o.visibility == VisibilityKind::quadrature,
             .gives_up = h.input.may_give_up,

@@ -1,5 +1,6 @@
 #include "exitance/methods/hierarchical/linked_system.hpp"
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 
@@ -33,7 +34,7 @@ SolveReport LinkedSystem::solve(const NodalField& rhs, NodalField& x, bool close
     const Relaxation method = all_at_once ? asked : Relaxation::gmres;
     ConservingTransport conserving(F, area);
     const SolveReport report = solve_conserving({conserving, rho, first, area}, conserving, closed, method, value,
-                                                {.residual = 0.1 * input_.knobs.residual,
+                                                {.residual = calibrated::linked_residual * input_.knobs.residual,
                                                  .max_iterations = input_.knobs.max_iterations,
                                                  .request = &input_.stop});
     scale_ = conserving.scale();

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/reconstruct/pictures/picture.hpp"
+
+namespace exitance {
+
+/// A picture for the viewer's page, which tones it: the letters EXF1, width and height (uint32), then of every pixel,
+/// rows from the bottom to the top as textures have them, radiosity (3 float32, W/m^2) and the share of the pixel that
+/// shows fronts; then of every pixel irradiance (mean of the bands, W/m^2) and the share that shows backs.
+std::string viewer_frame(const Picture& picture);
+
+}  // namespace exitance

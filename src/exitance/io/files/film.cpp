@@ -1,0 +1,47 @@
+#include "exitance/io/files/film.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+
+#include "exitance/io/files/child_process.hpp"
+#include "exitance/io/files/whole_file.hpp"
+
+namespace exitance {
+
+bool is_film(const std::string& path) {
+    const std::array<std::string, 4> endings{".mp4", ".mkv", ".webm", ".gif"};
+    return std::find(endings.begin(), endings.end(), ending(path)) != endings.end();
+}
+
+Result<void> find_film_program(const std::string& path) {
+    if (is_program("ffmpeg")) return {};
+    return Error{ErrorCode::cannot_write, "a video is made by ffmpeg, which is not installed", path,
+                 "install the package ffmpeg, or write numbered pictures: -o walk.png"};
+}
+
+Result<void> write_film(const std::string& folder, double rate, const std::string& path) {
+    namespace fs = std::filesystem;
+    const fs::path target = fs::absolute(path);
+    const fs::path part =
+        target.parent_path() / fmt::format(".{}.part{}", target.stem().string(), target.extension().string());
+    // Most players want even sizes, and colours at half the resolution.
+    const ProgramRun run =
+        run_program({"ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", fmt::format("{:g}", rate), "-i",
+                     folder + "/frame.%04d.png", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt",
+                     ending(path) == ".gif" ? "rgb8" : "yuv420p", part.string()},
+                    "", std::numeric_limits<double>::infinity(), StopRequest());
+    std::error_code failed;
+    if (run.status == 0) fs::rename(part, target, failed);
+    if (run.status == 0 && !failed) return {};
+    fs::remove(part, failed);
+    std::string said = run.err.substr(0, run.err.find('\n'));
+    return Error{ErrorCode::cannot_write,
+                 fmt::format("ffmpeg made no video: {:.200}", said.empty() ? "it said nothing" : said), path,
+                 "numbered pictures, -o walk.png, need no ffmpeg"};
+}
+
+}  // namespace exitance

@@ -1,0 +1,63 @@
+// Light at a point and along a line, in numbers.
+import * as THREE from 'three';
+import type {Light, Triple} from './data';
+
+export const by_id = <T extends Element = HTMLElement>(id: string) => document.getElementById(id) as unknown as T;
+const short = (x: number) => String(Number(x.toPrecision(4)));
+
+export interface Profile { length: number; values: number[]; delivered: number[]; raw: number[] }
+
+export function point_words(light: Light, at: THREE.Vector3, unit: string): string {
+    const three = (v: Triple) => v.map(short).join('  ');
+    const lines = [`at ${at.toArray().map(x => x.toFixed(3)).join(', ')} m (${unit}: red, green, blue)`, `E ${three(light.irradiance)}`,
+        `direct ${three(light.direct)}`, `reflected ${three(light.indirect)}`];
+    if (light.radiosity) lines.push(`B ${three(light.radiosity)}`);
+    if (light.surface !== undefined)
+        lines.push(`face ${light.surface}${light.line ? ` (line ${light.line})` : ''}, ${light.group || 'no group'}, ` +
+            `${light.material}`, `element ${light.element ?? 'none'}, ${light.links?.length ?? 0} links`);
+    return lines.join('\n');
+}
+
+const series = ['exact', 'delivered', 'raw'] as const;
+const values_of = (profile: Profile, name: typeof series[number]) => name === 'exact' ? profile.values : profile[name];
+
+/** Three curves over the length, with round numbers at the axes. */
+export function show_plot(profile: Profile, unit: string): void {
+    const most = Math.max(1e-12, ...series.flatMap(name => values_of(profile, name)));
+    const power = 10 ** Math.floor(Math.log10(most)), top = [1, 2, 5, 10].map(x => x * power).find(x => x >= most) ?? most;
+    const [left, right, high, low] = [38, 268, 16, 128];
+    const y = (v: number) => low - (low - high) * v / top, x = (t: number) => left + (right - left) * t;
+    let drawing = '';
+    for (const k of [0, 0.25, 0.5, 0.75, 1])
+        drawing += `<line class="grid" x1="${left}" x2="${right}" y1="${y(k * top)}" y2="${y(k * top)}"/>` +
+            `<text x="${left - 4}" y="${y(k * top) + 3}" text-anchor="end">${short(k * top)}</text>`;
+    for (const t of [0, 0.5, 1])
+        drawing += `<text x="${x(t)}" y="${low + 14}" text-anchor="${t === 1 ? 'end' : 'middle'}">${short(t * profile.length)}${t === 1 ? ' m' : ''}</text>`;
+    drawing += `<text x="2" y="10">${unit}</text>`;
+    for (const name of [...series].reverse()) {
+        const values = values_of(profile, name);
+        const path = values.map((v, i) => `${i ? 'L' : 'M'}${x(i / (values.length - 1)).toFixed(1)} ${y(v).toFixed(1)}`).join('');
+        drawing += `<path class="${name}" d="${path}"/>`;
+    }
+    by_id('plot').innerHTML = drawing;
+    by_id('plot').setAttribute('aria-label', `Irradiance along ${short(profile.length)} m, ${unit}: from ` +
+        `${short(Math.min(...profile.values))} to ${short(Math.max(...profile.values))}`);
+    by_id('plot_key').innerHTML = series.map(name => `<svg width="24" height="8" aria-hidden="true"><line class="${name}" x1="0" x2="24" y1="4" y2="4" stroke-width="2"/></svg> ${name}`).join(' &nbsp; ');
+    by_id('measured').hidden = false;
+}
+
+export function profile_csv(profile: Profile, a: THREE.Vector3, b: THREE.Vector3, unit: string): string {
+    const rows = profile.values.map((exact, i) => {
+        const t = i / (profile.values.length - 1), p = a.clone().lerp(b, t);
+        return [t * profile.length, ...p.toArray(), exact, profile.delivered[i], profile.raw[i]].map(v => Number(v.toPrecision(7))).join(',');
+    });
+    return `s_m,x_m,y_m,z_m,exact,delivered,raw\n${rows.join('\n')}\n`.replace('exact,', `exact (${unit.replace(',', '')}),`);
+}
+
+/** Outlines in the scene: of an element, of what is linked to it, of a line that is measured. */
+export function draw_outlines(into: THREE.Group, outlines: THREE.Vector3[][], colour: number, closed = true): void {
+    for (const points of outlines) {
+        const geometry = new THREE.BufferGeometry().setFromPoints(closed && points.length > 0 ? [...points, points[0]] : points);
+        into.add(new THREE.Line(geometry, new THREE.LineBasicMaterial({color: colour, toneMapped: false})));
+    }
+}
