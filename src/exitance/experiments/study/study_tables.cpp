@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "exitance/experiments/cie171.hpp"
+#include "exitance/experiments/flatland/growing_lines.hpp"
 #include "exitance/experiments/flatland/kernel_terms.hpp"
 #include "exitance/experiments/kernel_error.hpp"
 #include "exitance/experiments/local_pass/local_pass_study.hpp"
@@ -18,33 +19,75 @@
 namespace exitance {
 namespace {
 
+/// A kernel of flatland.
+struct FlatKernel {
+    bool step;
+    double h;
+
+    double operator()(double x, double y) const { return step && x <= y ? 0.0 : 1 / ((x - y) * (x - y) + h * h); }
+    std::string name() const { return fmt::format("{}, h = {:g}", step ? "step" : "smooth", h); }
+};
+
+void add_flatland_row(Table& table, const FlatKernel& kernel, const std::string& basis, const std::string& way,
+                      std::size_t m, double error) {
+    table.add_row();
+    table.set("kernel", kernel.name()), table.set("h", field(kernel.h)), table.set("basis", basis);
+    table.set("decomposition", way), table.set("m", std::to_string(m)), table.set("relative_l2_error", field(error));
+}
+
+/// Means over seeds, and half of what lies between the least and the largest, as `spread`.
+void add_growing_rows(Table& table, const FlatKernel& kernel, std::span<const std::size_t> counts, int seeds) {
+    using namespace flatland;
+    static constexpr std::pair<CellWeights, const char*> ways[] = {
+        {CellWeights::delta_rule, "growing cells, delta rule"},
+        {CellWeights::least_squares, "growing cells, least squares"},
+        {CellWeights::normalised_least_squares, "growing cells, normalised"}};
+    for (const auto& [weights, name] : ways) {
+        std::vector<std::vector<double>> of_seed;
+        for (int seed = 1; seed <= seeds; ++seed)
+            of_seed.push_back(errors_of_growing_kernel(kernel, kernel.h, counts,
+                                                       {.weights = weights, .seed = static_cast<std::uint64_t>(seed)}));
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            double sum = 0, least = of_seed[0][i], most = least;
+            for (const auto& errors : of_seed)
+                sum += errors[i], least = std::min(least, errors[i]), most = std::max(most, errors[i]);
+            // Beside both decompositions, for plots.
+            for (const char* way : {"standard", "non-standard"}) {
+                add_flatland_row(table, kernel, name, way, counts[i], sum / seeds);
+                table.set("spread", field((most - least) / 2));
+            }
+        }
+    }
+}
+
 Result<StudyTables> flatland_tables(const Study&, const StudyOptions& options, Progress& progress,
                                     const StopRequest& stop) {
     using namespace flatland;
     const int levels = options.quick ? 6 : 8;
     std::vector<std::size_t> counts;
     for (std::size_t m = 1; m <= std::size_t(1) << (2 * levels); m *= 2) counts.push_back(m);
+    const std::vector<std::size_t> units =
+        options.quick ? std::vector<std::size_t>{16, 64} : std::vector<std::size_t>{16, 32, 64, 128, 256, 512};
     Table table;
     progress.phase("flatland");
     for (const bool step : {false, true})
-        for (const double h : {1.0, 0.2, 0.1, 0.05, 0.02})
+        for (const double h : {1.0, 0.2, 0.1, 0.05, 0.02}) {
+            const FlatKernel kernel{step, h};
             for (const LineBasis basis : line_bases)
                 for (const Decomposition way : {Decomposition::standard, Decomposition::non_standard}) {
                     if (stop.requested()) break;
-                    const KernelTerms terms(basis, way, levels, [&](double x, double y) {
-                        return step && x <= y ? 0.0 : 1 / ((x - y) * (x - y) + h * h);
-                    });
+                    const KernelTerms terms(basis, way, levels, kernel);
                     const std::vector<double> errors = terms.errors(counts);
-                    const std::string decomposition = way == Decomposition::standard ? "standard" : "non-standard";
                     for (std::size_t i = 0; i < counts.size(); ++i) {
-                        table.add_row();
-                        table.set("kernel", fmt::format("{}, h = {:g}", step ? "step" : "smooth", h));
-                        table.set("h", field(h)), table.set("basis", std::string(name_of(basis)));
-                        table.set("decomposition", decomposition);
-                        table.set("terms", std::to_string(terms.size())), table.set("m", std::to_string(counts[i]));
-                        table.set("relative_l2_error", field(errors[i]));
+                        add_flatland_row(table, kernel, std::string(name_of(basis)),
+                                         way == Decomposition::standard ? "standard" : "non-standard", counts[i],
+                                         errors[i]);
+                        table.set("terms", std::to_string(terms.size()));
                     }
                 }
+            if (!stop.requested()) add_growing_rows(table, kernel, units, options.quick ? 2 : 5);
+            progress.advance(step ? 0.5 : 0, kernel.name());
+        }
     return StudyTables{{"results", std::move(table)}};
 }
 
