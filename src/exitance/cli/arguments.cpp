@@ -69,6 +69,8 @@ const std::vector<Verb>& verbs() {
          parse_verb<CompareArguments>},
         {"stats", "Tells what a solution took: counts, times, memory, error, energy balance.", "exitance stats room.h5",
          parse_verb<StatsArguments>},
+        {"mix", "Dims groups of lamps and repaints materials of a solution, without solving it again.",
+         "exitance mix room.h5 lamp=0.5 --reflectance wall=0.8,0.8,0.7 -o dimmed.h5", parse_verb<MixArguments>},
         {"export", "Writes a solution for other programs.", "exitance export room.h5 -o room.glb",
          parse_verb<ExportArguments>},
         {"render", "Makes a picture of a solution.", "exitance render room.h5 -o room.png",

@@ -49,6 +49,7 @@ struct SolveArguments : CommonArguments {
     std::optional<double> checkpoint_every;  ///< Seconds.
     bool resume = false;                     ///< Go on from the checkpoint beside the output.
     bool dry_run = false;
+    bool light_groups = false;        ///< Solve every group of emitters by itself, too, and keep that.
     std::optional<bool> photometric;  ///< None: as the file has it.
     std::string sky, epw;             ///< A sky in words, and a weather file for it; empty: none.
 };
@@ -72,6 +73,13 @@ struct ProbeArguments : CommonArguments {
 
 struct StatsArguments : CommonArguments {
     std::string solution;
+};
+
+struct MixArguments : CommonArguments {
+    std::string solution, output;
+    std::vector<std::string> dim;          ///< GROUP=FACTOR
+    std::vector<std::string> reflectance;  ///< MATERIAL=r,g,b
+    int threads = 0;
 };
 
 struct ExportArguments : CommonArguments {
@@ -184,8 +192,8 @@ struct ViewArguments : CommonArguments {
 
 /// What the program is to do.
 using Command =
-    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, ExportArguments, RenderArguments,
-                 BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
+    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
+                 RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
                  LuminaireArguments, ExperimentArguments, ViewFactorArguments, ViewArguments>;
 
 /// Text asked for by --help or --version.

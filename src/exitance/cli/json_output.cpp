@@ -303,4 +303,17 @@ std::string progress_json(std::string_view phase, double fraction, std::string_v
     return dump(json, -1);
 }
 
+std::string light_groups_json(const LightGroups& groups, const Scene& scene) {
+    Json out{{"groups", Json::array()}, {"materials", Json::array()}};
+    for (const LightGroup& g : groups.groups)
+        out["groups"].push_back({{"name", g.emitters.name}, {"factor", g.factor}});
+    if (!groups.empty())
+        for (const Material& m : scene.materials()) {
+            Json bands_of = Json::array();
+            for (const double rho : m.reflectance.value) bands_of.push_back(rho);
+            out["materials"].push_back({{"name", m.name}, {"reflectance", bands_of}});
+        }
+    return dump(out, -1);
+}
+
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exitance/methods/classical/classical.hpp"
+#include "exitance/methods/light_groups/light_groups.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/reconstruct/solution.hpp"
@@ -19,6 +20,10 @@ namespace exitance {
 
 /// What a report page holds of `stats --json`.
 std::string statistics_json(const SolveStatistics& statistics);
+
+/// What the viewer's page can change: `groups [{name, factor}]`, `materials [{name, reflectance}]`; empty lists where
+/// no groups are kept.
+std::string light_groups_json(const LightGroups& groups, const Scene& scene);
 
 /// `solve --json` and `stats --json`: the same, with what kind of mesh, links and direct light the solution has.
 std::string statistics_json(const Solution& solution);

@@ -102,6 +102,7 @@ void declare(CLI::App& app, SolveArguments& arguments);
 void declare(CLI::App& app, ProbeArguments& arguments);
 void declare(CLI::App& app, CompareArguments& arguments);
 void declare(CLI::App& app, StatsArguments& arguments);
+void declare(CLI::App& app, MixArguments& arguments);
 void declare(CLI::App& app, ExportArguments& arguments);
 void declare(CLI::App& app, RenderArguments& arguments);
 void declare(CLI::App& app, BakeArguments& arguments);

@@ -8,6 +8,7 @@
 #include "exitance/cli/classical_solve.hpp"
 #include "exitance/cli/discontinuity_arguments.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/kept_groups.hpp"
 #include "exitance/cli/local_pass_check.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
@@ -167,9 +168,11 @@ Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene
 }
 
 /// Reads what it has written, too, if asked for.
-Result<void> write_checked(const std::string& path, const Solution& solution, bool reads_back) {
-    if (const Result<void> written = write_solution(path, solution); !written || !reads_back) return written;
-    if (const Result<Solution> read_back = load_solution(path, Rehearsed::already); !read_back)
+Result<void> write_checked(const std::string& path, const Solution& solution, const LightGroups& groups,
+                           bool reads_back) {
+    if (const Result<void> written = write_solution(path, solution, &groups); !written || !reads_back) return written;
+    LightGroups groups_again;
+    if (const Result<Solution> read_back = load_solution(path, Rehearsed::already, &groups_again); !read_back)
         return Error{ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message, path,
                      "please report the scene that it is of"};
     return {};
@@ -208,6 +211,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (const Result<void> sky = read_sky(arguments); !sky) return terminal.fail(sky.error());
     if (const Result<void> obeyed = check_classical(arguments); !obeyed) return terminal.fail(obeyed.error());
     if (const Result<void> shared = check_processes(arguments); !shared) return terminal.fail(shared.error());
+    if (const Result<void> kept = check_light_groups(arguments); !kept) return terminal.fail(kept.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
     if (const Result<void> ending = check_ending(arguments.output); !ending) return terminal.fail(ending.error());
@@ -223,6 +227,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (arguments.time_limit) reading_stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
     arguments.scene.load.stop = &reading_stop;
     arguments.scene.load.photometric = arguments.photometric;
+    arguments.scene.load.light_groups = arguments.light_groups;
     CheckedScene checked = load_for_all(arguments.scene);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
@@ -257,6 +262,9 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
+    const Result<LightGroups> kept = keep_light_groups(arguments, *solution, tracing.progress(), stop);
+    if (!kept) return terminal.fail(kept.error());
+    const LightGroups& groups = *kept;
     SolveStatistics& statistics = solution->statistics;
     if (!is_classical) solution->options = options_json(arguments.options);
     add_findings(statistics.warnings, checked.findings, checked.scene->file());
@@ -270,7 +278,8 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     tracing.progress().phase("write");
     Stopwatch writing;
     const bool reads_back = !stop.requested();
-    if (const Result<void> written = by_first([&] { return write_checked(arguments.output, *solution, reads_back); });
+    if (const Result<void> written =
+            by_first([&] { return write_checked(arguments.output, *solution, groups, reads_back); });
         !written)
         return terminal.fail(written.error());
     statistics.seconds["write"] = writing.seconds();

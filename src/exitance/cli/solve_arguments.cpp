@@ -54,6 +54,11 @@ void declare_method(CLI::App& app, SolveArguments& arguments) {
         ->group("Method");
     app.add_flag("--keep-links", o.keep_links, "Put a hierarchy's links into the solution, for export --links")
         ->group("Method");
+    app.add_flag(
+           "--light-groups", arguments.light_groups,
+           "Solve every group of emitters (g) by itself, too, and keep that for mix and view; takes as long as all "
+           "these solves")
+        ->group("Method");
     add_choice(app, "--oracle", oracle_names, o.oracle,
                "By what links are cut: error of what they bring (default), form factor, or power")
         ->group("Method");

@@ -155,6 +155,17 @@ void declare(CLI::App& app, StatsArguments& arguments) {
     declare_json(app, arguments);
 }
 
+void declare(CLI::App& app, MixArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of solve --light-groups")->required();
+    app.add_option("CHANGES", arguments.dim, "GROUP=FACTOR: light of a group, over what it was in the scene")
+        ->type_name("GROUP=FACTOR");
+    app.add_option("--reflectance", arguments.reflectance, "MATERIAL=r,g,b: repaint it; may be given several times")
+        ->type_name("MATERIAL=r,g,b");
+    app.add_option("-o,--output", arguments.output, "The new solution (.h5)")->type_name("FILE")->required();
+    declare_json(app, arguments);
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, ExportArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
     app.add_option("-o,--output", arguments.output, "By ending: .glb, .hdf or .vtkhdf, .vtu, .obj, .csv")

@@ -11,6 +11,7 @@ ExitCode run(const SolveArguments& arguments, Terminal& terminal);
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal);
 ExitCode run(const CompareArguments& arguments, Terminal& terminal);
 ExitCode run(const StatsArguments& arguments, Terminal& terminal);
+ExitCode run(const MixArguments& arguments, Terminal& terminal);
 ExitCode run(const ExportArguments& arguments, Terminal& terminal);
 ExitCode run(const RenderArguments& arguments, Terminal& terminal);
 ExitCode run(const BakeArguments& arguments, Terminal& terminal);

@@ -7,6 +7,7 @@
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/cli/view_changes.hpp"
 #include "exitance/cli/view_events.hpp"
 #include "exitance/cli/view_frames.hpp"
 #include "exitance/cli/view_words.hpp"
@@ -54,14 +55,21 @@ class Gallery {
     std::deque<std::unique_ptr<Viewed>> all_;
 };
 
-/// Requests that read the newest solution.
-void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames) {
-    const auto with_light = [&gallery](auto answer) {
-        return [&gallery, answer](const Parameters& parameters) {
+/// Requests that read the newest solution, dimmed and repainted as they say.
+void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames, ViewChanges<Viewed>& changes) {
+    const auto with_light = [&gallery, &changes](auto answer) {
+        return [&gallery, &changes, answer](const Parameters& parameters) -> ViewAnswer {
             const Viewed* viewed = gallery.newest();
-            return viewed ? answer(*viewed, parameters) : view_absent;
+            if (!viewed) return view_absent;
+            if (!changes.are_asked_for(parameters)) return answer(*viewed, parameters);
+            const auto changed = changes.find(*viewed, parameters);
+            return changed ? answer(**changed, parameters)
+                           : ViewAnswer{400, "text/plain", changed.error().message + " " + changed.error().hint};
         };
     };
+    server.get("/groups", with_light([&changes](const Viewed& v, const Parameters&) {
+                   return ViewAnswer{200, "application/json", light_groups_json(changes.groups(), v.solution.scene)};
+               }));
     server.get("/data/scene", with_light([](const Viewed& v, const Parameters&) {
                    return ViewAnswer{200, "application/json", viewer_scene_json(v.light, v.camera)};
                }));
@@ -183,17 +191,21 @@ ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
     ViewFrames frames;
     ViewServer server;
     if (const Result<void> read = server.serve_page(*page); !read) return terminal.fail(read.error());
-    serve_light(server, gallery, frames);
+    LightGroups groups;
     const bool solves = arguments.scene.files.size() > 1 || !arguments.scene.files[0].ends_with(".h5");
     server.get("/data/state", [solves](const Parameters&) {
         return ViewAnswer{200, "application/json", solves ? R"({"solving": true})" : R"({"solving": false})"};
     });
     if (!solves) {
-        Result<Solution> solution = load_solution(arguments.scene.files[0]);
+        Result<Solution> solution = load_solution(arguments.scene.files[0], Rehearsed::not_yet, &groups);
         if (!solution) return terminal.fail(solution.error());
         gallery.add(std::move(*solution));
+        ViewChanges<Viewed> changes(std::move(groups));
+        serve_light(server, gallery, frames, changes);
         return serve(server, arguments, nullptr, terminal);
     }
+    ViewChanges<Viewed> changes(std::move(groups));
+    serve_light(server, gallery, frames, changes);
     CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);

@@ -88,4 +88,11 @@ double mean_direct_light(const Stage& stage, const DirectProjection& direct) {
     return flux / stage.area;
 }
 
+EnergyBalance energy_balance(const Solution& solution, const Stage& stage) {
+    DirectProjection none;
+    for (const Piece& piece : stage.pieces) none.tree.add_root(piece.region, piece.patch);
+    none.fit.resize(none.tree.size());
+    return energy_balance(solution, none, stage);
+}
+
 }  // namespace exitance

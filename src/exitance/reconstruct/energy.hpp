@@ -10,6 +10,9 @@ namespace exitance {
 /// surfaces: of emitters that are not diffuse by their profiles. Nothing is forced to agree. O(elements).
 EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage);
 
+/// The same where nothing was projected: the emitted flux is read at the pieces.
+EnergyBalance energy_balance(const Solution& solution, const Stage& stage);
+
 /// Mean over all surfaces and bands of E_dir, W/m^2.
 double mean_direct_light(const Stage& stage, const DirectProjection& direct);
 

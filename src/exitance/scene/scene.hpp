@@ -156,6 +156,10 @@ class Scene {
     const DistantLight& distant() const { return distant_; }
     /// As users say who want another light from outside.
     void put_under(DistantLight light) { distant_ = std::move(light); }
+    /// As users say who dim lamps and paint walls: how a material reflects and what it emits from now on. Faces that
+    /// emit nothing are no emitters any more.
+    void relight(MaterialId m, const Spectrum& reflectance, const Spectrum& exitance);
+    void put_lights(std::vector<PunctualLight> lights) { lights_ = std::move(lights); }
     bool has_light() const { return !emitters_.empty() || has_light_apart(); }
     /// Is there light that no surface sends, so that rays from surface to surface do not find it?
     bool has_light_apart() const { return !lights_.empty() || !distant_.empty(); }

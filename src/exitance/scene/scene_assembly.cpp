@@ -82,4 +82,11 @@ Scene SceneBuilder::make() {
     return scene;
 }
 
+void Scene::relight(MaterialId m, const Spectrum& reflectance, const Spectrum& exitance) {
+    materials_[m].reflectance = reflectance, materials_[m].exitance = exitance;
+    emitters_.clear();
+    for (const SurfaceId s : surfaces_.ids())
+        if (material(s).emits()) emitters_.push_back(s);
+}
+
 }  // namespace exitance

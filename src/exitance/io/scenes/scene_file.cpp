@@ -1,4 +1,5 @@
 #include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/scene/emitter_groups.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -168,6 +169,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
     ReadScene read = read_files(paths, options);
     if (options.sky) give_sky(*options.sky, read);
     add_luminaires(read, options);
+    if (options.light_groups) part_emitters_by_group(read.description);
     SceneLines lines = std::move(read.lines);
     LoadedScene scene{checked(std::move(read), lines), {}};
     scene.lines = std::move(lines);

@@ -19,6 +19,7 @@ enum class Faults : std::uint8_t {
 /// A sky to be put over a scene.
 struct ChosenSky {
     DistantLight in_watts, in_lumens;
+    bool light_groups = false;             ///< Gives the emitters of every group materials of their own.
     std::optional<bool> photometric = {};  ///< Which of them; none: as the scene has it.
 };
 
@@ -29,6 +30,7 @@ struct LoadOptions {
     const StopRequest* stop = nullptr;  ///< Ends such programs.
     std::optional<ChosenSky> sky = {};
     std::string luminaires = {};           ///< A table of luminaires that stand in the scene; empty: none.
+    bool light_groups = false;             ///< Gives the emitters of every group materials of their own.
     std::optional<bool> photometric = {};  ///< Is the scene's light in lumens? None: as its files say.
 };
 

@@ -10,7 +10,7 @@ constexpr std::int64_t format = 1;  ///< Raised when older programs could not re
 
 }  // namespace
 
-Result<void> write_solution(const std::string& path, const Solution& solution) {
+Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups) {
     Hdf5Writer file;
     write_vtkhdf(file, solution);
     file.make_group("exitance");
@@ -29,11 +29,12 @@ Result<void> write_solution(const std::string& path, const Solution& solution) {
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
     if (!solution.cells.cells.empty()) write_cells(file, "exitance/growing_cells", solution.cells);
     if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
+    if (groups && !groups->empty()) write_light_groups(file, "exitance/groups", *groups);
     write_statistics(file, "exitance/statistics", solution.statistics);
     return file.write_file(path);
 }
 
-Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed) {
+Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, LightGroups* groups) {
     Result<Hdf5Reader> opened = Hdf5Reader::open(path, rehearsed);
     if (!opened) return opened.error();
     Hdf5Reader& file = *opened;
@@ -66,6 +67,8 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed) {
         solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions);
     if (file.has("exitance/growing_cells")) solution.cells = read_cells(file, "exitance/growing_cells");
     if (file.has("exitance/links")) solution.links = read_links(file, "exitance/links", regions);
+    if (groups && file.has("exitance/groups") && !file.failed())
+        *groups = read_light_groups(file, "exitance/groups", solution);
     solution.statistics = read_statistics(file, "exitance/statistics");
     if (file.failed()) return file.error();
     for (const ElementTree* tree : {&solution.indirect.tree, &solution.interpolant.tree})

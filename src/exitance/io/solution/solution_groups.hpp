@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "exitance/io/solution/hdf5_file.hpp"
+#include "exitance/methods/light_groups/light_groups.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
 namespace exitance {
@@ -50,6 +51,10 @@ SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::
 /// The networks of growing cells.
 void write_cells(Hdf5Writer& file, const std::string& group, const CellLight& light);
 CellLight read_cells(Hdf5Reader& file, const std::string& group);
+
+/// Light by groups, for `mix`.
+void write_light_groups(Hdf5Writer& file, const std::string& group, const LightGroups& groups);
+LightGroups read_light_groups(Hdf5Reader& file, const std::string& group, const Solution& solution);
 
 /// Everything that may differ from run to run.
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics);

@@ -47,14 +47,6 @@ GlobalLight light_of(const TaskEngine& engine, const Stage& stage) {
     return light;
 }
 
-/// Emitted flux is read by a projection of nothing on the pieces.
-EnergyBalance balance(const Solution& solution, const Stage& stage) {
-    DirectProjection none;
-    for (const Piece& piece : stage.pieces) none.tree.add_root(piece.region, piece.patch);
-    none.fit.resize(none.tree.size());
-    return energy_balance(solution, none, stage);
-}
-
 void record(const TaskEngine& engine, const TaskReport& report, const GlobalLight& light, const TaskOptions& asked,
             SolveStatistics& s) {
     const PatchPool& patches = engine.patches();
@@ -142,7 +134,7 @@ Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options,
     if (stop.requested()) statistics.stopped_by = stop.interrupted() ? "interrupt" : "time limit";
     if (!statistics.converged && statistics.stopped_by.empty()) statistics.stopped_by = "iterations";
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // which tell what escapes
-    statistics.energy = balance(solution, stage);
+    statistics.energy = energy_balance(solution, stage);
     if (task_trace()) task_trace()->add_graph(engine.take_graph());
     statistics.seconds["reconstruct"] = phase.restart();
     statistics.seconds["total"] = watch.seconds();

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "exitance/cli/arguments.hpp"
+#include "exitance/methods/light_groups/light_groups.hpp"
+
+namespace exitance {
+
+/// Can --light-groups be obeyed together with what else is asked for?
+Result<void> check_light_groups(const SolveArguments& arguments);
+
+/// The light groups of a solution, where they are to be kept; its statistics tell their size and time. None, and a
+/// warning, where a stop came first.
+Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution& solution, Progress& progress,
+                                      const StopRequest& stop);
+
+}  // namespace exitance
