@@ -8,11 +8,12 @@ import {Viewpoint} from './camera';
 import {WhatIf} from './what_if';
 
 performance.mark('script');
-const asked_state = load_state(), asked_facts = asked_state.then(state => state.solving ? null : load_facts());
-asked_facts.catch(() => {});  // told below
+const asked_state = load_state(), asked_facts = load_facts();
+asked_facts.catch(() => {});  // told below; of a running solve there are none yet
 const canvas = by_id<HTMLCanvasElement>('picture'), place = by_id('view');
 const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
 renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shader encodes by itself, as `render` does
+size_picture();
 performance.mark('renderer');
 const chosen = new THREE.Group();
 const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
@@ -36,9 +37,13 @@ function draw(last: number): void {
     });
 }
 
-function resize(): void {
+function size_picture(): void {
     renderer.setPixelRatio(window.devicePixelRatio);
-    renderer.setSize(width(), height(), false);
+    renderer.setSize(Math.max(1, place.clientWidth), Math.max(1, place.clientHeight), false);
+}
+
+function resize(): void {
+    size_picture();
     show_panes();
     redraw();
 }
@@ -177,8 +182,7 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
                 view = new Viewpoint(facts, canvas, redraw);
                 view.controls.addEventListener('end', () => view.to_address());
                 performance.mark('viewpoint');
-                resize();
-                performance.mark('resized');
+                show_panes();
                 draw(performance.now());
             }
             show_facts();

@@ -73,11 +73,16 @@ void add_triangle(Part& part, const Scene& scene, const SixNodeMesh& mesh, std::
     part.add_face(six_nodes, scene, mesh.region[t], t, labels_of(shadow, orders));
 }
 
+/// Has an element of this solution's method one value?
+bool is_constant(const Solution& solution) {
+    return solution.statistics.basis == "constant" || solution.statistics.basis == "haar";
+}
+
 /// What the method itself knows of some leaves: their light at the corners, one value a leaf for a constant basis.
 std::vector<CornerValues> raw_values(const RadiosityFunction& light, const ElementFunction& f,
                                      std::span<const ElementId> leaves) {
     const Solution& solution = light.solution();
-    const bool constant = solution.statistics.basis == "constant";
+    const bool constant = is_constant(solution);
     const Spectrum share = light.exact_share();
     std::vector<ProbePoint> points;
     std::vector<CornerValues> out;
@@ -181,7 +186,7 @@ std::vector<Spectrum> viewer_raw_at(const RadiosityFunction& light, std::span<co
     const ElementFunction& f = function_of(solution, ViewerLayer::raw);
     const Locator locator(solution.scene);
     const ElementLocator elements(f.tree, solution.scene.regions().size());
-    const bool constant = solution.statistics.basis == "constant";
+    const bool constant = is_constant(solution);
     const std::vector<Light> direct = light.at(points, Component::direct);
     std::vector<Spectrum> out(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
