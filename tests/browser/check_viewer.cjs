@@ -253,6 +253,21 @@ async function check_sliders(page) {
     program.kill();
 }
 
+/** A solve that would take long is stopped, and what it has is saved and can be shown. */
+async function check_stop(page) {
+    const saved = path.join(folder, 'stopped.h5');
+    const {program, origin} = await start(scene, '--error', '0.0001', '--save', saved);
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.first', null, {timeout: 120000});
+    await page.click('#stop');
+    await page.waitForFunction('document.body.dataset.ended', null, {timeout: 120000});
+    await page.click('#save');
+    await page.waitForFunction(() => /saved/.test(document.getElementById('phase').textContent));
+    program.kill();
+    const told = JSON.parse(execFileSync(exitance, ['stats', saved, '--json']));
+    check(told.relative_error_estimate > 0.0001, `a stopped solve is saved with its error of ${(100 * told.relative_error_estimate).toPrecision(2)}%`);
+}
+
 async function check_scene(page) {
     const {program, origin} = await start(scene, '--error', '0.1', '--save', path.join(folder, 'saved.h5'));
     await page.goto(origin);
@@ -264,6 +279,7 @@ async function check_scene(page) {
     await page.waitForFunction(() => /saved/.test(document.getElementById('phase').textContent));
     check(fs.existsSync(path.join(folder, 'saved.h5')), 'its light is saved');
     program.kill();
+    await check_stop(page);
 }
 
 (async () => {

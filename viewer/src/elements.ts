@@ -159,7 +159,8 @@ export class Elements {
                 const m = this.facts.materials[materials[v]];
                 if (Math.max(...m.exitance) > 0) continue;
                 let sum = 0;
-                for (let c = 0; c < 3; ++c) sum += (radiosity ? m.reflectance[c] : 1) * E[3 * v + c] / 3;
+                const rho = this.shading.reflectances[materials[v]];
+                for (let c = 0; c < 3; ++c) sum += (radiosity ? rho[c] : 1) * E[3 * v + c] / 3;
                 values.push(sum);
             }
             if (values.length > 200000) break;
