@@ -268,6 +268,15 @@ async function check_stop(page) {
     check(told.relative_error_estimate > 0.0001, `a stopped solve is saved with its error of ${(100 * told.relative_error_estimate).toPrecision(2)}%`);
 }
 
+/** A shooting method tells who shoots. */
+async function check_shots(page) {
+    const {program, origin} = await start(scene, '--error', '0.02', '--method', 'progressive', '--save', path.join(folder, 'shot.h5'));
+    await page.goto(origin);
+    await page.waitForFunction(() => document.body.dataset.ended || Number(document.body.dataset.shooters) > 2, null, {timeout: 120000});
+    check(Number(await page.evaluate('document.body.dataset.shooters')) > 0, 'who shoots is outlined');
+    program.kill();
+}
+
 async function check_scene(page) {
     const {program, origin} = await start(scene, '--error', '0.1', '--save', path.join(folder, 'saved.h5'));
     await page.goto(origin);
@@ -280,6 +289,7 @@ async function check_scene(page) {
     check(fs.existsSync(path.join(folder, 'saved.h5')), 'its light is saved');
     program.kill();
     await check_stop(page);
+    await check_shots(page);
 }
 
 (async () => {

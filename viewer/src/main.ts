@@ -1,5 +1,5 @@
 import * as THREE from 'three';
-import {load_facts, load_line, load_point, load_state, post, type Facts} from './data';
+import {load_facts, load_line, load_point, load_state, post, type Facts, type Triple} from './data';
 import {order_colours} from './elements';
 import {by_id, draw_outlines, point_words, profile_csv, show_plot, type Profile} from './measure';
 import {Panes, type Arrangement, type Source} from './panes';
@@ -15,7 +15,8 @@ const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawi
 renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shader encodes by itself, as `render` does
 size_picture();
 performance.mark('renderer');
-const chosen = new THREE.Group();
+const chosen = new THREE.Group(), shooters = new THREE.Group(), marks = new THREE.Group();
+marks.add(chosen, shooters);
 const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
 let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint;
 let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '';
@@ -170,7 +171,7 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     performance.mark('facts');
     const old = panes;
     shading = new Shading(facts);
-    const fresh = new Panes(facts, shading, chosen, redraw);
+    const fresh = new Panes(facts, shading, marks, redraw);
     if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
     // What was there stays in sight until there is something new.
     await fresh.layers.delivered.load(fresh.change, () => {
@@ -207,7 +208,13 @@ function follow(): void {
     const events = new EventSource('/data/events');
     by_id('running').hidden = false;
     events.addEventListener('progress', event => {
-        const {phase, fraction} = JSON.parse((event as MessageEvent).data);
+        const {phase, fraction, shooter} = JSON.parse((event as MessageEvent).data) as {phase: string; fraction: number; shooter: Triple[]};
+        shooters.clear();
+        if (shooter.length > 2) {
+            draw_outlines(shooters, [shooter.map(p => new THREE.Vector3(...p))], 0xffd21a);
+            document.body.dataset.shooters = String(Number(document.body.dataset.shooters ?? 0) + 1);
+        }
+        redraw();
         by_id<HTMLProgressElement>('progress').value = fraction;
         by_id('phase').textContent = phase;
     });
@@ -221,6 +228,8 @@ function follow(): void {
         by_id('phase').textContent = JSON.parse((event as MessageEvent).data).message;
         by_id<HTMLProgressElement>('progress').value = 1;
         by_id('stop').setAttribute('disabled', '');
+        shooters.clear();
+        redraw();
         document.body.dataset.ended = '1';
         events.close();
     });
