@@ -44,6 +44,12 @@ export class Elements {
 
     constructor(private facts: Facts, private shading: Shading, readonly layer: Layer) { this.lines.visible = false; }
 
+    /** How much of it is there, in words; empty when all is. */
+    get progress(): string {
+        const all = this.facts.parts[this.layer];
+        return this.loaded.length === all ? '' : ` ${this.loaded.length}/${all}`;
+    }
+
     /** Once; further calls wait for the same. */
     async load(change: Change, changed: () => void): Promise<void> {
         if (this.loading && this.stale) { await this.refill(change); changed(); }

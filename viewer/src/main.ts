@@ -19,7 +19,7 @@ const chosen = new THREE.Group(), shooters = new THREE.Group(), marks = new THRE
 marks.add(chosen, shooters);
 const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
 let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint;
-let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '';
+let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '', told_panes = '';
 
 const redraw = () => { wanted = true; };
 const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, place.clientHeight);
@@ -27,6 +27,7 @@ const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, p
 function paint(): void {
     renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue('--sky').trim());
     panes.draw(renderer, view, width(), height(), box('mesh').checked);
+    if (panes.sources().map(s => panes.words(s)).join() !== told_panes) show_panes();
 }
 
 function draw(last: number): void {
@@ -84,17 +85,17 @@ function apply(): void {
     redraw();
 }
 
-const titles: Record<Source, string> = {raw: 'raw', delivered: 'delivered', exact: 'exact', method: 'reflected'};
-
 /** Names of the panes, and the dividers between them. */
 function show_panes(): void {
     if (!panes) return;
     const all = panes.panes(width()), split = panes.arrangement === 'split';
-    by_id('panes').replaceChildren(...(all.length === 1 ? [] : all.filter(p => p.right - p.left > 30).map(p => {
-        const name = Object.assign(document.createElement('span'), {textContent: titles[p.source]});
+    const named = all.filter(p => p.right - p.left > 30 && (all.length > 1 || !/^\w+$/.test(panes.words(p.source))));
+    told_panes = all.map(p => panes.words(p.source)).join();
+    by_id('panes').replaceChildren(...named.map(p => {
+        const name = Object.assign(document.createElement('span'), {textContent: panes.words(p.source)});
         name.style.left = `${p.left + 10}px`;
         return name;
-    })));
+    }));
     document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
         divider.hidden = !split;
         divider.style.left = `${panes.dividers[i] * width()}px`;
@@ -171,7 +172,7 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     performance.mark('facts');
     const old = panes;
     shading = new Shading(facts);
-    const fresh = new Panes(facts, shading, marks, redraw);
+    const fresh: Panes = new Panes(facts, shading, marks, redraw);
     if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
     // What was there stays in sight until there is something new.
     await fresh.layers.delivered.load(fresh.change, () => {
@@ -306,5 +307,5 @@ asked_state.then(async state => state.solving ? follow() : load(true, await aske
     .catch(error => { by_id('facts').textContent = String(error); });
 Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.uniforms.scale.value as number,
     size: () => [width(), height()], canvas: () => { paint(); return canvas.toDataURL(); },
-    whole: () => [shading.uniforms.light.value, shading.uniforms.rest.value].every(t => t && (t as THREE.DataTexture).image.width === Math.round(
+    whole: () => panes.words('exact') === 'exact' && [shading.uniforms.light.value, shading.uniforms.rest.value].every(t => t && (t as THREE.DataTexture).image.width === Math.round(
         panes.panes(width()).at(-1)!.view_width * renderer.getPixelRatio()))}});
