@@ -103,10 +103,119 @@ async function check_solution(page) {
     check(await page.isChecked('#mesh'), 'the keyboard shows the mesh');
     await page.keyboard.press('f');
     check(/^#camera=/.test(await page.evaluate('location.hash')), 'the camera stands in the address');
-    const unnamed = await page.evaluate(() => [...document.querySelectorAll('button, input, select, canvas, svg')]
-        .filter(e => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim())).length);
-    check(unnamed === 0, `${unnamed} controls without a name`);
+    await page.selectOption('#quantity', 'picture');
+    await page.keyboard.press('m');
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.ready');
+    await check_tools(page);
+    await check_access(page);
     check(foreign.length === 0, `${foreign.length} calls elsewhere`);
+    program.kill();
+}
+
+/** A line with its plot and its numbers; lines of equal light; a path that `render` takes. */
+async function check_tools(page) {
+    await page.focus('#picture');
+    const plain = await page.evaluate(() => exitance.canvas());
+    await page.keyboard.press('i');
+    const lines = await difference(page, plain, await page.evaluate(() => exitance.canvas()));
+    check(lines > 0.0005 && await page.isVisible('#legend') && /\d/.test(await page.textContent('#legend')),
+        `lines of equal light change ${(100 * lines).toFixed(2)}% of white, and have numbers`);
+    await page.keyboard.press('i');
+    await page.keyboard.press('l');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => /other end/.test(document.getElementById('point').textContent));
+    for (let i = 0; i < 3; ++i) await page.keyboard.press('ArrowUp');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => !document.getElementById('measured').hidden);
+    check(await page.locator('#plot path').count() === 3, 'a line is plotted for raw, delivered and exact light, by keyboard alone');
+    await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+    await page.click('#copy');
+    await page.waitForFunction(() => document.getElementById('point').textContent === 'copied');
+    const rows = (await page.evaluate(() => navigator.clipboard.readText())).trim().split('\n');
+    check(rows.length === 130 && rows[0].startsWith('s_m,x_m,y_m,z_m,exact'), `its ${rows.length - 1} points are copied as CSV`);
+    await page.click('#record');
+    await page.focus('#picture');
+    for (let i = 0; i < 8; ++i) { await page.keyboard.press('ArrowLeft'); await page.waitForTimeout(60); }
+    await page.click('#record');
+    await page.click('#replay');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save_path')]);
+    const walk = path.join(folder, 'path.csv');
+    await download.saveAs(walk);
+    const stations = fs.readFileSync(walk, 'utf8').trim().split('\n').length - 1;
+    execFileSync(exitance, ['render', solution, '-o', path.join(folder, 'walk.png'), '--path', walk, '--size', '32x20', '--samples', '1', '-q']);
+    check(stations >= 2 && fs.readdirSync(folder).filter(f => /^walk\.\d+\.png$/.test(f)).length === stations,
+        `a path of ${stations} cameras is recorded, saved, and rendered`);
+}
+
+/** Everything by keyboard, with names; text that stands out by 4.5 to 1 in light and dark. */
+async function check_access(page) {
+    const unnamed = await page.evaluate(() => [...document.querySelectorAll('button, input, select, canvas, svg:not([aria-hidden]), [role=separator]')]
+        .filter(e => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim())).map(e => e.id || e.tagName));
+    check(unnamed.length === 0, `controls without a name: ${unnamed.join() || 'none'}`);
+    await page.selectOption('#arrangement', 'split');
+    await page.evaluate(() => { document.activeElement.blur(); });
+    const wanted = await page.evaluate(() => [...document.querySelectorAll('button, input, select, summary, canvas, [role=separator]')]
+        .filter(e => e.checkVisibility() && !e.disabled).length);
+    const reached = new Set();
+    for (let i = 0; i < wanted + 3; ++i) {
+        await page.keyboard.press('Tab');
+        reached.add(await page.evaluate(() => { const e = document.activeElement; return e === document.body ? '' : e.id || e.getAttribute('aria-label') || e.tagName; }));
+    }
+    reached.delete('');
+    check(reached.size === wanted, `Tab reaches ${reached.size} of ${wanted} controls`);
+    await page.selectOption('#arrangement', 'one');
+    for (const colorScheme of ['light', 'dark']) {
+        await page.emulateMedia({colorScheme});
+        const worst = await page.evaluate(() => {
+            const rgb = c => { const m = c.match(/[\d.]+/g).map(Number); return m.length > 3 && m[3] === 0 ? null : m.slice(0, 3); };
+            const level = c => c.map(x => x / 255).map(x => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4)
+                .reduce((sum, x, i) => sum + [0.2126, 0.7152, 0.0722][i] * x, 0);
+            let low = [99, ''];
+            for (const e of document.querySelectorAll('aside *, #legend *, #panes *')) {
+                if (!e.checkVisibility() || ![...e.childNodes].some(n => n.nodeType === 3 && n.data.trim()) || e.closest(':disabled')) continue;
+                let back = null;
+                for (let p = e; p && !back; p = p.parentElement) back = rgb(getComputedStyle(p).backgroundColor);
+                const text = e.namespaceURI.endsWith('svg') ? getComputedStyle(e).fill : getComputedStyle(e).color;
+                const [a, b] = [level(rgb(text)), level(back ?? [255, 255, 255])].sort((x, y) => y - x);
+                const contrast = (a + 0.05) / (b + 0.05);
+                if (contrast < low[0]) low = [contrast, e.id || e.tagName];
+            }
+            return low;
+        });
+        check(worst[0] >= 4.5, `contrast of text in ${colorScheme}: ${worst[0].toFixed(1)} at least (${worst[1]})`);
+    }
+}
+
+/** A solution with a discontinuity mesh and one with links, of the scene. */
+async function check_layers(page) {
+    const meshed = path.join(folder, 'meshed.h5'), linked = path.join(folder, 'linked.h5');
+    execFileSync(exitance, ['solve', scene, '-o', meshed, '--method', 'discontinuity', '--error', '0.1', '-q']);
+    execFileSync(exitance, ['solve', scene, '-o', linked, '--keep-links', '--method', 'hierarchical', '--error', '0.1', '-q']);
+    let {program, origin} = await start(meshed);
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.ready');
+    await page.selectOption('#quantity', 'classes');
+    const [words, drawn] = await page.evaluate(() => [exitance.words(), exitance.size()]);
+    const picture = path.join(folder, 'classes.png');
+    execFileSync(exitance, ['render', meshed, '-o', picture, '--size', drawn.join('x'), '--camera', words, '--shadow-classes', '-q']);
+    const shown = await page.evaluate(() => exitance.canvas());
+    if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, 'classes.png'), Buffer.from(shown.split(',')[1], 'base64'));
+    // The key that `render` draws, and the sky, are the rest.
+    const apart = await difference(page, shown, png(picture));
+    check(apart < 0.08, `shadow classes differ from render by ${(100 * apart).toFixed(2)}% of white (8% allowed: its key, the sky)`);
+    await page.check('#mesh');
+    check(/umbra/.test(await page.textContent('#legend')) && /D1 slope/.test(await page.textContent('#legend')), 'classes and orders are in the legend');
+    program.kill();
+    ({program, origin} = await start(linked));
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.ready');
+    await page.focus('#picture');
+    const before = await page.evaluate(() => exitance.canvas());
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => / links/.test(document.getElementById('point').textContent));
+    const links = Number((await page.textContent('#point')).match(/(\d+) links/)[1]);
+    check(links > 0 && await difference(page, before, await page.evaluate(() => exitance.canvas())) > 0.001, `${links} linked elements are outlined`);
     program.kill();
 }
 
@@ -144,6 +253,30 @@ async function check_sliders(page) {
     program.kill();
 }
 
+/** A solve that would take long is stopped, and what it has is saved and can be shown. */
+async function check_stop(page) {
+    const saved = path.join(folder, 'stopped.h5');
+    const {program, origin} = await start(scene, '--error', '0.0001', '--save', saved);
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.first', null, {timeout: 120000});
+    await page.click('#stop');
+    await page.waitForFunction('document.body.dataset.ended', null, {timeout: 120000});
+    await page.click('#save');
+    await page.waitForFunction(() => /saved/.test(document.getElementById('phase').textContent));
+    program.kill();
+    const told = JSON.parse(execFileSync(exitance, ['stats', saved, '--json']));
+    check(told.relative_error_estimate > 0.0001, `a stopped solve is saved with its error of ${(100 * told.relative_error_estimate).toPrecision(2)}%`);
+}
+
+/** A shooting method tells who shoots. */
+async function check_shots(page) {
+    const {program, origin} = await start(scene, '--error', '0.02', '--method', 'progressive', '--save', path.join(folder, 'shot.h5'));
+    await page.goto(origin);
+    await page.waitForFunction(() => document.body.dataset.ended || Number(document.body.dataset.shooters) > 2, null, {timeout: 120000});
+    check(Number(await page.evaluate('document.body.dataset.shooters')) > 0, 'who shoots is outlined');
+    program.kill();
+}
+
 async function check_scene(page) {
     const {program, origin} = await start(scene, '--error', '0.1', '--save', path.join(folder, 'saved.h5'));
     await page.goto(origin);
@@ -155,6 +288,8 @@ async function check_scene(page) {
     await page.waitForFunction(() => /saved/.test(document.getElementById('phase').textContent));
     check(fs.existsSync(path.join(folder, 'saved.h5')), 'its light is saved');
     program.kill();
+    await check_stop(page);
+    await check_shots(page);
 }
 
 (async () => {
@@ -164,6 +299,7 @@ async function check_scene(page) {
     page.on('pageerror', error => check(false, 'page: ' + error));
     await check_solution(page);
     await check_sliders(page);
+    if (scene) await check_layers(page);
     if (scene) await check_scene(page);
     await browser.close();
     process.exit(failed > 0 ? 1 : 0);

@@ -69,9 +69,8 @@ struct ReadPart {
 
 TEST(ViewerData, APartHoldsAllElementsAndTheirLight) {
     const Solution solution = sample_solution();
-    const RadiosityFunction light(solution);
     ASSERT_EQ(viewer_part_count(solution, ViewerLayer::exported), 1u);
-    const std::string bytes = viewer_part(light, ViewerLayer::exported, 0);
+    const std::string bytes = viewer_part(solution, ViewerLayer::exported, 0);
     const ReadPart part(bytes);
     ASSERT_TRUE(part.whole);
     // The faces cover what the leaves cover.
@@ -90,7 +89,7 @@ TEST(ViewerData, APartHoldsAllElementsAndTheirLight) {
     for (const ElementId leaf : solution.interpolant.tree.leaves()) leaves += solution.interpolant.tree.area(leaf);
     EXPECT_NEAR(area, leaves, 1e-5 * leaves);
     // Light alone is the same light.
-    const std::string alone = viewer_part_light(light, ViewerLayer::exported, 0);
+    const std::string alone = viewer_part_light(solution, ViewerLayer::exported, 0);
     ASSERT_TRUE(alone.starts_with("EXL1"));
     EXPECT_EQ(alone.substr(8), bytes.substr(12 + 4 * part.positions.size(), 4 * part.light.size()));
 }
@@ -99,7 +98,7 @@ TEST(ViewerData, RawElementsOfAConstantBasisHaveOneValueWithDirectLightAtTheirCe
     Solution solution = sample_solution();
     solution.statistics.basis = "constant";
     const RadiosityFunction light(solution);
-    const ReadPart part(viewer_part(light, ViewerLayer::raw, 0));
+    const ReadPart part(viewer_part(solution, ViewerLayer::raw, 0, &light));
     ASSERT_TRUE(part.whole);
     std::size_t first = 0, checked = 0;
     double brightest = 0;
@@ -179,6 +178,9 @@ TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
     EXPECT_EQ(get("/data/scene", host + "Origin: http://example.org\r\n"), "HTTP/1.1 403");
     EXPECT_EQ(get("/data/scene", host + "Sec-Fetch-Site: cross-site\r\n"), "HTTP/1.1 403");
     EXPECT_EQ(get("/data/scene", "Host: example.org\r\nConnection: close\r\n"), "HTTP/1.1 403");
+    const Finished second = run_program({"view", folder / "s.h5", "--port", std::to_string(port)});
+    EXPECT_EQ(second.status, 1);
+    EXPECT_NE(second.err.find("is taken"), std::string::npos) << second.err;
     run.send(SIGINT);
     EXPECT_EQ(run.finish().status, 130);
 }

@@ -44,6 +44,12 @@ export class Elements {
 
     constructor(private facts: Facts, private shading: Shading, readonly layer: Layer) { this.lines.visible = false; }
 
+    /** How much of it is there, in words; empty when all is. */
+    get progress(): string {
+        const all = this.facts.parts[this.layer];
+        return this.loaded.length === all ? '' : ` ${this.loaded.length}/${all}`;
+    }
+
     /** Once; further calls wait for the same. */
     async load(change: Change, changed: () => void): Promise<void> {
         if (this.loading && this.stale) { await this.refill(change); changed(); }
@@ -159,7 +165,8 @@ export class Elements {
                 const m = this.facts.materials[materials[v]];
                 if (Math.max(...m.exitance) > 0) continue;
                 let sum = 0;
-                for (let c = 0; c < 3; ++c) sum += (radiosity ? m.reflectance[c] : 1) * E[3 * v + c] / 3;
+                const rho = this.shading.reflectances[materials[v]];
+                for (let c = 0; c < 3; ++c) sum += (radiosity ? rho[c] : 1) * E[3 * v + c] / 3;
                 values.push(sum);
             }
             if (values.length > 200000) break;

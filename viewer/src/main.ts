@@ -1,5 +1,5 @@
 import * as THREE from 'three';
-import {load_facts, load_line, load_point, load_state, post, type Facts} from './data';
+import {load_facts, load_line, load_point, load_state, post, type Facts, type Triple} from './data';
 import {order_colours} from './elements';
 import {by_id, draw_outlines, point_words, profile_csv, show_plot, type Profile} from './measure';
 import {Panes, type Arrangement, type Source} from './panes';
@@ -8,16 +8,18 @@ import {Viewpoint} from './camera';
 import {WhatIf} from './what_if';
 
 performance.mark('script');
-const asked_state = load_state(), asked_facts = asked_state.then(state => state.solving ? null : load_facts());
-asked_facts.catch(() => {});  // told below
+const asked_state = load_state(), asked_facts = load_facts();
+asked_facts.catch(() => {});  // told below; of a running solve there are none yet
 const canvas = by_id<HTMLCanvasElement>('picture'), place = by_id('view');
 const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
 renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shader encodes by itself, as `render` does
+size_picture();
 performance.mark('renderer');
-const chosen = new THREE.Group();
+const chosen = new THREE.Group(), shooters = new THREE.Group(), marks = new THREE.Group();
+marks.add(chosen, shooters);
 const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
 let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint;
-let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '';
+let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '', told_panes = '';
 
 const redraw = () => { wanted = true; };
 const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, place.clientHeight);
@@ -25,6 +27,7 @@ const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, p
 function paint(): void {
     renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue('--sky').trim());
     panes.draw(renderer, view, width(), height(), box('mesh').checked);
+    if (panes.sources().map(s => panes.words(s)).join() !== told_panes) show_panes();
 }
 
 function draw(last: number): void {
@@ -36,9 +39,13 @@ function draw(last: number): void {
     });
 }
 
-function resize(): void {
+function size_picture(): void {
     renderer.setPixelRatio(window.devicePixelRatio);
-    renderer.setSize(width(), height(), false);
+    renderer.setSize(Math.max(1, place.clientWidth), Math.max(1, place.clientHeight), false);
+}
+
+function resize(): void {
+    size_picture();
     show_panes();
     redraw();
 }
@@ -78,17 +85,17 @@ function apply(): void {
     redraw();
 }
 
-const titles: Record<Source, string> = {raw: 'raw', delivered: 'delivered', exact: 'exact', method: 'reflected'};
-
 /** Names of the panes, and the dividers between them. */
 function show_panes(): void {
     if (!panes) return;
     const all = panes.panes(width()), split = panes.arrangement === 'split';
-    by_id('panes').replaceChildren(...(all.length === 1 ? [] : all.filter(p => p.right - p.left > 30).map(p => {
-        const name = Object.assign(document.createElement('span'), {textContent: titles[p.source]});
+    const named = all.filter(p => p.right - p.left > 30 && (all.length > 1 || !/^\w+$/.test(panes.words(p.source))));
+    told_panes = all.map(p => panes.words(p.source)).join();
+    by_id('panes').replaceChildren(...named.map(p => {
+        const name = Object.assign(document.createElement('span'), {textContent: panes.words(p.source)});
         name.style.left = `${p.left + 10}px`;
         return name;
-    })));
+    }));
     document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
         divider.hidden = !split;
         divider.style.left = `${panes.dividers[i] * width()}px`;
@@ -165,7 +172,7 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     performance.mark('facts');
     const old = panes;
     shading = new Shading(facts);
-    const fresh = new Panes(facts, shading, chosen, redraw);
+    const fresh: Panes = new Panes(facts, shading, marks, redraw);
     if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
     // What was there stays in sight until there is something new.
     await fresh.layers.delivered.load(fresh.change, () => {
@@ -177,8 +184,7 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
                 view = new Viewpoint(facts, canvas, redraw);
                 view.controls.addEventListener('end', () => view.to_address());
                 performance.mark('viewpoint');
-                resize();
-                performance.mark('resized');
+                show_panes();
                 draw(performance.now());
             }
             show_facts();
@@ -203,7 +209,13 @@ function follow(): void {
     const events = new EventSource('/data/events');
     by_id('running').hidden = false;
     events.addEventListener('progress', event => {
-        const {phase, fraction} = JSON.parse((event as MessageEvent).data);
+        const {phase, fraction, shooter} = JSON.parse((event as MessageEvent).data) as {phase: string; fraction: number; shooter: Triple[]};
+        shooters.clear();
+        if (shooter.length > 2) {
+            draw_outlines(shooters, [shooter.map(p => new THREE.Vector3(...p))], 0xffd21a);
+            document.body.dataset.shooters = String(Number(document.body.dataset.shooters ?? 0) + 1);
+        }
+        redraw();
         by_id<HTMLProgressElement>('progress').value = fraction;
         by_id('phase').textContent = phase;
     });
@@ -217,6 +229,8 @@ function follow(): void {
         by_id('phase').textContent = JSON.parse((event as MessageEvent).data).message;
         by_id<HTMLProgressElement>('progress').value = 1;
         by_id('stop').setAttribute('disabled', '');
+        shooters.clear();
+        redraw();
         document.body.dataset.ended = '1';
         events.close();
     });
@@ -293,5 +307,5 @@ asked_state.then(async state => state.solving ? follow() : load(true, await aske
     .catch(error => { by_id('facts').textContent = String(error); });
 Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.uniforms.scale.value as number,
     size: () => [width(), height()], canvas: () => { paint(); return canvas.toDataURL(); },
-    whole: () => [shading.uniforms.light.value, shading.uniforms.rest.value].every(t => t && (t as THREE.DataTexture).image.width === Math.round(
+    whole: () => panes.words('exact') === 'exact' && [shading.uniforms.light.value, shading.uniforms.rest.value].every(t => t && (t as THREE.DataTexture).image.width === Math.round(
         panes.panes(width()).at(-1)!.view_width * renderer.getPixelRatio()))}});

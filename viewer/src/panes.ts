@@ -30,8 +30,8 @@ export class Panes {
     private frame_of = '';
     private moved = 0;
     private last_words = '';
-    /** Called when an exact picture has come: of how many rays a pixel. */
-    exact_came: (full: boolean) => void = () => {};
+    /** What there is of the exact picture of this camera. */
+    private exact: 'nothing' | 'coarse' | 'full' = 'nothing';
 
     constructor(facts: Facts, private shading: Shading, extra: THREE.Object3D, private changed: () => void) {
         this.layers = {delivered: new Elements(facts, shading, 'exported'), raw: new Elements(facts, shading, 'raw'),
@@ -46,6 +46,13 @@ export class Panes {
     /** The sources in sight. */
     sources(): Source[] { return this.arrangement === 'one' ? [this.source] : order; }
 
+    /** What is shown of a source, in words. */
+    words(source: Source): string {
+        const titles = {raw: 'raw', delivered: 'delivered', exact: 'exact', method: 'reflected'};
+        if (source !== 'exact') return titles[source] + this.layers[source].progress;
+        return titles.exact + {nothing: ': is being drawn', coarse: ': coarse', full: ''}[this.exact];
+    }
+
     /** Loads what is in sight, the delivered light always: rays of the pointer meet it. */
     async load(): Promise<void> {
         await this.layers.delivered.load(this.change, this.changed);
@@ -56,6 +63,7 @@ export class Panes {
     async refill(change: Change): Promise<void> {
         this.change = change;
         this.frame_of = '';
+        this.exact = 'nothing';
         await this.layers.delivered.refill(change);
         for (const source of ['raw', 'method'] as const) {
             if (this.sources().includes(source)) await this.layers[source].refill(change);
@@ -112,10 +120,10 @@ export class Panes {
             if (this.last_words.split('x')[0] !== words.split('x')[0]) this.drop_frame();
             this.last_words = words, this.moved = now;
         }
-        const full = now - this.moved >= still;
+        const rests = now - this.moved >= still, full = rests && this.exact !== 'nothing';
         const scale = full ? ratio : ratio / coarse, size = [width, height].map(x => Math.max(1, Math.round(x * scale)));
         const wanted = words + size + this.change.dim + this.change.paint;
-        if (!full) window.setTimeout(this.changed, still);
+        if (!rests) window.setTimeout(this.changed, still);
         if (wanted === this.frame_of || (!full && !this.newest.idle)) return;
         this.frame_of = wanted;
         const camera = view.numbers(), change = this.change;
@@ -130,12 +138,13 @@ export class Panes {
             this.drop_frame();
             this.shading.uniforms.light.value = texture(frame.light, THREE.RGBAFormat);
             this.shading.uniforms.rest.value = texture(frame.rest, THREE.RGFormat);
-            this.exact_came(full);
+            this.exact = full ? 'full' : 'coarse';
             this.changed();
         });
     }
 
     private drop_frame(): void {
+        this.exact = 'nothing';
         for (const name of ['light', 'rest']) {
             (this.shading.uniforms[name].value as THREE.Texture | null)?.dispose();
             this.shading.uniforms[name].value = null;

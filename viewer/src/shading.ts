@@ -151,6 +151,8 @@ export class Shading {
     private shown: Shown = 'picture';
     private isolux = false;
     steps: number[] = [0, 1];
+    /** By material, as painted. */
+    reflectances: Triple[] = [];
 
     constructor(private facts: Facts) {
         this.table = float_table(Math.max(1, facts.materials.length), 2);
@@ -197,6 +199,7 @@ export class Shading {
 
     /** Reflectances in the first row, exitances in the second. */
     paint(reflectances: Triple[]): void {
+        this.reflectances = reflectances;
         const n = this.table.image.width, data = this.table.image.data as unknown as Float32Array;
         this.facts.materials.forEach((m, i) => {
             for (let c = 0; c < 3; ++c) data[4 * i + c] = reflectances[i][c], data[4 * (n + i) + c] = m.exitance[c];

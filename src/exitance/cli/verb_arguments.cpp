@@ -180,10 +180,9 @@ void declare(CLI::App& app, ExportArguments& arguments) {
 
 void declare(CLI::App& app, RenderArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option(
-           "-o,--output", arguments.output,
-           "Picture to write: .png, or linear radiance as .exr or .hdr; with --path also a video, by ffmpeg: .mp4, "
-           ".mkv, .webm, .gif")
+    app.add_option("-o,--output", arguments.output,
+                   "Picture to write: .png, linear radiance as .exr or .hdr; with --path a video by ffmpeg: .mp4, "
+                   ".mkv, .webm, .gif")
         ->type_name("FILE")
         ->required();
     app.add_option_function<std::string>(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <deque>
+#include <future>
 #include <thread>
 
 #include "exitance/cli/json_output.hpp"
@@ -18,22 +19,33 @@
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reconstruct/pictures/automatic_camera.hpp"
-#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
 
 using Parameters = ViewServer::Parameters;
 
-/// A solution that the page looks at, and what is made of it once.
-struct Viewed {
+/// A solution that the page looks at, and what is made of it once. What points, lines and exact pictures need is made
+/// while the first elements are on their way.
+class Viewed {
+  public:
     explicit Viewed(Solution found)
         : solution(std::move(found)),
-          light(solution),
-          camera(automatic_camera(solution, light.stage().tracer, Projection::perspective, {})) {}
-    Solution solution;
-    RadiosityFunction light;
-    Camera camera;
+          light_(std::async(std::launch::async, [this] { return std::make_unique<const RadiosityFunction>(solution); })
+                     .share()),
+          camera(automatic_camera(solution, RayTracer(solution.scene), Projection::perspective, {})) {}
+    Viewed(const Viewed&) = delete;
+    Viewed& operator=(const Viewed&) = delete;
+
+    const RadiosityFunction& light() const { return *light_.get(); }
+
+    const Solution solution;
+
+  private:
+    std::shared_future<std::unique_ptr<const RadiosityFunction>> light_;
+
+  public:
+    const Camera camera;
 };
 
 /// All solutions that were there, the newest last: requests under way go on with theirs.
@@ -71,7 +83,7 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                    return ViewAnswer{200, "application/json", light_groups_json(changes.groups(), v.solution.scene)};
                }));
     server.get("/data/scene", with_light([](const Viewed& v, const Parameters&) {
-                   return ViewAnswer{200, "application/json", viewer_scene_json(v.light, v.camera)};
+                   return ViewAnswer{200, "application/json", viewer_scene_json(v.solution, v.camera)};
                }));
     server.get("/data/part", with_light([](const Viewed& v, const Parameters& parameters) {
                    const std::string name = view_text(parameters, "layer");
@@ -81,13 +93,14 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                        (*part)[0] >= static_cast<double>(viewer_part_count(v.solution, layer)))
                        return view_misunderstood;
                    const auto number = static_cast<std::size_t>((*part)[0]);
+                   const RadiosityFunction* light = layer == ViewerLayer::raw ? &v.light() : nullptr;
                    return ViewAnswer{200, "application/octet-stream",
                                      view_text(parameters, "only") == "light"
-                                         ? viewer_part_light(v.light, layer, number)
-                                         : viewer_part(v.light, layer, number)};
+                                         ? viewer_part_light(v.solution, layer, number, light)
+                                         : viewer_part(v.solution, layer, number, light)};
                }));
     server.get("/data/frame", with_light([&frames](const Viewed& v, const Parameters& parameters) {
-                   return frames.take(v.light, parameters);
+                   return frames.take(v.light(), parameters);
                }));
     server.get("/data/point", with_light([](const Viewed& v, const Parameters& parameters) {
                    const auto at = view_numbers(parameters, "at", 6);
@@ -96,7 +109,7 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                    const Vec3 normal{n[3], n[4], n[5]};
                    if (!(norm(normal) > 0)) return view_misunderstood;
                    return ViewAnswer{200, "application/json",
-                                     viewer_point_json(v.light, {{n[0], n[1], n[2]}, normalized(normal)})};
+                                     viewer_point_json(v.light(), {{n[0], n[1], n[2]}, normalized(normal)})};
                }));
     server.get("/data/line", with_light([](const Viewed& v, const Parameters& parameters) {
                    constexpr std::size_t points = 129;
@@ -107,7 +120,7 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                    if (!(norm(normal) > 0)) return view_misunderstood;
                    return ViewAnswer{
                        200, "application/json",
-                       viewer_line_json(v.light, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, normalized(normal), points)};
+                       viewer_line_json(v.light(), {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, normalized(normal), points)};
                }));
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace exitance {
 
@@ -49,13 +50,24 @@ void ViewProgress::advance(double fraction, std::string_view detail) {
     tell(fraction, detail);
 }
 
-void ViewProgress::tell(double fraction, std::string_view detail) {
+void ViewProgress::shot(std::span<const Point> outline, double unshot) {
+    constexpr double every = 0.1, first_decades = 3;  // seconds; powers of ten until little is left
+    if (since_shot_.seconds() < every) return;
+    since_shot_.restart();
+    const double done = unshot > 0 ? -std::log10(unshot) / first_decades : 1;
+    tell(done, fmt::format("{:.2g}% of the light unshot", 100 * unshot), outline);
+}
+
+void ViewProgress::tell(double fraction, std::string_view detail, std::span<const Point> shooter) {
     since_.restart();
     std::string words = fmt::format("{}{}{}{}", round_, phase_, detail.empty() ? "" : ", ", detail);
     std::replace_if(
         words.begin(), words.end(), [](char c) { return c == '"' || c == '\\' || (c >= 0 && c < ' '); }, '\'');
-    events_.tell_progress(
-        fmt::format(R"({{"phase": "{}", "fraction": {:.3f}}})", words, std::clamp(fraction, 0.0, 1.0)));
+    std::string outline;
+    for (const Point& p : shooter)
+        outline += fmt::format("{}[{:.7g}, {:.7g}, {:.7g}]", outline.empty() ? "" : ", ", p.x, p.y, p.z);
+    events_.tell_progress(fmt::format(R"({{"phase": "{}", "fraction": {:.3f}, "shooter": [{}]}})", words,
+                                      std::clamp(fraction, 0.0, 1.0), outline));
 }
 
 }  // namespace exitance

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/solve/shot_progress.hpp"
 
 namespace exitance {
 
@@ -30,23 +30,24 @@ class ViewEvents {
 };
 
 /// Sends on what a solve tells, to pages.
-class ViewProgress : public Progress {
+class ViewProgress : public ShotProgress {
   public:
     ViewProgress(ViewEvents& events, Progress& inner) : events_(events), inner_(inner) {}
     void phase(std::string_view name) override;
     void advance(double fraction, std::string_view detail) override;
+    void shot(std::span<const Point> outline, double unshot) override;
     void note(std::string_view message) override { inner_.note(message); }
     void warn(std::string_view message) override { inner_.warn(message); }
     /// What is asked for in this round, before the phase's name.
     void set_round(std::string words) { round_ = std::move(words); }
 
   private:
-    void tell(double fraction, std::string_view detail);
+    void tell(double fraction, std::string_view detail, std::span<const Point> shooter = {});
 
     ViewEvents& events_;
     Progress& inner_;
     std::string round_, phase_;
-    Stopwatch since_;
+    Stopwatch since_, since_shot_;
 };
 
 }  // namespace exitance

@@ -55,6 +55,11 @@ struct ViewServer::Implementation {
 ViewServer::ViewServer() : implementation_(std::make_unique<Implementation>()) {
     httplib::Server& server = implementation_->server;
     server.set_payload_max_length(1 << 16);
+    // In place of cpp-httplib's choice, by which two servers share a port and answer by turns.
+    server.set_socket_options([](socket_t socket) {
+        const int yes = 1;
+        ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
     server.set_default_headers({{"X-Content-Type-Options", "nosniff"},
                                 {"Cache-Control", "no-store"},
                                 {"Referrer-Policy", "no-referrer"},

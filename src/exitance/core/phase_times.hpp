@@ -21,6 +21,7 @@ class PhaseTimes : public Progress {
     void advance(double fraction, std::string_view detail = {}) override { progress_.advance(fraction, detail); }
     void note(std::string_view message) override { progress_.note(message); }
     void warn(std::string_view message) override { progress_.warn(message); }
+    Progress& inner() { return progress_; }
 
     /// Seconds in phases of these names so far; the present one counts when the next one begins, or after close().
     double seconds(std::initializer_list<const char*> names) const {

@@ -3,6 +3,7 @@
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
+#include "exitance/solve/shot_progress.hpp"
 
 namespace exitance {
 namespace {
@@ -54,12 +55,16 @@ std::span<const float> ShootingSetup::column(std::size_t patch) {
 SolveReport ShootingSetup::run() {
     const ShootingProblem problem{patch_of, area, patch_area, reflectance,
                                   [&](std::size_t patch) { return column(patch); }};
+    ShotProgress* const watcher = find_shot_progress(input_.progress);
+    std::function<void(std::size_t, double)> shot;
+    if (watcher) shot = [&](std::size_t patch, double left) { watcher->shot(tree.outline(patches[patch]), left); };
     const ShootingOptions options{.overshooting = input_.options.overshooting,
                                   .unshot = input_.knobs.residual,
                                   .reference = first_power_,
                                   .max_shots = input_.options.max_iterations.value_or(1'000'000),
                                   .request = &input_.stop,
-                                  .progress = &input_.progress};
+                                  .progress = &input_.progress,
+                                  .shot = shot};
     const SolveReport report = shoot(problem, options, unshot, irradiance);
     // What a patch has sent is all that it has: its reflected (and emitted) light, less what it has yet to send.
     for (std::size_t p = 0; p < patches.size(); ++p) sent[p] = Spectrum();

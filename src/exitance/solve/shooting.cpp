@@ -148,6 +148,7 @@ SolveReport shoot(const ShootingProblem& problem, const ShootingOptions& options
         if (report.converged || report.interrupted || report.iterations >= options.max_shots) break;
 
         const std::size_t j = patches.unshot().patch;
+        if (options.shot) options.shot(j, report.residual);
         const Spectrum sent = patches.send(j);
         patches.receive(problem.column(j), sent);
         ++report.iterations;

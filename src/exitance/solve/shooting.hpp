@@ -25,6 +25,8 @@ struct ShootingOptions {
     std::size_t max_shots = 1'000'000;
     const StopRequest* request = nullptr;
     Progress* progress = nullptr;
+    /// Told of every shot beforehand: the patch, and the share of power that is unshot.
+    std::function<void(std::size_t patch, double unshot)> shot = {};
 };
 
 /// Progressive refinement [Cohen88], which is Southwell's relaxation [Gortler94]: again and again the patch with the

@@ -48,8 +48,7 @@ json links_at(const Solution& solution, RegionId region, const Point& x) {
 
 }  // namespace
 
-std::string viewer_scene_json(const RadiosityFunction& light, const Camera& camera) {
-    const Solution& solution = light.solution();
+std::string viewer_scene_json(const Solution& solution, const Camera& camera) {
     json materials = json::array();
     for (const Material& m : solution.scene.materials())
         materials.push_back(

@@ -10,7 +10,7 @@ namespace exitance {
 /// Facts about a solution as JSON: `file, photometric, surfaces, materials [{name, reflectance, exitance}], exposure,
 /// camera {eye, target, fov}, box, parts {exported, method, raw}, basis, groups [name], shadow_classes,
 /// discontinuities, error, links`.
-std::string viewer_scene_json(const RadiosityFunction& light, const Camera& camera);
+std::string viewer_scene_json(const Solution& solution, const Camera& camera);
 
 /// Light at a point of a surface as JSON: `irradiance, radiosity, direct, indirect` (W/m^2 a band), `surface, line,
 /// group, material, element, links [{outline, form_factor}]`, of the latter the strongest `most_links`.

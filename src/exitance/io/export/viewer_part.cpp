@@ -5,6 +5,7 @@
 #include <bit>
 #include <vector>
 
+#include "exitance/core/check.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 
 namespace exitance {
@@ -73,11 +74,16 @@ void add_triangle(Part& part, const Scene& scene, const SixNodeMesh& mesh, std::
     part.add_face(six_nodes, scene, mesh.region[t], t, labels_of(shadow, orders));
 }
 
+/// Has an element of this solution's method one value?
+bool is_constant(const Solution& solution) {
+    return solution.statistics.basis == "constant" || solution.statistics.basis == "haar";
+}
+
 /// What the method itself knows of some leaves: their light at the corners, one value a leaf for a constant basis.
 std::vector<CornerValues> raw_values(const RadiosityFunction& light, const ElementFunction& f,
                                      std::span<const ElementId> leaves) {
     const Solution& solution = light.solution();
-    const bool constant = solution.statistics.basis == "constant";
+    const bool constant = is_constant(solution);
     const Spectrum share = light.exact_share();
     std::vector<ProbePoint> points;
     std::vector<CornerValues> out;
@@ -117,8 +123,8 @@ std::vector<CornerValues> raw_values(const RadiosityFunction& light, const Eleme
     return out;
 }
 
-Part make_part(const RadiosityFunction& light, ViewerLayer layer, std::size_t number) {
-    const Solution& solution = light.solution();
+Part make_part(const Solution& solution, ViewerLayer layer, std::size_t number, const RadiosityFunction* light) {
+    EXI_CHECK(light || layer != ViewerLayer::raw);
     Part part;
     const std::size_t first = number * viewer_part_leaves;
     if (has_triangles(solution, layer)) {
@@ -133,7 +139,7 @@ Part make_part(const RadiosityFunction& light, ViewerLayer layer, std::size_t nu
     const std::span<const ElementId> leaves =
         std::span(all).subspan(begin, std::min(all.size() - begin, viewer_part_leaves));
     std::vector<CornerValues> values(leaves.size());
-    if (layer == ViewerLayer::raw) values = raw_values(light, f, leaves);
+    if (layer == ViewerLayer::raw) values = raw_values(*light, f, leaves);
     for (std::size_t i = 0; i < leaves.size(); ++i) add_leaf(part, solution.scene, f, leaves[i], values[i]);
     return part;
 }
@@ -158,8 +164,9 @@ std::size_t viewer_part_count(const Solution& solution, ViewerLayer layer) {
     return std::max<std::size_t>(1, (leaves + viewer_part_leaves - 1) / viewer_part_leaves);
 }
 
-std::string viewer_part(const RadiosityFunction& light, ViewerLayer layer, std::size_t number) {
-    const Part part = make_part(light, layer, number);
+std::string viewer_part(const Solution& solution, ViewerLayer layer, std::size_t number,
+                        const RadiosityFunction* light) {
+    const Part part = make_part(solution, layer, number, light);
     const std::vector<std::uint32_t> counts{static_cast<std::uint32_t>(part.positions.size() / 3),
                                             static_cast<std::uint32_t>(part.faces.size() / 5)};
     std::string out = "EXV2";
@@ -168,8 +175,9 @@ std::string viewer_part(const RadiosityFunction& light, ViewerLayer layer, std::
     return out;
 }
 
-std::string viewer_part_light(const RadiosityFunction& light, ViewerLayer layer, std::size_t number) {
-    const Part part = make_part(light, layer, number);
+std::string viewer_part_light(const Solution& solution, ViewerLayer layer, std::size_t number,
+                              const RadiosityFunction* light) {
+    const Part part = make_part(solution, layer, number, light);
     std::string out = "EXL1";
     append(out, std::vector<std::uint32_t>{static_cast<std::uint32_t>(part.irradiance.size() / 3)});
     append(out, part.irradiance);
@@ -181,7 +189,7 @@ std::vector<Spectrum> viewer_raw_at(const RadiosityFunction& light, std::span<co
     const ElementFunction& f = function_of(solution, ViewerLayer::raw);
     const Locator locator(solution.scene);
     const ElementLocator elements(f.tree, solution.scene.regions().size());
-    const bool constant = solution.statistics.basis == "constant";
+    const bool constant = is_constant(solution);
     const std::vector<Light> direct = light.at(points, Component::direct);
     std::vector<Spectrum> out(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -36,11 +36,13 @@ std::size_t viewer_part_count(const Solution& solution, ViewerLayer layer);
 ///
 /// Raw elements of a constant basis have one value each. There E = E_ind + (1 - c) E_dir with E_dir at the element's
 /// centre; of another basis E_dir is taken at the corners, a thousandth of the way to the centre inside them.
-/// O(leaves of the solution); raw: and exact direct light at each.
-std::string viewer_part(const RadiosityFunction& light, ViewerLayer layer, std::size_t part);
+/// `light` is needed for raw elements alone. O(leaves of the solution); raw: and exact direct light at each.
+std::string viewer_part(const Solution& solution, ViewerLayer layer, std::size_t part,
+                        const RadiosityFunction* light = nullptr);
 
 /// The same without what does not change with the light: the letters EXL1, the count v, irradiance (3 v float32).
-std::string viewer_part_light(const RadiosityFunction& light, ViewerLayer layer, std::size_t part);
+std::string viewer_part_light(const Solution& solution, ViewerLayer layer, std::size_t part,
+                              const RadiosityFunction* light = nullptr);
 
 /// Irradiance of raw elements at points; 0 off the surfaces.
 std::vector<Spectrum> viewer_raw_at(const RadiosityFunction& light, std::span<const ProbePoint> points);

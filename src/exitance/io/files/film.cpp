@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <vector>
 
 #include "exitance/io/files/child_process.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -28,12 +29,24 @@ Result<void> write_film(const std::string& folder, double rate, const std::strin
     const fs::path target = fs::absolute(path);
     const fs::path part =
         target.parent_path() / fmt::format(".{}.part{}", target.stem().string(), target.extension().string());
-    // Most players want even sizes, and colours at half the resolution.
-    const ProgramRun run =
-        run_program({"ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", fmt::format("{:g}", rate), "-i",
-                     folder + "/frame.%04d.png", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt",
-                     ending(path) == ".gif" ? "rgb8" : "yuv420p", part.string()},
-                    "", std::numeric_limits<double>::infinity(), StopRequest());
+    // Most players want even sizes, and colours at half the resolution; a GIF has a palette.
+    std::vector<std::string> words{"ffmpeg",
+                                   "-nostdin",
+                                   "-y",
+                                   "-loglevel",
+                                   "error",
+                                   "-framerate",
+                                   fmt::format("{:g}", rate),
+                                   "-i",
+                                   folder + "/frame.%04d.png",
+                                   "-vf"};
+    const std::string even = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
+    if (ending(path) == ".gif")
+        words.push_back(even + ",split[a][b];[a]palettegen[p];[b][p]paletteuse");
+    else
+        words.insert(words.end(), {even, "-pix_fmt", "yuv420p"});
+    words.push_back(part.string());
+    const ProgramRun run = run_program(words, "", std::numeric_limits<double>::infinity(), StopRequest());
     std::error_code failed;
     if (run.status == 0) fs::rename(part, target, failed);
     if (run.status == 0 && !failed) return {};
