@@ -31,9 +31,10 @@ class Viewed {
   public:
     explicit Viewed(Solution found)
         : solution(std::move(found)),
-          light_(std::async(std::launch::async, [this] { return std::make_unique<const RadiosityFunction>(solution); })
-                     .share()),
+          light_(begun()),
           camera(automatic_camera(solution, RayTracer(solution.scene), Projection::perspective, {})) {}
+    /// Seen as another one is.
+    Viewed(Solution found, const Camera& as_before) : solution(std::move(found)), light_(begun()), camera(as_before) {}
     Viewed(const Viewed&) = delete;
     Viewed& operator=(const Viewed&) = delete;
 
@@ -42,6 +43,9 @@ class Viewed {
     const Solution solution;
 
   private:
+    std::shared_future<std::unique_ptr<const RadiosityFunction>> begun() const {
+        return std::async(std::launch::async, [this] { return std::make_unique<const RadiosityFunction>(solution); });
+    }
     std::shared_future<std::unique_ptr<const RadiosityFunction>> light_;
 
   public:

@@ -37,7 +37,7 @@ class ViewChanges {
         Solution solution = base.solution;
         if (const Result<void> changed = change_light(solution, groups, *change); !changed) return changed.error();
         if (groups_.node.empty()) groups_.node = std::move(groups.node), groups_.node_count = groups.node_count;
-        auto viewed = std::make_shared<const Viewed>(std::move(solution));
+        auto viewed = std::make_shared<const Viewed>(std::move(solution), base.camera);
         kept_.emplace_back(words, viewed);
         if (kept_.size() > most_kept) kept_.erase(kept_.begin());
         return std::shared_ptr<const Viewed>(viewed);
