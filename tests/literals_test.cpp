@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders whose numbers decide work.
-const std::vector<std::string> deciding{"links", "methods", "reconstruct"};
+const std::vector<std::string> deciding{"accuracy", "links", "methods", "reconstruct"};
 
 /// Parts of these that no solve goes through: what a picture, a light map, a standard or a study asks for stands with
 /// it; and methods whose numbers are those of their papers.
