@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/transport/distributed.hpp"
 
@@ -42,11 +43,12 @@ Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, con
                             used / 0x1p20, now / 0x1p20, limit / 0x1p20),
                 "--memory-limit", "raise the limit"};
         before = now;
-        knobs.solve_mesh.edge *= 1.5;
-        knobs.gather_mesh.edge *= 1.5;
+        knobs.solve_mesh.edge *= calibrated::coarsening;
+        knobs.gather_mesh.edge *= calibrated::coarsening;
         knobs.solve_mesh.grading_levels = std::max(0, knobs.solve_mesh.grading_levels - 1);
         knobs.gather_mesh.grading_levels = std::max(0, knobs.gather_mesh.grading_levels - 1);
-        knobs.solve_rays.average = std::max(16.0, knobs.solve_rays.average / 1.5);
+        knobs.solve_rays.average =
+            std::max(calibrated::least_coarsened_rays, knobs.solve_rays.average / calibrated::coarsening);
     }
     return unchanged;
 }
