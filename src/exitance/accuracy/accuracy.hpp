@@ -8,10 +8,10 @@ namespace exitance {
 
 /// The inner knobs of a solve, derived from the error asked for; a knob that the user set stands as it is.
 struct Knobs {
-    MeshSize solve_mesh;            ///< Of the elements that the method solves on.
-    RayBudget solve_rays;           ///< Rays of a row, where rows are cast.
-    double direct_tolerance = 0.1;  ///< Misfit of the projected direct light, relative to its mean.
-    double residual = 1e-3;         ///< Of the discrete system.
+    MeshSize solve_mesh;          ///< Of the elements that the method solves on.
+    RayBudget solve_rays;         ///< Rays of a row, where rows are cast.
+    double direct_tolerance = 0;  ///< Misfit of the projected direct light, relative to its mean.
+    double residual = 0;          ///< Of the discrete system.
     std::size_t max_iterations = 1000;
     double link_error = 0;                 ///< Of all links together, relative to the mean reflected radiosity.
     MeshSize gather_mesh;                  ///< Of the elements that indirect light is gathered on, to begin with.

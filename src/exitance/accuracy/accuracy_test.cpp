@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace exitance {
 namespace {
 
@@ -13,6 +15,43 @@ const Knobs knobs = [] {
     k.gather_tolerance = k.gather_noise = 0.01;
     return k;
 }();
+
+/// Knobs move by little where the error does, and all in the direction of more work as less is asked for.
+void expect_continuous(bool sums) {
+    std::vector<Piece> pieces;
+    for (int i = 0; i < 12; ++i)
+        pieces.push_back(
+            {RegionId(0), Patch({0, 0, 0}, {1 + 0.37 * i, 0, 0}, {0, 3 - 0.17 * i, 0}, Patch::Shape::parallelogram)});
+    const auto of = [&](double error) {
+        const Knobs plain = knobs_for_error(error, pieces, {});
+        return sums ? knobs_for_sums(plain, error, pieces, {}) : plain;
+    };
+    constexpr double step = 0.99;
+    Knobs last = of(0.1);
+    for (double error = step * 0.1; error > 0.002; error *= step) {
+        const Knobs now = of(error);
+        const auto near = [&](double before, double after, double factor) {
+            EXPECT_LT(std::abs(std::log(after / before)), std::log(factor)) << "at " << error;
+        };
+        near(last.solve_mesh.edge, now.solve_mesh.edge, 1.2);
+        near(last.gather_mesh.edge, now.gather_mesh.edge, sums || (error > 0.0295 && error < 0.0305) ? 2.5 : 1.2);
+        near(last.solve_rays.average, now.solve_rays.average, 1.05);
+        near(last.direct_tolerance, now.direct_tolerance, 1.05);
+        near(last.gather_noise, now.gather_noise, 1.05);
+        EXPECT_LE(now.solve_mesh.grading_levels, last.solve_mesh.grading_levels + 1) << "at " << error;
+        EXPECT_GE(now.solve_mesh.grading_levels, last.solve_mesh.grading_levels) << "at " << error;
+        EXPECT_GE(now.gather_mesh.grading_levels, last.gather_mesh.grading_levels) << "at " << error;
+        last = now;
+    }
+}
+
+TEST(Knobs, AreContinuousInTheErrorAskedFor) {
+    expect_continuous(false);
+}
+
+TEST(Knobs, OfSumsAreContinuousInTheErrorAskedFor) {
+    expect_continuous(true);
+}
 
 TEST(Tightened, LeavesTheMethodAloneWhereTheLocalPassIsToBlame) {
     const Tightened finer = tightened(knobs, {.method = 0.003, .noise = 0.01, .interpolation = 0.03}, 0.02, {});

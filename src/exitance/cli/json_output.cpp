@@ -140,6 +140,7 @@ std::string statistics_json(const Solution& solution) {
 
 std::string forecast_json(const Forecast& f) {
     const Json json{
+        {"method", f.method},
         {"surfaces", f.surfaces},
         {"regions", f.regions},
         {"emitters", f.emitters},

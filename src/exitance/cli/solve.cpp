@@ -81,8 +81,9 @@ void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>
 
 /// exitance solve SCENE --dry-run
 ExitCode show_forecast(const SolveArguments& arguments, const Scene& scene, Terminal& terminal) {
-    const Forecast forecast = forecast_solve(scene, arguments.options);
-    terminal.print(arguments.json ? forecast_json(forecast) : summary(forecast));
+    const Result<Forecast> forecast = forecast_solve(scene, arguments.options);
+    if (!forecast) return terminal.fail(forecast.error());
+    terminal.print(arguments.json ? forecast_json(*forecast) : summary(*forecast));
     return ExitCode::done;
 }
 

@@ -91,11 +91,12 @@ std::string summary(const SolveStatistics& s) {
 std::string summary(const Forecast& f) {
     return fmt::format(
         "surfaces   {} ({} after joining coplanar neighbours), {} emitters\n"
-        "elements   about {} to solve on, {} to gather on, before they follow the light\n"
+        "method     {}\n"
+        "elements   about {} to solve on, {} to gather on\n"
         "rays       about {:.2g}\n"
         "time       about {:.2g} s, within a factor of five\n"
         "memory     about {}\n",
-        f.surfaces, f.regions, f.emitters, f.solve_elements, f.gather_elements, f.rays, f.seconds,
+        f.surfaces, f.regions, f.emitters, f.method, f.solve_elements, f.gather_elements, f.rays, f.seconds,
         bytes(static_cast<std::size_t>(f.memory_bytes)));
 }
 

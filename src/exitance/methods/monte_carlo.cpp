@@ -95,6 +95,7 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
         for (const Spectrum& p : power) first_power += mean(p);
         for (left = first_power; left > knobs.residual * first_power && sweeps < runs * knobs.max_iterations;
              ++sweeps) {
+            // Given by the generator: a block of its points at least.
             const double rays = std::max(64.0, knobs.solve_rays.average * static_cast<double>(n) * left / first_power);
             const std::vector<Spectrum> arrived = shooter.shoot(power, rays);
             left = 0;

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/phase_times.hpp"
-#include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
@@ -16,8 +16,8 @@
 #include "exitance/methods/light/smoothing.hpp"
 #include "exitance/methods/lines/solve_by_lines.hpp"
 #include "exitance/methods/methods.hpp"
-#include "exitance/methods/plan/choice.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
+#include "exitance/methods/plan/plan.hpp"
 #include "exitance/methods/solve_archive.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/methods/tasks/solve_by_tasks.hpp"
@@ -28,7 +28,6 @@
 #include "exitance/reconstruct/interpolant.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/quick_function.hpp"
-#include "exitance/reconstruct/unlit_sides.hpp"
 #include "exitance/solve/direct_share.hpp"
 #include "exitance/transport/distributed.hpp"
 
@@ -45,49 +44,15 @@ class Solver {
     Solver(const Scene& scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
            CheckpointStore* checkpoints)
         : progress_(progress), stop_(stop), checkpoints_(checkpoints), solution_{.scene = scene}, stage_(scene) {
-        const auto [options, why, is_second] = choose_method(stage_, asked);
-        options_ = options;
-        may_become_linear_ = asked.method == Method::automatic && options.method == Method::matrix;
-        const MethodEntry& method = entry_of(options.method);
-        const std::string chosen_for = fmt::format("method {}: {}", name_in(method_names, method.id), why);
-        if (is_second) warn(chosen_for);
-        if (!is_second && !why.empty()) progress.note(chosen_for);
-        if (asked.method != Method::automatic && asked.method != method.id)
-            warn(fmt::format("--bounces is counted by the method matrix, which solves in place of {}",
-                             name_in(method_names, asked.method)));
-        solution_.bounces = options.bounces;
-        statistics().method = name_in(method_names, method.id);
-        const bool chosen =
-            options.basis && (method.id == Method::wavelet || (method.id == Method::matrix && options.bounces < 0));
-        statistics().basis = chosen ? name_in(basis_names, *options.basis) : method.basis;
-        statistics().threads = threads();
-        statistics().schedule = name_in(schedule_names, schedule());
-        statistics().surfaces = scene.surfaces().size();
-        const bool sharp = method.id == Method::discontinuity && options.bounces < 0;
-        has_links_ = method.id == Method::hierarchical || method.id == Method::wavelet || sharp;
-        if (!options.importance.empty() && !has_links_)
-            warn(fmt::format("--importance steers links, of which the method {} has none", statistics().method));
-        if (options.oracle != LinkOracle::transport && !has_links_)
-            warn(fmt::format("--oracle judges links, of which the method {} has none", statistics().method));
-        if (has_links_ && options.clusters == false && links_outgrow_memory(stage_.pieces.size(), options)) {
-            warn(fmt::format("links between all pairs of {} polygons would outgrow --memory-limit: clusters are used",
-                             stage_.pieces.size()));
-            options_.clusters = true;
-        }
-        statistics().converged = true;
-        solution_.indirect = dark(stage_);
+        survey(stage_, asked, stop);
         // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
         // another run may go on: its light is not to depend on how long this one had.
-        constexpr double coarse = 0.08;
-        constexpr double near = 30;  // seconds
-        const bool deadline = seconds_left(stop) < near && !checkpoints_;
-        const double error = deadline ? std::max(coarse, options.error_target()) : options.error_target();
-        stage_.leave_out(find_unlit_sides(stage_, options.seed, stop));
-        const std::vector<Piece> lit = stage_.lit_pieces();
-        stage_.rooms = find_light_rooms(stage_, options.seed, stop);
-        knobs_ = knobs_for_error(error, lit, options);
-        sums_ = ElementGather::suits(stage_);
-        if (sums_) knobs_ = knobs_for_sums(knobs_, error, lit, options);
+        plan_ = make_plan(stage_, asked, seconds_left(stop) < calibrated::near_deadline && !checkpoints_);
+        for (const std::string& notice : plan_.notices) warn(notice);
+        if (!plan_.why.empty())
+            progress.note(fmt::format("method {}: {}", name_in(method_names, options_.method), plan_.why));
+        record_plan();
+        solution_.indirect = dark(stage_);
     }
 
     Result<Solution> run() {
@@ -121,13 +86,26 @@ class Solver {
     /// below this share of the demand.
     static double margin(std::size_t points) {
         const double first = static_cast<double>(CertificateOptions().points);
-        return 1 - 0.18 * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
+        return 1 - calibrated::estimate_margin * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
     }
 
     /// What comes next within an attempt.
     enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide };
 
     SolveStatistics& statistics() { return solution_.statistics; }
+
+    void record_plan() {
+        const MethodEntry& method = entry_of(options_.method);
+        solution_.bounces = options_.bounces;
+        statistics().method = name_in(method_names, method.id);
+        const bool chosen =
+            options_.basis && (method.id == Method::wavelet || (method.id == Method::matrix && options_.bounces < 0));
+        statistics().basis = chosen ? name_in(basis_names, *options_.basis) : method.basis;
+        statistics().threads = threads();
+        statistics().schedule = name_in(schedule_names, schedule());
+        statistics().surfaces = solution_.scene.surfaces().size();
+        statistics().converged = true;
+    }
 
     /// All that the steps to come depend on; `phase` is the state within a step, or empty.
     template <class Archive>
@@ -205,8 +183,7 @@ class Solver {
             if (light_->limited_by_memory) stop_early("memory limit");
             if (statistics().stopped_by == "memory limit") return;
             if (attempt_ == most_attempts) return stop_early("iterations");
-            constexpr double aim = 0.7;
-            const Tightened finer = tightened(knobs_, error_parts(), aim * *demand, options_);
+            const Tightened finer = tightened(knobs_, error_parts(), calibrated::attempt_aim * *demand, options_);
             // One that cannot end in time would only be thrown away.
             if (as_first(seconds_left(stop_) < watch.seconds() * finer.work)) return stop_early("time limit");
             progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}",
@@ -225,9 +202,7 @@ class Solver {
     /// Finer constants need a number of elements and rays that grows with the square of the precision; linear functions
     /// on the elements there are have a third of their error for three times the rays. So constants are for one
     /// attempt.
-    bool may_become_linear() const {
-        return may_become_linear_ && !becomes_linear_ && !options_.basis && options_.bounces < 0 && !sums_;
-    }
+    bool may_become_linear() const { return plan_.may_become_linear && !becomes_linear_; }
     void become_linear(const Knobs& before) {
         becomes_linear_ = true;
         knobs_.solve_mesh = before.solve_mesh, knobs_.direct_tolerance = before.direct_tolerance;
@@ -345,8 +320,7 @@ class Solver {
                 solution_.direct_in_elements = light_->holds_direct;
                 record_method(stage_, *light_, has_links_, statistics());
             }
-            constexpr double roughly = 0.1;
-            certify_solution({.error = roughly});
+            certify_solution({.error = calibrated::interrupted_error});
             return false;
         }
         solution_.indirect = std::move(indirect);
@@ -412,7 +386,7 @@ class Solver {
         const Spectrum c = solution_.direct_share;
         const Spectrum direct_weight = light_->holds_direct ? Spectrum() : Spectrum(1.0) - c;
         const DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
-        SummedLight summed{.delivered = {}, .gathered = gathered, .share = 0.05 * options.error};
+        SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
         if (sums_) {
             for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
                 summed.delivered.emplace_back(stage_, part);
@@ -506,7 +480,9 @@ class Solver {
             InterpolantReport report;
             solution_.interpolant = make_interpolant(
                 stage_, direct_, solution_.indirect, solution_.direct_share,
-                {.tolerance = options_.error_interpolant.value_or(2.5 * options_.error_target()) * scale,
+                {.tolerance =
+                     options_.error_interpolant.value_or(calibrated::interpolant_error * options_.error_target()) *
+                     scale,
                  .light_in = light_in_},
                 report, stop_);
             const double own = scale > 0 ? report.error / scale : 0;
@@ -522,15 +498,15 @@ class Solver {
         statistics().seconds["reconstruct"] += watch.seconds() - mesh_seconds_;
     }
 
-    SolveOptions options_;  ///< As asked for, with the method that was chosen.
+    Plan plan_;
+    SolveOptions& options_ = plan_.options;  ///< As asked for, with the method that was chosen.
+    Knobs& knobs_ = plan_.knobs;             ///< Of this attempt.
+    const bool &has_links_ = plan_.has_links, &sums_ = plan_.sums;
     Progress& progress_;
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
-    bool has_links_ = false;
-    bool sums_ = false;  ///< Is light summed over elements rather than found by rays?
     Solution solution_;
     Stage stage_;
-    Knobs knobs_;
     DirectProjection direct_;
     std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
     std::optional<LocalPass> local_pass_;
@@ -539,9 +515,9 @@ class Solver {
     Certificate certificate_;
     int attempt_ = 1;
     Step step_ = Step::project;
-    bool fresh_ = true;                                        ///< Does the method find new light in this attempt?
-    bool may_become_linear_ = false, becomes_linear_ = false;  ///< What the method `matrix` takes for granted.
-    Spectrum share_;                                           ///< c of that light, see find_direct_share.
+    bool fresh_ = true;             ///< Does the method find new light in this attempt?
+    bool becomes_linear_ = false;   ///< What the method `matrix` takes for granted.
+    Spectrum share_;                ///< c of that light, see find_direct_share.
     std::vector<double> light_in_;  ///< Of every room by the mean light; empty where all is one room.
     std::string resumed_phase_;
     double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/methods/shooting_setup.hpp"
 
@@ -18,7 +19,7 @@ double steepest_step(const ShootingSetup& setup, const ElementLocator& locator, 
     const Point centre = patch.centre();
     for (int i = 0; i < patch.corner_count(); ++i) {
         const Point middle = 0.5 * (patch.corner(i) + patch.corner((i + 1) % patch.corner_count()));
-        const Point across = centre + 1.25 * (middle - centre);
+        const Point across = centre + 1.25 * (middle - centre);  // given by geometry: within any neighbour
         const std::uint32_t neighbour = setup.numbering.number[locator.find(setup.tree.region(e), across).element];
         steepest = std::max(steepest, std::abs(light(leaf) - light(neighbour)));
     }
@@ -36,7 +37,8 @@ GlobalLight solve_substructuring(const MethodInput& input) {
     constexpr int sweeps = 3;
     input.progress.phase("mesh");
     MeshSize coarse = input.knobs.solve_mesh;
-    if (!input.options.mesh_size) coarse = {1.5 * coarse.edge, std::max(0, coarse.grading_levels - 1)};
+    if (!input.options.mesh_size)
+        coarse = {calibrated::patch_edge * coarse.edge, std::max(0, coarse.grading_levels - 1)};
     const DirectProjection direct =
         project_direct_light(input.stage, {.mesh = coarse, .tolerance = 2 * input.knobs.direct_tolerance}, input.stop);
     ShootingSetup setup(input, direct);
@@ -47,7 +49,7 @@ GlobalLight solve_substructuring(const MethodInput& input) {
     for (std::size_t p = 0; p < setup.patches.size(); ++p)
         mean_light += setup.patch_area[p] * mean(setup.sent[p]) / input.stage.area;
     const double threshold = 8 * input.options.error_target() * mean_light;
-    const double least_area = input.options.min_area.value_or(1e-5 * input.stage.area);
+    const double least_area = input.options.min_area.value_or(calibrated::least_patch_element * input.stage.area);
     for (int sweep = 0; sweep < sweeps && !input.stop.requested(); ++sweep) {
         input.progress.phase("refine");
         const ElementLocator locator(setup.tree, input.stage.scene.regions().size());

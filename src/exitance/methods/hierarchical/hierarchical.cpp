@@ -4,11 +4,11 @@
 
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/methods/hierarchical/hand_over.hpp"
 #include "exitance/methods/hierarchical/link_rounds.hpp"
 #include "exitance/methods/hierarchical/linked_by_rays.hpp"
 #include "exitance/methods/hierarchical/ray_correction.hpp"
-#include "exitance/methods/plan/choice.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/transport/open_share.hpp"
 
@@ -41,7 +41,7 @@ bool links_deliver(const Hierarchy& h) {
     const MethodInput& input = h.input;
     if (input.options.smoothing == false) return true;
     if (!h.is_polynomial) return false;
-    const bool sums = ElementGather::suits(input.stage) && input.options.error_target() > sums_reach;
+    const bool sums = ElementGather::suits(input.stage) && input.options.error_target() > calibrated::sums_reach;
     if (sums && !input.options.epsilon) return false;
     const LeafNumbering numbering(h.light.tree);
     const ElementLocator locator(h.light.tree, input.stage.scene.regions().size());

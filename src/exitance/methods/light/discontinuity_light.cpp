@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/mesh/element_locator.hpp"
@@ -23,6 +24,7 @@ std::vector<SecondarySource> secondary_sources(const Stage& stage, const Solutio
             const Material& material = stage.scene.material(piece.region);
             const Normal& n = stage.scene.regions()[piece.region].plane.n;
             for (std::size_t k = 0; k < places; ++k) {
+                // Given by the rule of four places.
                 constexpr double at[places][2] = {{0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}};
                 const Point p = piece.patch.at(uniform_in_shape(piece.patch.shape, at[k][0], at[k][1]));
                 if (stage.occluders.is_covered(p, n, piece.region)) continue;
@@ -61,8 +63,7 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     DiscontinuityOptions ask{.error = options.error_interpolant.value_or(options.error_target()),
                              .direct_weight = Spectrum(1.0) - solution.direct_share,
                              .seed = options.seed};
-    constexpr double largest = 5.0 / 3;  // times the RMS, of the largest value: 0.5% where 0.3% is asked for
-    ask.largest_error = largest * ask.error;
+    ask.largest_error = calibrated::largest_dm_error * ask.error;
     if (options.bounces != 0)
         ask.indirect = [&](RegionId r, const Point& p) { return solution.indirect.at(locator.find(r, p)); };
     const DiscontinuityChoice& choice = options.discontinuity;

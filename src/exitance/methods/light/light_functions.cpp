@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/transport/open_share.hpp"
@@ -214,7 +215,6 @@ double rms_standard_error(const Stage& stage, const GlobalLight& light) {
 }
 
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) {
-    constexpr double black = 1e-3;  // beside the brightest room: so dark a room may be off by as much of that one
     const double mean_light = light.mean_reflected(stage.area);
     if (stage.rooms.count() == 0 || mean_light <= 0) return {};
     std::vector<double> out(stage.rooms.count());
@@ -224,7 +224,7 @@ std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) 
         out[room] += light.tree.area(e) * mean(light.reflected[i]) / (stage.rooms.area(room) * mean_light);
     }
     const double brightest = *std::max_element(out.begin(), out.end());
-    for (double& value : out) value = std::max(value, black * brightest);
+    for (double& value : out) value = std::max(value, calibrated::dark_room * brightest);
     return out;
 }
 

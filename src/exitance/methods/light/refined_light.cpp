@@ -1,6 +1,7 @@
 #include "exitance/methods/light/refined_light.hpp"
 
 #include "exitance/basis/element_rule.hpp"
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
@@ -51,7 +52,7 @@ std::vector<ElementFunction> refined_light(const Stage& stage, const GlobalLight
     std::vector<Spectrum> e = r;
     solve_radiosity(
         {F, leaf_reflectances(stage.scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},
-        Relaxation::gmres, e, {.residual = 0.02, .max_iterations = 200});
+        Relaxation::gmres, e, {.residual = calibrated::refined_residual, .max_iterations = 200});
     ElementFunction& b = out.front();
     for (ElementId leaf : b.tree.leaves()) {
         const Point x = b.tree.patch(leaf).at(b.tree.centre(leaf));

@@ -38,6 +38,7 @@ class Surroundings {
         for (std::size_t i = 0; i < n; ++i) {
             const Neighbour &p = neighbours_[i], &q = neighbours_[(i + 1) % n];
             const double det = cross(p.offset, q.offset);
+            // Given by geometry: neighbours in nearly one direction tell no slope.
             if (det * det < 0.01 * dot(p.offset, p.offset) * dot(q.offset, q.offset)) continue;
             const Spectrum dp = p.value - value_, dq = q.value - value_;
             const Slope plane{(q.offset.y / det) * dp - (p.offset.y / det) * dq,
@@ -57,9 +58,9 @@ class Surroundings {
     };
 
     void add_neighbour(const ElementLocator& locator, const Point& border) {
-        const Point across = middle_ + 1.25 * (border - middle_);
+        const Point across = middle_ + 1.25 * (border - middle_);  // given by geometry: within any neighbour
         const ElementTree::Place place = locator.find(tree_.region(element_), across);
-        const double near = 1e-6 * norm(border - middle_);
+        const double near = 1e-6 * norm(border - middle_);  // given by rounding
         if (place.element == element_ || norm(tree_.patch(place.element).at(place.uv) - across) > near) {
             walls_.push_back(2.0 * offset(border));
             return;

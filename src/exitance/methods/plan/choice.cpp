@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/transport/distributed.hpp"
 
@@ -22,13 +23,13 @@ MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
     if (options.method == Method::wavelet && !options.basis) out.options.basis = BasisKind::multiwavelet2;
     if (options.method != Method::automatic) return out;
     if (!options.importance.empty()) return choose(Method::hierarchical, "refines for the points that are looked at");
-    constexpr double sharp = 0.01;  // below it, shadows by elements that do not follow them are many elements
-    if (options.error_interpolant && *options.error_interpolant <= sharp && !ElementGather::suits(stage))
+    if (options.error_interpolant && *options.error_interpolant <= calibrated::sharp_interpolant &&
+        !ElementGather::suits(stage))
         return choose(Method::discontinuity,
                       fmt::format("{:.3g}% asked of what is exported, past shadows", 100 * *options.error_interpolant));
     // Rays need R^(-4/3), links of order 3 about R^(-1/3): in a tube of reflectance 0.7, 20 against 6 s at 0.1%. Above
     // that the sums over elements which follow `matrix` are as fast, and better beside edges.
-    const bool is_fine = options.error_demand().value_or(1) <= sums_reach;
+    const bool is_fine = options.error_demand().value_or(1) <= calibrated::sums_reach;
     if (is_fine && !options.basis && ElementGather::suits(stage)) {
         out.options.basis = BasisKind::multiwavelet3;
         return choose(Method::wavelet, fmt::format("few polygons with nothing between them, {:.3g}% asked for",

@@ -7,10 +7,6 @@
 
 namespace exitance {
 
-/// Down to this error, relative RMS, sums over elements (ElementGather) find light where they suit as soon as links of
-/// polynomials do, and better beside edges.
-constexpr double sums_reach = 0.00125;
-
 /// The options with the method that solves in place of `auto`, its basis, and why that.
 struct MethodChoice {
     SolveOptions options;

@@ -1,27 +1,44 @@
 #include "exitance/methods/plan/forecast.hpp"
 
-#include "exitance/accuracy/accuracy.hpp"
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/progress.hpp"
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/methods/plan/memory_plan.hpp"
+#include "exitance/methods/plan/plan.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"
+#include "exitance/reconstruct/error/certificate.hpp"
 #include "exitance/reconstruct/gather.hpp"
+#include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
 namespace {
 
-// Measured on rooms of 17 to 650 polygons at 1% to 5%: how much the light adds to what the first mesh suggests.
-constexpr double gathers_an_element = 75;  ///< Places, the noise's second round, cuts, and the certificate.
-constexpr double lights_an_element = 20;   ///< Nodes of the projection and of the exported mesh, and cuts.
-constexpr double bytes_an_element = 1500;
+// Ratios measured by `solve --dry-run` and `solve` on tube, cornell, complex, office, clutter and chair at 3%
+// (docs/figures.md, E.3).
+constexpr double gathered_by_solved = 1.2;  ///< Elements that are gathered on, by leaves that are solved on.
+constexpr double straight_by_curved = 1.7;  ///< Leaves delivered by elements of second degree.
+constexpr double element_rays = 2.6;     ///< Rays of an element, by those of a place: the rule's sums have less noise.
+constexpr double shooting_share = 0.48;  ///< Of all pairs of elements: those whose form factor shooting asks for.
+constexpr double refined_patches = 5;    ///< Elements of substructuring by its patches.
+constexpr double random_sweeps = 1.9;    ///< Light sent in random directions by light reflected first.
+constexpr double network_rays = 4.5e5;   ///< Of growing cells, which learn from so many samples.
+constexpr unsigned shooting_samples = 16;
+constexpr double shooting_memory = 0x1p30;  ///< Bytes of columns that shooting keeps.
+constexpr double lights_an_element = 20;    ///< Nodes of the projection and of the exported mesh, and cuts.
+constexpr unsigned pilot_rays = 64;
+constexpr std::size_t pilot_points = 512;
 
-/// Leaves of a mesh; counted where that is quick.
-std::size_t count_elements(const Stage& stage, MeshSize size) {
-    const std::size_t predicted = predict_elements(stage.pieces, size.edge);
-    constexpr std::size_t quick = 100'000;
-    constexpr std::size_t strips = 2;  // about what grading towards edges adds
-    return predicted > quick ? strips * predicted : stage.make_elements(size).leaves().size();
-}
+/// What a few gathers over the light that is reflected first tell.
+struct Pilot {
+    double rays = 0;            ///< Of a place, until their noise is what is allowed.
+    double gather_seconds = 0;  ///< Wall time of a ray, all threads at work,
+    double light_seconds = 0;   ///< and of direct light at a point.
+};
 
 /// Wall seconds of one call, all threads at work.
 template <class Work>
@@ -31,48 +48,123 @@ double seconds_each(std::size_t count, const Work& work) {
     return watch.seconds() / static_cast<double>(count);
 }
 
-}  // namespace
-
-Forecast forecast_solve(const Scene& scene, const SolveOptions& options) {
-    constexpr std::size_t samples = 512;
-    constexpr unsigned rays = 64;
-    const Stage stage(scene);
-    const Knobs knobs = knobs_for_error(options.error_target(), stage.pieces, options);
-
-    Forecast out{.surfaces = scene.surfaces().size(),
-                 .regions = scene.regions().size(),
-                 .emitters = scene.emitters().size() + scene.lights().size()};
-    out.solve_elements = count_elements(stage, knobs.solve_mesh);
-    out.gather_elements = count_elements(stage, knobs.gather_mesh);
-
-    const std::vector<ProbePoint> points = points_uniform_in_area(scene, samples, options.seed);
-    const Locator locator(scene);
-    const auto region_of = [&](const ProbePoint& p) {
-        const SurfaceId s = locator.find(p.x, p.n);
-        return s.is_none() ? RegionId() : scene.surfaces()[s].region;
-    };
-    const double gather = seconds_each(samples, [&](std::size_t first, std::size_t last) {
-        GatherWorkspace workspace;
-        for (std::size_t i = first; i < last; ++i)
-            gather_reflected(
-                stage, points[i].x, points[i].n, region_of(points[i]), rays, i,
-                [](RegionId, const Point&) { return Spectrum(1); }, workspace);
-    });
-    const double light = seconds_each(samples, [&](std::size_t first, std::size_t last) {
+Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct) {
+    const std::vector<ProbePoint> points = points_uniform_in_area(stage.scene, pilot_points, plan.options.seed);
+    const Locator locator(stage.scene);
+    const ElementLocator elements(direct.tree, stage.scene.regions().size());
+    std::vector<RegionId> region(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (const SurfaceId s = locator.find(points[i].x, points[i].n); !s.is_none())
+            region[i] = stage.scene.surfaces()[s].region;
+    const auto reflectance = [&](RegionId r) { return stage.scene.material(r).reflectance; };
+    const auto reflected = [&](RegionId r, const Point& p) { return reflectance(r) * direct.at(elements.find(r, p)); };
+    Pilot out;
+    std::vector<double> noise(points.size()), light(points.size());
+    out.gather_seconds = seconds_each(points.size(),
+                                      [&](std::size_t first, std::size_t last) {
+                                          GatherWorkspace workspace;
+                                          for (std::size_t i = first; i < last; ++i) {
+                                              const Gathered g =
+                                                  gather_reflected(stage, points[i].x, points[i].n, region[i],
+                                                                   pilot_rays, i, reflected, workspace);
+                                              if (region[i].is_none()) continue;
+                                              const Spectrum rho = reflectance(region[i]);
+                                              noise[i] = std::sqrt(mean(rho * rho * g.quarters));
+                                              light[i] = mean(reflected(region[i], points[i].x) + rho * g.irradiance);
+                                          }
+                                      }) /
+                         pilot_rays;
+    out.light_seconds = seconds_each(points.size(), [&](std::size_t first, std::size_t last) {
         ClusteredLight::Workspace workspace;
         for (std::size_t i = first; i < last; ++i)
-            stage.clustered.at(points[i].x, points[i].n, region_of(points[i]), {.relative = options.error_target()},
+            stage.clustered.at(points[i].x, points[i].n, region[i], {.relative = plan.options.error_target()},
                                workspace);
     });
+    double mean_light = 0;
+    for (const double l : light) mean_light += l / static_cast<double>(points.size());
+    const Knobs& k = plan.knobs;
+    for (const double n : noise) {
+        // The error of scrambled points falls like n^-3/4; four freedoms are fitted to nine places.
+        const double wanted =
+            mean_light > 0 ? pilot_rays * std::pow(2.0 / 3 * n / (k.gather_noise * mean_light), 4.0 / 3) : 0;
+        out.rays +=
+            std::clamp(wanted, static_cast<double>(k.gather_rays.least), static_cast<double>(k.gather_rays.most)) /
+            static_cast<double>(points.size());
+    }
+    return out;
+}
 
-    const bool indirect = options.bounces != 0 && stage.has_indirect_light();
-    const double solve_rays = static_cast<double>(out.solve_elements) * knobs.solve_rays.average;
-    const double gather_rays =
-        static_cast<double>(out.gather_elements) * gathers_an_element * knobs.gather_rays.average;
-    out.rays = indirect ? solve_rays + gather_rays : 0;
-    out.seconds = out.rays * gather / rays + static_cast<double>(out.solve_elements) * lights_an_element * light;
-    out.memory_bytes = static_cast<double>(peak_memory_bytes()) + 4 * solve_rays +
-                       bytes_an_element * static_cast<double>(out.solve_elements + out.gather_elements);
+/// Rays of the method itself, on so many elements.
+double method_rays(const Plan& plan, double elements) {
+    const SolveOptions& o = plan.options;
+    const double rows = elements * plan.knobs.solve_rays.average;
+    const double samples = static_cast<double>(o.visibility_samples.value_or(shooting_samples));
+    switch (o.method) {
+        case Method::progressive:
+            return shooting_share * elements * elements * samples;
+        case Method::substructuring:
+            return shooting_share * elements * elements / refined_patches * samples;
+        case Method::monte_carlo:
+            return 8 * random_sweeps * rows;
+        case Method::hierarchical:
+        case Method::discontinuity:
+            return 0.5 * rows;
+        case Method::growing_cells:
+            return network_rays;
+        default:
+            return rows;
+    }
+}
+
+/// Two gathers at every point of the certificate, and rows of few rays.
+double certificate_rays(const Plan& plan, double elements, double gathered, double rays_an_element) {
+    const double rows = 12 * elements;
+    if (plan.sums) return rows;
+    const double points = static_cast<double>(CertificateOptions::points_for(static_cast<std::size_t>(gathered)));
+    return rows + 2 * points * std::max(16.0, 0.2 * rays_an_element);
+}
+
+}  // namespace
+
+Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options) {
+    const StopRequest never;
+    Stage stage(scene);
+    survey(stage, options, never);
+    Plan plan = make_plan(stage, options, false);
+    if (options.memory_limit_bytes)
+        if (const Result<bool> fits = fit_into_memory(plan.knobs, stage.pieces, plan.options); !fits)
+            return fits.error();
+    const bool patches = plan.options.method == Method::substructuring;
+    MeshSize mesh = plan.knobs.solve_mesh;
+    if (patches && !options.mesh_size)
+        mesh = {calibrated::patch_edge * mesh.edge, std::max(0, mesh.grading_levels - 1)};
+    const DirectProjection direct = project_direct_light(stage,
+                                                         {.mesh = mesh,
+                                                          .tolerance = (patches ? 2 : 1) * plan.knobs.direct_tolerance,
+                                                          .least_area = options.min_area,
+                                                          .seed = options.seed},
+                                                         never);
+
+    Forecast out{.method = name_in(method_names, plan.options.method),
+                 .surfaces = scene.surfaces().size(),
+                 .regions = scene.regions().size(),
+                 .emitters = scene.emitters().size() + scene.lights().size()};
+    const double solved = (patches ? refined_patches : 1) * static_cast<double>(direct.tree.leaves().size());
+    const bool indirect = plan.options.bounces != 0 && stage.has_indirect_light();
+    const double gathered = indirect ? gathered_by_solved * solved / (patches ? 2 : 1) : 0;
+    const double leaves = plan.knobs.gather_curved ? straight_by_curved * gathered : gathered;
+    const Pilot pilot = look(stage, plan, direct);
+    const double rays_an_element = plan.sums ? 0 : element_rays * pilot.rays;
+    out.solve_elements = static_cast<std::size_t>(solved), out.gather_elements = static_cast<std::size_t>(leaves);
+    if (indirect)
+        out.rays = method_rays(plan, solved) + gathered * rays_an_element +
+                   certificate_rays(plan, solved, gathered, rays_an_element);
+    out.seconds = out.rays * pilot.gather_seconds + solved * lights_an_element * pilot.light_seconds;
+    const bool shoots = plan.options.method == Method::progressive || patches;
+    const double columns =
+        shoots ? std::min(shooting_memory, 4 * shooting_share * solved * solved / (patches ? refined_patches : 1))
+               : 4 * solved * plan.knobs.solve_rays.average;
+    out.memory_bytes = static_cast<double>(peak_memory_bytes()) + columns + bytes_a_leaf * (solved + leaves);
     return out;
 }
 

@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
 
-/// Bytes of an element, once for every vector and tree that it stands in, refinements and grading included; measured on
-/// rooms of 10^2 to 10^5 polygons and rounded up.
-constexpr double bytes_per_element = 6000;
+/// Leaves of an element that is predicted, refinements and grading included; on rooms of 10^2 to 10^5 polygons, rounded
+/// up.
+constexpr double leaves_an_element = 4;
 
 double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
     const auto elements = static_cast<double>(predict_elements(pieces, knobs.solve_mesh.edge) +
@@ -23,7 +24,7 @@ double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, con
                                                                                    : 0;
     const double entries =
         words_a_pair > 0 ? words_a_pair * elements * elements : 4 * elements * knobs.solve_rays.average;
-    return bytes_per_element * elements + 4 * entries;
+    return bytes_a_leaf * leaves_an_element * elements + 4 * entries;
 }
 
 }  // namespace
@@ -42,11 +43,12 @@ Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, con
                             used / 0x1p20, now / 0x1p20, limit / 0x1p20),
                 "--memory-limit", "raise the limit"};
         before = now;
-        knobs.solve_mesh.edge *= 1.5;
-        knobs.gather_mesh.edge *= 1.5;
+        knobs.solve_mesh.edge *= calibrated::coarsening;
+        knobs.gather_mesh.edge *= calibrated::coarsening;
         knobs.solve_mesh.grading_levels = std::max(0, knobs.solve_mesh.grading_levels - 1);
         knobs.gather_mesh.grading_levels = std::max(0, knobs.gather_mesh.grading_levels - 1);
-        knobs.solve_rays.average = std::max(16.0, knobs.solve_rays.average / 1.5);
+        knobs.solve_rays.average =
+            std::max(calibrated::least_coarsened_rays, knobs.solve_rays.average / calibrated::coarsening);
     }
     return unchanged;
 }

@@ -1,0 +1,66 @@
+#include "exitance/methods/plan/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/methods/hierarchical/hierarchical.hpp"
+#include "exitance/methods/plan/choice.hpp"
+#include "exitance/reconstruct/element_gather.hpp"
+#include "exitance/reconstruct/unlit_sides.hpp"
+
+namespace exitance {
+namespace {
+
+/// What is asked of links by options that a method without them does not obey.
+void notice_unused_links(Plan& plan) {
+    const std::string_view method = name_in(method_names, plan.options.method);
+    if (!plan.options.importance.empty())
+        plan.notices.push_back(fmt::format("--importance steers links, of which the method {} has none", method));
+    if (plan.options.oracle != LinkOracle::transport)
+        plan.notices.push_back(fmt::format("--oracle judges links, of which the method {} has none", method));
+}
+
+/// Clusters in place of links between all pairs, where those would not fit.
+void fit_links(Plan& plan, const Stage& stage) {
+    if (plan.options.clusters != false || !links_outgrow_memory(stage.pieces.size(), plan.options)) return;
+    plan.notices.push_back(fmt::format(
+        "links between all pairs of {} polygons would outgrow --memory-limit: clusters are used", stage.pieces.size()));
+    plan.options.clusters = true;
+}
+
+}  // namespace
+
+void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop) {
+    stage.leave_out(find_unlit_sides(stage, options.seed, stop));
+    stage.rooms = find_light_rooms(stage, options.seed, stop);
+}
+
+Plan make_plan(const Stage& stage, const SolveOptions& asked, bool hurry) {
+    MethodChoice choice = choose_method(stage, asked);
+    Plan plan{.options = std::move(choice.options), .why = std::move(choice.why)};
+    const Method method = plan.options.method;
+    const std::string_view name = name_in(method_names, method);
+    if (choice.is_second) plan.notices.push_back(fmt::format("method {}: {}", name, std::exchange(plan.why, {})));
+    if (asked.method != Method::automatic && asked.method != method)
+        plan.notices.push_back(fmt::format("--bounces is counted by the method matrix, which solves in place of {}",
+                                           name_in(method_names, asked.method)));
+    const bool sharp = method == Method::discontinuity && plan.options.bounces < 0;
+    plan.has_links = method == Method::hierarchical || method == Method::wavelet || sharp;
+    if (plan.has_links)
+        fit_links(plan, stage);
+    else
+        notice_unused_links(plan);
+    const double target = plan.options.error_target(),
+                 error = hurry ? std::max(calibrated::hurried_error, target) : target;
+    const std::vector<Piece> lit = stage.lit_pieces();
+    plan.knobs = knobs_for_error(error, lit, plan.options);
+    plan.sums = ElementGather::suits(stage);
+    if (plan.sums) plan.knobs = knobs_for_sums(plan.knobs, error, lit, plan.options);
+    plan.may_become_linear = asked.method == Method::automatic && method == Method::matrix && !plan.options.basis &&
+                             plan.options.bounces < 0 && !plan.sums;
+    return plan;
+}
+
+}  // namespace exitance

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/accuracy/accuracy.hpp"
+#include "exitance/core/progress.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// What a solve is going to do, made once: the solve, the forecast of `--dry-run` and the memory limit read it.
+struct Plan {
+    SolveOptions options;                   ///< As asked for, with the method, its basis and its clusters as chosen.
+    std::string why = {};                   ///< Why this method; empty where the user chose.
+    std::vector<std::string> notices = {};  ///< What the user should be told of the choices.
+    Knobs knobs = {};                       ///< Of the first attempt.
+    bool has_links = false;                 ///< Is the method one over links?
+    bool sums = false;                      ///< Is light summed over elements rather than found by rays?
+    bool may_become_linear = false;         ///< May constants give way to linear functions in another attempt?
+};
+
+/// Looks for the sides of the stage that get no light and for its rooms; what a plan rests on.
+void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop);
+
+/// The plan for a stage that is surveyed. `hurry`: a coarse answer is to come first, since there is little time.
+Plan make_plan(const Stage& stage, const SolveOptions& asked, bool hurry);
+
+}  // namespace exitance

@@ -1,0 +1,54 @@
+#include "exitance/methods/plan/plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/methods/plan/forecast.hpp"
+#include "exitance/methods/solve_scene.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+TEST(Plan, TellsWhereLightIsSummedAndWhatAMethodDoesNotObey) {
+    const Scene tube = built_scene("tube"), room = built_scene("cornell");
+    const Stage open(tube), cluttered(room);
+    EXPECT_TRUE(make_plan(open, {.error = 0.02}, false).sums);
+    EXPECT_FALSE(make_plan(cluttered, {.error = 0.02}, false).sums);
+    SolveOptions options{.method = Method::progressive};
+    options.oracle = LinkOracle::power;
+    EXPECT_EQ(make_plan(cluttered, options, false).notices.size(), 1u);
+    options.method = Method::hierarchical;
+    const Plan links = make_plan(cluttered, options, false);
+    EXPECT_TRUE(links.has_links && links.notices.empty());
+}
+
+TEST(Plan, ACoarseAnswerComesFirstInAHurry) {
+    const Scene room = built_scene("cornell");
+    const Stage stage(room);
+    EXPECT_GT(make_plan(stage, {.error = 0.01}, true).knobs.gather_noise,
+              4 * make_plan(stage, {.error = 0.01}, false).knobs.gather_noise);
+}
+
+/// Within a factor of two of what the solve takes.
+TEST(Forecast, IsThatOfTheMethodThatSolves) {
+    for (const auto& [family, method] : {std::pair{"tube", Method::automatic}, std::pair{"cornell", Method::automatic},
+                                         std::pair{"cornell", Method::progressive}}) {
+        const Scene scene = built_scene(family);
+        const SolveOptions options{.method = method, .error = 0.06};
+        const Result<Forecast> forecast = forecast_solve(scene, options);
+        ASSERT_TRUE(forecast);
+        Progress progress;
+        const Result<Solution> solution = solve_scene(scene, options, progress, StopRequest());
+        ASSERT_TRUE(solution);
+        const SolveStatistics& s = solution->statistics;
+        EXPECT_EQ(forecast->method, s.method);
+        const double rays = forecast->rays / static_cast<double>(s.rays),
+                     elements = static_cast<double>(forecast->solve_elements + forecast->gather_elements) /
+                                static_cast<double>(s.leaf_elements);
+        EXPECT_TRUE(rays > 0.5 && rays < 2) << family << " " << rays;
+        EXPECT_TRUE(elements > 0.5 && elements < 2) << family << " " << elements;
+    }
+}
+
+}  // namespace
+}  // namespace exitance
