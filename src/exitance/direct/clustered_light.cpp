@@ -55,7 +55,7 @@ Receiver ClusteredLight::receiver(const Point& x, const Normal& n, RegionId own)
 
 bool ClusteredLight::pays(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                           Workspace& room) const {
-    if (!is_possible()) return false;
+    if (!is_possible() || !direct_->occluders().scene().behind(own).is_none()) return false;
     constexpr double roughly = 0.2;
     tree_.cut(receiver(x, n, own), roughly, 0, room.cut_);
     const double light = room.cut_.light, sources = tree_.effective_sources(room.cut_);

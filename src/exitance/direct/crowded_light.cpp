@@ -31,7 +31,8 @@ std::vector<ReceiverLight::Source> CrowdedLight::take_crowded(ReceiverLight& lig
     };
     std::vector<ReceiverLight::Source> out;
     if (!direct_->occluders().scene().panes().empty()) return out;
-    if (allowed <= 0 || std::none_of(light.sources.begin(), light.sources.end(), is_crowded)) return out;
+    if (allowed <= 0 || !light.behind.empty() || std::none_of(light.sources.begin(), light.sources.end(), is_crowded))
+        return out;
     const Receiver at = direct_->receiver(middle, light.n, light.own);
     // A ray comes or does not: the variance of n is F^2 / (4 n) at most.
     double power = 0;

@@ -18,6 +18,7 @@ bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rou
 void ReceiverLight::clear() {
     sources.clear(), beams.clear(), candidates.clear();
     open.clear(), open_light.clear();
+    behind.clear(), through = 0;
 }
 
 DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
@@ -39,23 +40,57 @@ DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
     add_distant_emitters(scene);
 }
 
+DirectLight::Emitter DirectLight::emitter_of(PieceId p, const Spectrum& exitance) const {
+    Emitter emitter{RegionId(), exitance, occluders_->pieces()[p].plane, {}, 0, {p.value, p.value + 1}};
+    const std::span<const Point> corners = occluders_->corners(p);
+    emitter.centre = centroid(corners);
+    for (const Point& corner : corners) emitter.radius = std::max(emitter.radius, norm(corner - emitter.centre));
+    return emitter;
+}
+
 void DirectLight::add_distant_emitters(const Scene& scene) {
     first_distant_ = emitters_.size();
     const std::vector<DistantFacet> facets = distant_facets(scene.distant());
     std::size_t next = 0;
     for (const PieceId p : occluders_->distant_pieces()) {
         const DistantFacet& facet = facets[next++];
-        Emitter emitter{RegionId(), facet.exitance, occluders_->pieces()[p].plane, {}, 0, {p.value, p.value + 1}};
+        Emitter emitter = emitter_of(p, facet.exitance);
         if (facet.sky) emitter.radiance = RelativeRadiance(*facet.sky, facet.smooth_width, facet.n);
-        const std::span<const Point> corners = occluders_->corners(p);
-        emitter.centre = centroid(corners);
-        for (const Point& corner : corners) emitter.radius = std::max(emitter.radius, norm(corner - emitter.centre));
+        if (facet.is_dome) emitter.sky = Emitter::Sky::open;
         emitters_.push_back(emitter);
+    }
+    add_windows(scene);
+}
+
+/// A window for all bands where they are alike, else one for each.
+void DirectLight::add_windows(const Scene& scene) {
+    const auto is_grey = [](const Spectrum& s) {
+        return std::all_of(s.value.begin(), s.value.end(), [&](double v) { return v == s[0]; });
+    };
+    const auto& domes = scene.distant().domes;
+    const bool is_grey_sky =
+        std::all_of(domes.begin(), domes.end(), [&](const auto& d) { return is_grey(d.irradiance); });
+    const Enclosure& enclosure = occluders_->enclosure();
+    for (std::size_t i = 0; i < enclosure.windows.size(); ++i) {
+        const Pane& pane = enclosure.windows[i];
+        const bool together = is_grey_sky && is_grey(pane.transmissivity);
+        for (std::size_t band = 0; band < (together ? 1 : bands); ++band) {
+            Spectrum one(together ? 1.0 : 0.0);
+            one[band] = 1;
+            auto window = std::make_unique<const SkyWindow>(pane, scene.distant(), band);
+            if (window->is_dark()) continue;
+            one *= window->reference();
+            Emitter emitter = emitter_of(occluders_->windows()[i], one);
+            emitter.radiance = RelativeRadiance(*window, pane.n);
+            emitter.sky = Emitter::Sky::window;
+            emitters_.push_back(emitter);
+            windows_.push_back(std::move(window));
+        }
     }
 }
 
 double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const {
-    if (is_own(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return 0;
+    if (!shines_on(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return 0;
     double sum = 0;
     for (PieceId piece : emitter.pieces) sum += visible_form_factor(*occluders_, at, piece, scratch, emitter.radiance);
     return sum;
@@ -71,18 +106,26 @@ Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) co
 
 /// Of one emitter, through panes too.
 Spectrum DirectLight::light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const {
-    if (occluders_->scene().panes().empty()) {
+    if (!is_glazed(emitter)) {
         const double f = form_factor(at, emitter, scratch);
         return f > 0 ? f * emitter.exitance : Spectrum();
     }
     Spectrum sum;
-    if (is_own(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return sum;
+    if (!shines_on(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return sum;
     for (PieceId piece : emitter.pieces)
         sum += emitter.exitance * glazed_form_factor(*occluders_, at, piece, {}, scratch, emitter.radiance);
     return sum;
 }
 
 Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
+    const Spectrum front = on_side(x, n, own, scratch);
+    const RegionId behind = occluders_->scene().behind(own);
+    if (behind.is_none()) return front;
+    const double through = occluders_->scene().material(own).through;
+    return (1 - through) * front + through * on_side(x, -n, behind, scratch);
+}
+
+Spectrum DirectLight::on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
     const Receiver at = receiver(x, n, own);
     Spectrum sum;
     for (const Emitter& emitter : emitters_) sum += light_of(emitter, at, scratch);
@@ -91,6 +134,16 @@ Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, 
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
                           Workspace& scratch) const {
+    prepare_side(receiver, n, own, light, scratch);
+    const RegionId behind = occluders_->scene().behind(own);
+    if (behind.is_none()) return;
+    light.behind.resize(1), light.through = occluders_->scene().material(own).through;
+    const std::vector<Point> turned(receiver.rbegin(), receiver.rend());
+    prepare_side(turned, -n, behind, light.behind[0], scratch);
+}
+
+void DirectLight::prepare_side(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
+                               Workspace& scratch) const {
     light.n = n, light.own = own;
     light.clear();
     const Point middle = centroid(receiver);
@@ -98,7 +151,7 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
     for (const Point& p : receiver) radius = std::max(radius, norm(p - middle));
     for (std::uint32_t e = 0; e < emitters_.size(); ++e) {
         const Emitter& emitter = emitters_[e];
-        if (is_own(emitter, own) || emitter.plane.signed_distance(middle) <= -radius ||
+        if (!shines_on(emitter, own) || emitter.plane.signed_distance(middle) <= -radius ||
             dot(n, emitter.centre - middle) <= -emitter.radius)
             continue;
         for (PieceId piece : emitter.pieces) look_at({e, piece}, receiver, light, scratch);
@@ -108,6 +161,7 @@ void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, Regi
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own,
                           std::span<const SourceName> sources, ReceiverLight& light, Workspace& scratch) const {
+    if (!occluders_->scene().behind(own).is_none()) return prepare(receiver, n, own, light, scratch);
     light.n = n, light.own = own;
     light.clear();
     for (const SourceName& source : sources) look_at(source, receiver, light, scratch);
@@ -123,7 +177,7 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
         return;
     }
     scratch.shaft.set(*occluders_, {receiver, light.n, light.own},
-                      {occluders_->corners(piece), emitter.plane.n, emitter.region, is_distant(e)});
+                      {occluders_->corners(piece), emitter.plane.n, emitter.region, looks_far(e)});
     PieceId& likely = scratch.last_blocker(*occluders_, piece);
     if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) return;
     add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
@@ -142,12 +196,16 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
         const Emitter& emitter = emitters_[source.emitter];
         scratch.shaft.set(
             *occluders_, {receiver, whole.n, whole.own},
-            {occluders_->corners(source.piece), emitter.plane.n, emitter.region, is_distant(source.emitter)});
+            {occluders_->corners(source.piece), emitter.plane.n, emitter.region, looks_far(source.emitter)});
         const auto from = std::span(whole.candidates).subspan(source.first, source.count);
         add_source(source.emitter, source.piece, scratch.shaft.classify(from, scratch.candidates), light, scratch);
     }
     if (!whole.beams.empty())
         beams_.prepare(receiver, whole.n, whole.own, whole.beams, whole.candidates, light.beams, light.candidates);
+    if (whole.behind.empty()) return;
+    light.behind.resize(1), light.through = whole.through;
+    const std::vector<Point> turned(receiver.rbegin(), receiver.rend());
+    prepare(turned, whole.behind[0], light.behind[0], scratch);
 }
 
 bool DirectLight::face_each_other(const Plane& receiver_plane, std::span<const Point> receiver,
@@ -180,19 +238,28 @@ void DirectLight::add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& 
 
 Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
                                  Spectrum* parallel) const {
+    if (light.behind.empty()) return on_side(light, x, scratch, parallel);
+    Spectrum outside, outside_behind;
+    const Spectrum front = on_side(light, x, scratch, &outside),
+                   back = on_side(light.behind[0], x, scratch, &outside_behind);
+    if (parallel) *parallel += (1 - light.through) * outside + light.through * outside_behind;
+    return (1 - light.through) * front + light.through * back;
+}
+
+Spectrum DirectLight::on_side(const ReceiverLight& light, const Point& x, Workspace& scratch,
+                              Spectrum* parallel) const {
     const Receiver at = receiver(x, light.n, light.own);
     Spectrum sum;
     scratch.factors.resize(light.open.size());
     point_to_quads(at.x, light.n, light.open, scratch.factors);
     for (std::size_t i = 0; i < scratch.factors.size(); ++i) sum += scratch.factors[i] * light.open_light[i];
-    const bool glazed = !occluders_->scene().panes().empty();
     for (const ReceiverLight::Source& source : light.sources) {
         if (source.in_batch) continue;
         const auto candidates = std::span(light.candidates).subspan(source.first, source.count);
         const Emitter& emitter = emitters_[source.emitter];
         const Spectrum light_there =
             emitter.exitance *
-            (glazed
+            (is_glazed(emitter)
                  ? glazed_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)
                  : Spectrum(visible_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)));
         sum += light_there;

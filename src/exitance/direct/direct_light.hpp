@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "exitance/direct/beams.hpp"
 #include "exitance/form_factors/point_to_polygon_batch.hpp"
 #include "exitance/scene/scene.hpp"
+#include "exitance/scene/sky/sky_window.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/shaft.hpp"
 #include "exitance/visibility/visible_part.hpp"
@@ -25,12 +27,18 @@ struct ReceiverLight {
     std::vector<Source> sources;  ///< Those that are not certainly hidden.
     std::vector<Beam> beams;      ///< Of lights without extent, likewise.
     std::vector<PieceId> candidates;
-    QuadBatch open;                    ///< Sources of four corners or less that are all visible, in their order,
-    std::vector<Spectrum> open_light;  ///< and their exitances.
+    QuadBatch open;                     ///< Sources of four corners or less that are all visible, in their order,
+    std::vector<Spectrum> open_light;   ///< and their exitances.
+    std::vector<ReceiverLight> behind;  ///< Of a diffusing pane, one: that of its other side,
+    double through = 0;                 ///< and what it counts (Material::through).
 
     void clear();
-    bool is_dark() const { return sources.empty() && beams.empty(); }  ///< No light from anywhere, certainly.
-    bool is_unshadowed() const { return candidates.empty(); }  ///< Smooth: no shadow edge crosses it, certainly.
+    bool is_dark() const {  ///< No light from anywhere, certainly.
+        return sources.empty() && beams.empty() && (behind.empty() || behind[0].is_dark());
+    }
+    bool is_unshadowed() const {  ///< Smooth: no shadow edge crosses it, certainly.
+        return candidates.empty() && (behind.empty() || behind[0].is_unshadowed());
+    }
 };
 
 /// The light that arrives straight from the emitters and from lights without extent, exact at every point.
@@ -46,9 +54,10 @@ class DirectLight {
     ///     E = sum over emitters s of  M_s F(x, visible part of s),
     ///
     /// F weighted by relative radiance where s is not diffuse (directed_form_factor.hpp; to 1e-3 there), and what
-    /// lights without extent bring (beams.hpp). Exact but for rounding (1e-12 relative where F is not tiny). x lies on
-    /// region `own`, into whose plane it is moved, or own is none. A point that another surface covers is for the
-    /// caller to ask about (Occluders::is_covered). About 1-5 microseconds an emitter in view.
+    /// lights without extent bring (beams.hpp); of a diffusing pane what both sides have (Material::through). Exact but
+    /// for rounding (1e-12 relative where F is not tiny). x lies on region `own`, into whose plane it is moved, or own
+    /// is none. A point that another surface covers is for the caller to ask about (Occluders::is_covered). About 1-5
+    /// microseconds an emitter in view.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
     /// A convex piece of an emitter.
@@ -86,8 +95,16 @@ class DirectLight {
         double radius = 0;  ///< m
         IdRange<PieceId> pieces;
         RelativeRadiance radiance = {};
+        /// A part of the sky: all of it, for whom the enclosure does not hold, or what is seen through a pane, for the
+        /// others.
+        enum class Sky : std::uint8_t { none, open, window } sky = Sky::none;
     };
     const std::vector<Emitter>& emitters() const { return emitters_; }
+    /// Can its light come to a region (or none) at all?
+    bool shines_on(const Emitter& emitter, RegionId own) const {
+        return !is_own(emitter, own) && (emitter.sky == Emitter::Sky::none ||
+                                         occluders_->enclosure().holds(own) == (emitter.sky == Emitter::Sky::window));
+    }
     /// Those of the sky come last; they are no regions.
     bool is_distant(std::size_t emitter) const { return emitter >= first_distant_; }
     static bool is_own(const Emitter& emitter, RegionId own) { return !own.is_none() && emitter.region == own; }
@@ -101,7 +118,20 @@ class DirectLight {
 
   private:
     void add_distant_emitters(const Scene& scene);
+    void add_windows(const Scene& scene);
+    Emitter emitter_of(PieceId piece, const Spectrum& exitance) const;
+    /// Do panes stand before it? That of a window is a part of it.
+    bool is_glazed(const Emitter& emitter) const {
+        return !occluders_->scene().panes().empty() && emitter.sky != Emitter::Sky::window;
+    }
+    bool looks_far(std::size_t emitter) const {
+        return is_distant(emitter) && emitters_[emitter].sky != Emitter::Sky::window;
+    }
     Spectrum light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const;
+    Spectrum on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
+    Spectrum on_side(const ReceiverLight& light, const Point& x, Workspace& scratch, Spectrum* parallel) const;
+    void prepare_side(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
+                      Workspace& scratch) const;
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
                  Workspace& scratch) const;
     void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch) const;
@@ -113,6 +143,7 @@ class DirectLight {
     const Occluders* occluders_;
     std::vector<Emitter> emitters_;
     std::size_t first_distant_ = 0;
+    std::vector<std::unique_ptr<const SkyWindow>> windows_;
     Beams beams_;
 };
 

@@ -60,7 +60,7 @@ void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, d
     for (std::uint32_t i = 0; i < direct_.emitters().size(); ++i) {
         const DirectLight::Emitter& emitter = direct_.emitters()[i];
         const std::size_t first = std::exchange(next, next + emitter.pieces.size());
-        if (DirectLight::is_own(emitter, own) || emitter.plane.signed_distance(x) <= 0 ||
+        if (!direct_.shines_on(emitter, own) || emitter.plane.signed_distance(x) <= 0 ||
             dot(n, emitter.centre - x) <= -emitter.radius)
             continue;
         for (std::size_t k = 0; k < emitter.pieces.size(); ++k) {

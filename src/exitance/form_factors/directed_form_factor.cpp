@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "exitance/form_factors/point_to_polygon.hpp"
 
@@ -31,7 +32,9 @@ class DirectedIntegral {
 
     double operator()(std::span<const Vec3> corners) {
         Sums guess;
-        for (std::size_t i = 2; i < corners.size(); ++i) add_coarse({corners[0], corners[i - 1], corners[i]}, 0, guess);
+        const int depth = p_.breaks_at_horizon() ? deepest : 0;  // smooth but for that: one place will do
+        for (std::size_t i = 2; i < corners.size(); ++i)
+            add_coarse({corners[0], corners[i - 1], corners[i]}, depth, guess);
         allowed_ = accepted_difference * std::max(least_mean, 0.5 * guess.mean());  // it may well be twice the mean
         double sum = 0;
         for (std::size_t i = 2; i < corners.size(); ++i) sum += part({corners[0], corners[i - 1], corners[i]}, 0);
@@ -107,7 +110,35 @@ class DirectedIntegral {
 
 }  // namespace
 
+namespace {
+
+/// The part above or below the horizon.
+std::vector<Vec3> beside_horizon(std::span<const Vec3> corners, double sign) {
+    std::vector<Vec3> out;
+    for (std::size_t i = 0, m = corners.size(); i < m; ++i) {
+        const Vec3 &p = corners[i], &q = corners[i + 1 == m ? 0 : i + 1];
+        if (sign * p.z >= 0) out.push_back(p);
+        if ((p.z > 0 && q.z < 0) || (p.z < 0 && q.z > 0)) {
+            out.push_back(p + (p.z / (p.z - q.z)) * (q - p));
+            out.back().z = 0;
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
 double directed_form_factor(const Normal& n, std::span<const Vec3> corners, const RelativeRadiance& p) {
+    const auto is_below = [](const Vec3& r) { return r.z < 0; };
+    const auto is_above = [](const Vec3& r) { return r.z > 0; };
+    if (p.breaks_at_horizon() && std::any_of(corners.begin(), corners.end(), is_below) &&
+        std::any_of(corners.begin(), corners.end(), is_above)) {
+        double sum = 0;
+        for (const double sign : {1.0, -1.0})
+            if (const std::vector<Vec3> part = beside_horizon(corners, sign); part.size() >= 3)
+                sum += DirectedIntegral(n, p)(part);
+        return sum;
+    }
     return DirectedIntegral(n, p)(corners);
 }
 

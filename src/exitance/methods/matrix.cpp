@@ -45,6 +45,10 @@ unsigned hemicube_cells(const MethodInput& input) {
     return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));  // given by memory
 }
 
+bool is_open(double kept) {
+    return kept < 1;
+}
+
 HierarchyBasis galerkin_basis(BasisKind basis) {
     return basis == BasisKind::galerkin1   ? HierarchyBasis::haar
            : basis == BasisKind::galerkin2 ? HierarchyBasis::multiwavelet2
@@ -75,6 +79,9 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed,
                         Dealing::by_element, RowsHeld::by_owner);
         if (options.bounces < 0) light.kept = F.kept();
+        // Of a pane these are rays to both sides; its own light leaves by one.
+        if (stage.scene.has_diffusing_panes() && std::any_of(light.kept.begin(), light.kept.end(), is_open))
+            light.kept.clear();
         relax_constant_elements(input, F, light);
         light.rays = light.links = F.rays();
     } else if (*options.form_factors == FormFactorKind::hemicube) {

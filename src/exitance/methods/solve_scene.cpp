@@ -9,6 +9,7 @@
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/phase_times.hpp"
+#include "exitance/methods/diffusing_panes.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
@@ -540,6 +541,7 @@ Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Pr
                              const StopRequest& stop, CheckpointStore* checkpoints) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
+    if (const Result<void> passes = check_diffusing_panes(scene, options); !passes) return passes.error();
     if (options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e)
         return solve_by_lines(scene, options, progress, stop);
     if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);

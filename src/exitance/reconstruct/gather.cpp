@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "exitance/form_factors/met_directions.hpp"
+
 namespace exitance {
 
 namespace {
@@ -55,7 +57,7 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
             w.quarter[slot] = static_cast<std::uint32_t>(4 * i + 4 * k / rays);
         }
     }
-    cosine_directions(Frame(n), w.sorted[0], w.sorted[1], w.directions);
+    met_directions(stage.scene, own, n, w.sorted[0], w.sorted[1], w.directions);
     stage.tracer.nearest(w.origins, w.directions, own, w.hits);
     w.fronts.clear(), w.share.clear();
     for (std::size_t k = 0; k < all; ++k) {

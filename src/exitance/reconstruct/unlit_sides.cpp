@@ -34,6 +34,8 @@ std::vector<Side> sides_of_sheets(const Stage& stage) {
     std::vector<Side> out;
     if (other.size() == 0) return out;
     for (const Piece& piece : stage.pieces) {
+        // Light that comes to a diffusing pane from behind is its own, too.
+        if (!stage.scene.behind(piece.region).is_none()) continue;
         if (other[piece.region].is_none() || stage.scene.material(piece.region).emits()) continue;
         if (out.empty() || out.back().region != piece.region) out.push_back({piece.region});
         out.back().pieces.push_back(&piece.patch);

@@ -74,6 +74,11 @@ struct DirectedEmission {
 /// n: the face's normal in the lamp's frame. Relative error about 1e-5, where n is vertical there less.
 double exitance_of(const EmissionProfile& profile, const Normal& n);
 
+class SkyWindow;
+/// Of what is seen through a window (scene/sky/sky_window.hpp).
+double relative_radiance(const SkyWindow& window, const Vec3& w);
+double smooth_width(const SkyWindow& window);
+
 /// Radiance of a face by direction, as a multiple of that of a diffuse face of the same flux:
 ///
 ///     p(w) = pi L(w) / M,     mean of p over directions by the cosine = 1.
@@ -86,22 +91,30 @@ class RelativeRadiance {
     /// Of a far face of the sky; it must outlive it. `smooth_width`: of this face.
     RelativeRadiance(const SkyModel& sky, double smooth_width, const Normal& n)
         : sky_(&sky), sky_width_(smooth_width), n_(n) {}
+    /// Of a window; it must outlive it.
+    RelativeRadiance(const SkyWindow& window, const Normal& n) : window_(&window), n_(n) {}
 
-    bool is_directed() const { return profile_ != nullptr || sky_ != nullptr; }
+    bool is_directed() const { return profile_ != nullptr || sky_ != nullptr || window_ != nullptr; }
+    /// Does it change at once at the horizon?
+    bool breaks_at_horizon() const { return window_ != nullptr; }
     /// Towards w, of length 1, in front of the face.
     double operator()(const Vec3& w) const {
         if (profile_) return emission_->scale * profile_->radiance(emission_->in_lamp(w), dot(n_, w));
+        if (window_) return relative_radiance(*window_, -w);
         return sky_ ? sky_->relative(-w) : 1;
     }
     /// Towards the point x from the point y of the face.
     double towards(const Point& x, const Point& y) const { return is_directed() ? (*this)(normalized(x - y)) : 1; }
-    double smooth_width() const { return sky_ ? sky_width_ : profile_->smooth_width; }
+    double smooth_width() const {
+        return window_ ? exitance::smooth_width(*window_) : sky_ ? sky_width_ : profile_->smooth_width;
+    }
     const Normal& normal() const { return n_; }
 
   private:
     const EmissionProfile* profile_ = nullptr;
     const DirectedEmission* emission_ = nullptr;
     const SkyModel* sky_ = nullptr;
+    const SkyWindow* window_ = nullptr;
     double sky_width_ = 0;  ///< Radians.
     Normal n_;
 };

@@ -22,14 +22,21 @@ using MaterialId = Id<struct MaterialTag>;  ///< One material of the input.
 using GroupId = Id<struct GroupTag>;        ///< One named object of the input.
 using RegionId = Id<struct RegionTag>;      ///< Coplanar faces of one material joined along edges.
 
-/// How a surface reflects, diffusely, and emits, diffusely or by a profile.
+/// How a surface reflects, diffusely, and emits, diffusely or by a profile. Of a diffusing pane the light that arrives
+/// on one side leaves by both: B = rho E + tau E_behind, which is `reflectance` (rho + tau) times
+///
+///     E_met = (1 - through) E + through E_behind,     through = tau / (rho + tau),
+///
+/// and that is what counts as a pane's irradiance everywhere.
 struct Material {
     std::string name;
     Spectrum reflectance;  ///< Share of the arriving flux that leaves again, in [0, 1).
     Spectrum exitance;     ///< Emitted flux per area, W/m^2 (or lm/m^2).
     DirectedEmission emission = {};
+    double through = 0;  ///< Share of that which leaves by the other side, in [0, 1].
 
     bool emits() const { return max(exitance) > 0; }
+    bool is_diffusing_pane() const { return through > 0; }
     bool is_directed() const { return emits() && !emission.profile.is_none(); }
 };
 
@@ -73,6 +80,8 @@ struct Region {
     /// How many regions of the same plane and orientation lie under parts of it: of two such faces the one that comes
     /// later in the file is on top. At most `most_stacked`.
     std::uint8_t level = 0;
+    /// Of a diffusing pane, its other side.
+    RegionId behind = {};
 };
 
 constexpr std::uint8_t most_stacked = 7;
@@ -130,6 +139,13 @@ class Scene {
     }
     const Material& material(SurfaceId s) const { return materials_[surfaces_[s].material]; }
     const Material& material(RegionId r) const { return materials_[regions_[r].material]; }
+
+    /// Of a region of a diffusing pane, its other side; else none.
+    RegionId behind(RegionId r) const { return r.is_none() ? r : regions_[r].behind; }
+    /// Are there surfaces that light passes diffusely?
+    bool has_diffusing_panes() const {
+        return std::any_of(regions_.begin(), regions_.end(), [](const Region& r) { return !r.behind.is_none(); });
+    }
 
     const Box& box() const { return box_; }
     double size() const { return box_.diagonal(); }  ///< Diagonal of its box, metres.

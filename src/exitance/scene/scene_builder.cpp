@@ -345,6 +345,7 @@ void SceneBuilder::stack_overlaps(Scene& scene) {
 }
 
 CheckedScene SceneBuilder::build() {
+    add_other_sides();
     check_materials();
     check_lights();
     place_corners();
@@ -362,8 +363,13 @@ CheckedScene SceneBuilder::build() {
     }
     Scene scene = make();
     stack_overlaps(scene);
+    pair_sides(scene);
     report_alike();
     sort_findings(findings_);
+    if (has_errors()) {
+        Error first = error_of(findings_);
+        return {std::move(first), std::move(findings_), std::move(marks_)};
+    }
     return {std::move(scene), std::move(findings_), std::move(marks_)};
 }
 

@@ -31,6 +31,8 @@ class SceneBuilder {
     void drop_duplicates();
     void check_light();
     Scene make();
+    void add_other_sides();
+    void pair_sides(Scene& scene);
     void add_regions(Scene& scene, const std::vector<JoinedFaces>& joined);
 
     void find(Finding::Kind kind, int line, std::string message, std::string hint = "") {

@@ -2,7 +2,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
-#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/form_factors/met_directions.hpp"
 
 namespace exitance {
 namespace {
@@ -34,12 +34,13 @@ Moments moments_at(const Stage& stage, const GlobalLight& light, const ElementLo
                    std::uint64_t key) {
     constexpr std::uint32_t rays = 64;
     const RegionId own = light.tree.region(e);
-    const Frame frame(stage.scene.regions()[own].plane.n);
+    const Normal& n = stage.scene.regions()[own].plane.n;
     const ScrambledSobol points(key);
     const std::vector<Point> origin = {light.tree.patch(e).at(light.tree.centre(e))};
     std::vector<Vec3> directions(rays);
     std::vector<RayHit> hits(rays);
-    for (std::uint32_t k = 0; k < rays; ++k) directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+    for (std::uint32_t k = 0; k < rays; ++k)
+        directions[k] = met_direction(stage.scene, own, n, points(k, 0), points(k, 1));
     stage.tracer.nearest(origin, directions, own, hits);
     Spectrum sum_b, sum_M;
     Moments out;

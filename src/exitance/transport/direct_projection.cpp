@@ -157,6 +157,7 @@ constexpr std::size_t few_strong = 24;  ///< Sources of which exact visible part
 DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, unsigned rays,
                            SampledLight& sampled, DirectFitRoom& room) {
     const RegionId region = tree.region(e);
+    if (!stage.scene.behind(region).is_none()) return fit_direct_light(stage, tree, e, allowed, room);
     // Each source is looked at, if only roughly: where they are too many even for that, clusters are first.
     constexpr std::size_t too_many = 10000;
     const bool clusters_first = stage.clustered.tree().sources().size() > too_many;

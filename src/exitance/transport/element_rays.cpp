@@ -2,14 +2,17 @@
 
 #include <algorithm>
 
-#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/met_directions.hpp"
 
 namespace exitance {
 
-void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first) {
+void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first,
+                       Leave leave) {
     const std::size_t count = leaves.size();
     const Patch& patch = tree_.patch(e);
-    const Frame frame(stage_.scene.regions()[tree_.region(e)].plane.n);
+    const RegionId region = leave == Leave::as_met ? tree_.region(e) : RegionId();
+    const Normal& n = stage_.scene.regions()[tree_.region(e)].plane.n;
     const ScrambledSobol points(key);
     origins_.resize(count), directions_.resize(count), hits_.resize(count);
     for (int d = 0; d < 4; ++d) {
@@ -18,14 +21,13 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
     }
     for (std::size_t k = 0; k < count; ++k)
         origins_[k] = patch.at(tree_.uniform(e, coordinates_[2][k], coordinates_[3][k]));
-    cosine_directions(frame, coordinates_[0], coordinates_[1], directions_);
+    met_directions(stage_.scene, region, n, coordinates_[0], coordinates_[1], directions_);
     stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_);
     queries_.clear(), of_ray_.clear();
     std::fill(leaves.begin(), leaves.end(), missed);
     for (std::size_t k = 0; k < count; ++k) {
         if (hits_[k].surface.is_none() || !hits_[k].front) continue;
-        const RegionId region = hits_[k].region;
-        locator_.find_root(region, origins_[k] + hits_[k].distance * directions_[k], queries_.emplace_back());
+        locator_.find_root(hits_[k].region, origins_[k] + hits_[k].distance * directions_[k], queries_.emplace_back());
         of_ray_.push_back(k);
     }
     locator_.leaves().find(queries_);

@@ -15,13 +15,18 @@ class ElementRays {
   public:
     static constexpr std::uint32_t missed = 0xffffffffu;
 
+    /// By which sides rays leave a diffusing pane: by the element's own, as its light does, or as what it gathers from
+    /// asks for (`met_directions`).
+    enum class Leave : std::uint8_t { front, as_met };
+
     /// `tree`, over which `locator` finds leaves, and all else must outlive it.
     ElementRays(const Stage& stage, const ElementTree& tree, const ElementLocator& locator)
         : stage_(stage), tree_(tree), locator_(locator) {}
 
     /// Writes for each ray the number of the leaf whose front it hits, or `missed`. The rays are named by `key`; they
     /// are as many of its points from number `first` on.
-    void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0);
+    void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0,
+              Leave leave = Leave::front);
 
   private:
     const Stage& stage_;

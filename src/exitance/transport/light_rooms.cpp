@@ -379,7 +379,8 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
         stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}));
     auto locator = std::make_shared<const ElementLocator>(*tree, stage.scene.regions().size());
     const LeafNumbering numbering(*tree);
-    const RayRows rows(stage, *tree, numbering, *locator, {.average = 24, .least = 16, .most = 256}, seed);
+    const RayRows rows(stage, *tree, numbering, *locator,
+                       {.average = 24, .least = 16, .most = 256, .front_alone = true}, seed);
     const DistantLight& outside = stage.scene.distant();
     const bool has_sky = !outside.domes.empty();
     const std::vector<Part> parts = RoomFinder(rows, *tree, numbering, seed, has_sky).find(stop);

@@ -2,7 +2,8 @@
 
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/met_directions.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
@@ -62,11 +63,11 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
         std::vector<RayHit> found;
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t first = nodes_[k].first_ray, count = nodes_[k].last_ray - first;
-            const Frame frame(stage.scene.regions()[region[k]].plane.n);
+            const Normal& n = stage.scene.regions()[region[k]].plane.n;
             const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::rows), k));
             directions.resize(count), found.resize(count);
             for (std::uint32_t i = 0; i < count; ++i)
-                directions[i] = cosine_direction(frame, points(i, 0), points(i, 1));
+                directions[i] = met_direction(stage.scene, region[k], n, points(i, 0), points(i, 1));
             stage.tracer.nearest(directions, place[k], region[k], found);
             for (std::size_t i = 0; i < count; ++i) {
                 if (found[i].surface.is_none() || !found[i].front) continue;

@@ -76,10 +76,12 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
     parallel_own_ranges(n, row_block,
                         [&](std::size_t begin, std::size_t end) {
                             ElementRays rays(stage, tree, locator);
+                            const auto leave =
+                                budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
                             for (std::size_t i = begin; i < end; ++i) {
                                 const std::size_t count = first_[i + 1] - first_[i];
                                 rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count),
-                                          dealt[i].first);
+                                          dealt[i].first, leave);
                                 note_touched("rays", count);
                             }
                         },

@@ -13,6 +13,7 @@ struct RayBudget {
     double average = 64;  ///< Rays of an element of mean area.
     unsigned least = 16;
     unsigned most = 4096;
+    bool front_alone = false;  ///< Of diffusing panes: as light leaves them, not as they gather.
 
     /// Rays of something of `area`, when the mean area of its kind is `mean_area` (both m^2): a power of two, in
     /// proportion to the root of the area, which spends a given number of rays on the least total variance.

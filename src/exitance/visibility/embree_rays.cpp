@@ -261,6 +261,10 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
     EXI_CHECK(hits.size() == directions.size());
     const bool shared = origins.size() == 1;
     const Vec3 lifted = content_->offset(own);
+    const RegionId behind = content_->scene->behind(own);
+    const auto side_of = [&](const Vec3& direction) {
+        return !behind.is_none() && dot(direction, content_->scene->regions()[own].plane.n) < 0 ? behind : own;
+    };
     RTCIntersectContext context = make_context();
     alignas(64) RTCRayHit16 packet;
     alignas(64) std::array<int, width> valid;
@@ -281,12 +285,18 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
             const Float3 origin = content_->local(origins[first + i] + lifted);
             packet.ray.org_x[i] = origin.x, packet.ray.org_y[i] = origin.y, packet.ray.org_z[i] = origin.z;
         }
+        for (std::size_t i = 0; i < count && !behind.is_none(); ++i) {
+            const Point& origin = origins[shared ? 0 : first + i];
+            const Float3 at = content_->local(origin + content_->offset(side_of(directions[first + i])));
+            packet.ray.org_x[i] = at.x, packet.ray.org_y[i] = at.y, packet.ray.org_z[i] = at.z;
+        }
         rtcIntersect16(valid.data(), content_->rtc, &context, &packet);
         for (std::size_t i = 0; i < count; ++i) {
             const Point& origin = origins[shared ? 0 : first + i];
             const Vec3& direction = directions[first + i];
-            if (!content_->read(packet, i, origin, direction, own, hits[first + i]))
-                content_->retry(origin, direction, own, packet.ray.tfar[i], hits[first + i]);
+            const RegionId side = side_of(direction);
+            if (!content_->read(packet, i, origin, direction, side, hits[first + i]))
+                content_->retry(origin, direction, side, packet.ray.tfar[i], hits[first + i]);
         }
     }
     return directions.size();

@@ -55,6 +55,23 @@ Occluders::Occluders(const Scene& scene) : scene_(&scene), other_side_(other_sid
     }
     make_trees();
     add_distant_pieces();
+    add_windows();
+}
+
+void Occluders::add_windows() {
+    enclosure_ = find_enclosure(*scene_);
+    const std::size_t first = pieces_.size();
+    for (const Pane& window : enclosure_.windows) {
+        const auto at = static_cast<std::uint32_t>(corners_.size());
+        corners_.insert(corners_.end(), window.corners.begin(), window.corners.end());
+        pieces_.add({at,
+                     static_cast<std::uint32_t>(window.corners.size()),
+                     RegionId(),
+                     SurfaceId(),
+                     {window.n, dot(window.n, corners_[at])},
+                     rounding_});
+    }
+    windows_ = {first, pieces_.size()};
 }
 
 void Occluders::add_distant_pieces() {

@@ -6,6 +6,7 @@
 
 #include "exitance/core/ids.hpp"
 #include "exitance/geometry/bvh.hpp"
+#include "exitance/scene/enclosure.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -39,6 +40,11 @@ class Occluders {
     /// (`middle`).
     IdRange<PieceId> distant_pieces() const { return distant_; }
     bool is_distant(PieceId p) const { return pieces_[p].region.is_none(); }
+    /// Panes, which block nothing and are no part of any region either: the sky's light comes from them where the
+    /// `enclosure` holds the receiver.
+    IdRange<PieceId> windows() const { return windows_; }
+    bool is_window(PieceId p) const { return !windows_.empty() && p.value >= windows_.front().value; }
+    const Enclosure& enclosure() const { return enclosure_; }
     /// What is to be taken from a corner of a distant piece in place of the point that it is seen from.
     const Point& middle() const { return middle_; }
     /// How far a region's pieces stand off its plane because they lie on others in it (Region::level), metres.
@@ -99,6 +105,7 @@ class Occluders {
   private:
     void make_trees();
     void add_distant_pieces();
+    void add_windows();
     std::vector<std::uint8_t> find_outer() const;
     void add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane);
     bool is_back_of(RegionId a, RegionId b) const;
@@ -120,7 +127,8 @@ class Occluders {
 
     std::array<Tree, 2> trees_;  ///< Indexed by Size; without the outer ones.
     Tree outer_;                 ///< Pieces with all of the scene on one side.
-    IdRange<PieceId> distant_;
+    IdRange<PieceId> distant_, windows_;
+    Enclosure enclosure_;
     Point middle_;
     double rounding_ = 0;
 };

@@ -52,7 +52,8 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     const ConvexPiece& piece = occluders.pieces()[source];
     const std::span<const Point> corners = occluders.corners(source);
     if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
-    const Point& from = occluders.is_distant(source) ? occluders.middle() : at.x;
+    const bool is_far = occluders.is_distant(source) && !occluders.is_window(source);
+    const Point& from = is_far ? occluders.middle() : at.x;
     for (const Point& p : corners) scratch.source.push_back(p - from);
     clip_in_place(scratch.source, at.n, 0, scratch);
 }

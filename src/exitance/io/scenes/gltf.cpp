@@ -363,6 +363,8 @@ void GltfReader::read_materials() {
         m.double_sided = in.doubleSided;
         if (with_textures_) read_base_texture(pbr.baseColorTexture, m);
         m.transmission = number_in(in.extensions, "KHR_materials_transmission", "transmissionFactor", 0);
+        m.diffuse_transmission =
+            number_in(in.extensions, "KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0);
         m.transparent = in.alphaMode == "BLEND" || in.alphaMode == "MASK";
         out_.materials.push_back(std::move(m));
     }

@@ -74,6 +74,7 @@ struct GltfModel {
         std::string name;
         Colour base, emission;  ///< Factors times the means of their textures; emission in W/(m^2 sr).
         double metallic = 1;
+        double diffuse_transmission = 0;  ///< Of KHR_materials_diffuse_transmission: of what leaves diffusely.
         double transmission = 0;  ///< Of KHR_materials_transmission: share of the light that goes straight through.
         bool double_sided = false, transparent = false;
         /// The texture of its base colour where textures were asked for: a picture, which set of places, how places go

@@ -71,6 +71,7 @@ void SceneMaker::make_materials() {
     for (const GltfModel::Material& m : in_.materials) {
         Material out{m.name, spread(m.base), exitance_of_radiance(spread(m.emission))};
         for (double& v : out.reflectance.value) v = std::clamp(v * std::clamp(1 - m.metallic, 0.0, 1.0), 0.0, 1.0);
+        if (max(out.reflectance) > 0) out.through = std::clamp(m.diffuse_transmission, 0.0, 1.0);
         out_.materials.push_back(std::move(out));
     }
 }

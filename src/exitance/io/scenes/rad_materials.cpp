@@ -40,10 +40,13 @@ Spectrum RadMaterials::reflectance_of(const RadPrimitive& p, const std::string& 
     const RadPlace at{file, p.line};
     const double specular = p.numbers[3];
     // Two roughnesses stand elsewhere; what goes through comes after them.
-    const double through = p.type.starts_with("trans") ? p.numbers[p.numbers.size() - 2] : 0;
-    if (specular > 0) findings_.note("a specular part", at);
-    if (through > 0) findings_.note("light that goes through", at);
-    const Spectrum reflectance = spread(p.numbers, (1 - specular) * (1 - through));
+    const bool passes = p.type.starts_with("trans");
+    const double through = passes ? p.numbers[p.numbers.size() - 2] : 0, clear = passes ? p.numbers.back() : 0;
+    if (passes && !(through >= 0 && through <= 1 && clear >= 0 && clear <= 1))
+        findings_.error(at, fmt::format("'{}' lets {:g} through, {:g} of it straight", shown(p.name), through, clear),
+                        "shares lie in [0, 1]");
+    if (specular > 0 || through * clear > 0) findings_.note("a specular part", at);
+    const Spectrum reflectance = spread(p.numbers, (1 - specular) * (1 - through * clear));
     if (!(max(reflectance) <= whitest_reflectance) ||
         !std::all_of(reflectance.value.begin(), reflectance.value.end(), [](double v) { return v >= 0; }))
         findings_.error(at, fmt::format("material '{}' reflects {:g}", shown(p.name), max(reflectance)),
@@ -91,6 +94,11 @@ bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file)
     meanings_[p.name] = below(p, file);  // patterns that the material lies on change its light, too
     if (reflects) {
         add_material(p, RadMeaning::Kind::reflects, reflectance_of(p, file), {});
+        if (p.type.starts_with("trans")) {
+            // What is transmitted diffusely, of all that leaves diffusely: both have the material's colour.
+            const double through = p.numbers[p.numbers.size() - 2], diffuse = through * (1 - p.numbers.back());
+            if (diffuse > 0) materials.back().through = std::min(1.0, diffuse / (1 - through + diffuse));
+        }
     } else if (emits) {
         if (p.type == "spotlight") findings_.note("the cone of a spotlight, which shines everywhere", at);
         if (p.type == "glow" && p.numbers[3] != 0) findings_.note("the radius of a glow", at);

@@ -121,6 +121,9 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
                {"1", "diffuse reflectance"});
     file.write(in("material_exitance"), spectra(materials, [](const Material& m) { return m.exitance; }), bands,
                {"W/m^2", "emitted exitance"});
+    if (scene.has_diffusing_panes())
+        file.write(in("material_through"), column<double>(materials, [](const Material& m) { return m.through; }), 1,
+                   {"1", "share of what leaves a surface again that leaves by its other side"});
     file.write_texts(in("group_name"), {scene.groups_.begin(), scene.groups_.end()}, {"1", "names of the groups"});
 
     const auto& regions = scene.regions_;
@@ -148,6 +151,9 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     if (std::any_of(regions.begin(), regions.end(), [](const Region& r) { return r.level > 0; }))
         region("region_level", std::uint8_t(), [](const Region& r) { return r.level; },
                {"1", "regions of the same plane that lie under parts of a region, one on another"});
+    if (scene.has_diffusing_panes())
+        region("region_behind", std::uint32_t(), [](const Region& r) { return r.behind.value; },
+               {"1", "row of the region on a diffusing pane's other side; 4294967295: none"});
     file.write(in("region_plane"), planes, 4, {"1", "plane of a region: unit normal n, and n . x in metres"});
     file.write(in("region_face"), members, 1, {"1", "faces of the regions, one region after the other"});
     file.write(in("loop_corner_count"), loop_corners, 1, {"1", "corners of a border loop"});
@@ -191,6 +197,10 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     const auto plane = in.read<double>("region_plane", 4, region_count);
     std::vector<std::uint8_t> level(region_count);
     if (file.has(group + "/region_level")) level = in.read<std::uint8_t>("region_level", 1, region_count);
+    std::vector<double> through(material_count);
+    if (file.has(group + "/material_through")) through = in.read<double>("material_through", 1, material_count);
+    std::vector<std::uint32_t> behind(region_count, RegionId::none_value);
+    if (file.has(group + "/region_behind")) behind = in.read<std::uint32_t>("region_behind", 1, region_count);
     const auto members = in.indices("region_face", face_count);
     const auto member_count = in.counts("region_face_count", 1, members.size(), region_count);
     const auto loop_points = in.points("loop_corner");
@@ -208,10 +218,16 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
         if (corner_count[i] < 3 || corner_count[i] > scene.corners_.size() ||
             first_corner[i] > scene.corners_.size() - corner_count[i])
             file.fail(group + "/face_corner_count", "names corners that are not there, at face " + std::to_string(i));
+    for (std::size_t i = 0; i < material_count && !file.failed(); ++i)
+        if (!(through[i] >= 0 && through[i] <= 1)) file.fail(group + "/material_through", "holds what is no share");
+    for (std::size_t i = 0; i < region_count && !file.failed(); ++i)
+        if (behind[i] != RegionId::none_value && (behind[i] >= region_count || behind[behind[i]] != i))
+            file.fail(group + "/region_behind", "holds sides that do not belong together");
     if (file.failed()) return {};
 
     for (std::size_t i = 0; i < material_count; ++i)
-        scene.materials_.add({material_names[i], spectrum(reflectance, i), spectrum(exitance, i), emission[i]});
+        scene.materials_.add(
+            {material_names[i], spectrum(reflectance, i), spectrum(exitance, i), emission[i], through[i]});
     for (const std::string& name : group_names) scene.groups_.add(name);
     for (std::size_t i = 0; i < face_count; ++i)
         scene.surfaces_.add({first_corner[i], corner_count[i], MaterialId(material[i]), GroupId(group_of[i]),
@@ -230,6 +246,7 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
             point += loop_corners[loop++];
         }
         region.level = std::min(level[i], most_stacked);
+        if (behind[i] != RegionId::none_value) region.behind = RegionId(behind[i]);
         scene.regions_.add(std::move(region));
     }
     for (std::uint32_t s : emitters) scene.emitters_.emplace_back(s);

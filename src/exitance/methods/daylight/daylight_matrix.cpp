@@ -5,7 +5,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
-#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/form_factors/met_directions.hpp"
 #include "exitance/scene/locator.hpp"
 #include "exitance/transport/ray_rows.hpp"
 #include "exitance/visibility/glazed_part.hpp"
@@ -45,7 +45,7 @@ class MatrixMaker {
                 const unsigned rays = budget.rays(area[i], all / static_cast<double>(area.size()));
                 const Patch& patch = tree_.patch(e);
                 const std::uint64_t key = hash(options_.seed, static_cast<std::uint64_t>(Stream::rows), i);
-                cast(rays, key, tree_.region(e), stage_.scene.regions()[tree_.region(e)].plane.n, ends,
+                cast(rays, key, tree_.region(e), tree_.region(e), stage_.scene.regions()[tree_.region(e)].plane.n, ends,
                      [&](double u, double v) { return patch.at(tree_.uniform(e, u, v)); });
                 count(ends.leaves, rays, rows_[i].leaves);
                 count(ends.patches, rays, rows_[i].patches);
@@ -91,7 +91,7 @@ class MatrixMaker {
         Ends ends;
         std::vector<std::pair<std::uint32_t, float>> leaves;
         cast(options_.rays_a_sensor, hash(options_.seed, static_cast<std::uint64_t>(Stream::gather), number), own,
-             sensor.n, ends, [&](double, double) { return sensor.x; });
+             RegionId(), sensor.n, ends, [&](double, double) { return sensor.x; });
         count(ends.leaves, options_.rays_a_sensor, leaves);
         std::fill(out.begin(), out.end(), 0.0f);
         add(leaves, out);
@@ -105,14 +105,15 @@ class MatrixMaker {
         std::vector<std::uint32_t> leaves, patches;
     };
 
+    /// `sides`: the region where rays are to leave a diffusing pane by both, else none.
     template <class Place>
-    void cast(unsigned rays, std::uint64_t key, RegionId own, const Normal& n, Ends& ends, const Place& place) const {
+    void cast(unsigned rays, std::uint64_t key, RegionId own, RegionId sides, const Normal& n, Ends& ends,
+              const Place& place) const {
         const ScrambledSobol points(key);
-        const Frame frame(n);
         ends.origins.clear(), ends.directions.clear(), ends.leaves.clear(), ends.patches.clear();
         for (std::uint32_t k = 0; k < rays; ++k) {
             ends.origins.push_back(place(points(k, 2), points(k, 3)));
-            ends.directions.push_back(cosine_direction(frame, points(k, 0), points(k, 1)));
+            ends.directions.push_back(met_direction(stage_.scene, sides, n, points(k, 0), points(k, 1)));
         }
         ends.hits.resize(rays);
         stage_.tracer.nearest(ends.origins, ends.directions, own, ends.hits);

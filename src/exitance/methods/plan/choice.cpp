@@ -46,6 +46,11 @@ bool runs_over_processes(Relaxation relaxation) {
 }
 
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
+    if (options.method == Method::automatic && stage.scene.has_diffusing_panes()) {
+        MethodChoice choice{options, "counts both sides of diffusing panes"};
+        choice.options.method = Method::matrix;
+        return choice;
+    }
     MethodChoice choice = choose_alone(stage, options);
     if (processes() == 1 || choice.options.method == Method::matrix) return choice;
     choice.why = fmt::format("{} would be the choice ({}), but does not run over processes",

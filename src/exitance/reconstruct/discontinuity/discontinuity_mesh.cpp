@@ -196,7 +196,7 @@ class Builder {
         if (!light.is_unshadowed()) return ShadowClass::penumbra;
         std::size_t facing = 0;
         for (const DirectLight::Emitter& e : stage_.direct.emitters()) {
-            if (e.region == light.own || e.plane.signed_distance(centre) <= 0) continue;
+            if (!stage_.direct.shines_on(e, light.own) || e.plane.signed_distance(centre) <= 0) continue;
             for (const PieceId p : e.pieces) {
                 const auto corners = stage_.occluders.corners(p);
                 facing += std::any_of(corners.begin(), corners.end(), [&](const Point& c) {

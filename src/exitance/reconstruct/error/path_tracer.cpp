@@ -1,6 +1,7 @@
 #include "exitance/reconstruct/error/path_tracer.hpp"
 
 #include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/form_factors/met_directions.hpp"
 
 namespace exitance {
 
@@ -15,12 +16,16 @@ PathTracer::PathTracer(const Stage& stage) : stage_(stage) {
 
 Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream& random) const {
     Spectrum sum, throughput(1.0);
-    std::optional<Vertex> y = follow(probe, cosine_direction(Frame(probe.n), a, b));
+    const Vec3 first = met_direction(stage_.scene, probe.region, probe.n, a, b);
+    std::optional<Vertex> y = follow(probe, first);
     while (y) {
         const Spectrum& rho = stage_.scene.material(y->region).reflectance;
         const double survival = max(rho);
         if (survival <= 0 || random.uniform() >= survival) return sum;
         throughput *= rho / survival;
+        // What leaves a diffusing pane came from either side.
+        if (const RegionId behind = stage_.scene.behind(y->region); !behind.is_none())
+            if (random.uniform() < stage_.scene.material(y->region).through) y = Vertex{y->x, -y->n, behind};
         sum += throughput * shadow_ray(*y, random);
         const Beams& beams = stage_.direct.beams();
         if (!beams.empty()) sum += throughput * beams.irradiance({y->x, y->n, y->region});

@@ -111,6 +111,7 @@ const ReceiverLight* TileLight::look_at_block(std::span<const Spot> spots, const
 /// r = d / 30 departs from its tangent by at most (r / d)^2 times a few: less than 1%, and its mean by a fraction.
 bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const {
     constexpr double small = 1.0 / 30, part_of_step = 1.0 / 8;
+    if (!known.behind.empty()) return false;  // a pane may stand close to a lamp behind it
     double radius_squared = 0;
     for (std::uint32_t i = 0; i < spot.count; ++i)
         radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));

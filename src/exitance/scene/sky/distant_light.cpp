@@ -24,7 +24,7 @@ void add_face(const DistantLight::Dome& dome, const Vec3& corner, const Vec3& u,
             DistantFacet facet;
             facet.corners = {at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)};
             facet.n = normalized(cross(u, v));
-            facet.exitance = dome.irradiance;
+            facet.exitance = dome.irradiance, facet.is_dome = true;
             if (!dome.model.is_uniform()) {
                 facet.sky = &dome.model;
                 facet.smooth_width = 1;

@@ -15,6 +15,7 @@ struct DistantFacet {
     Spectrum exitance;              ///< W/m^2
     const SkyModel* sky = nullptr;  ///< Its radiance by direction; null: the same everywhere.
     double smooth_width = 0;        ///< Of that, radians.
+    bool is_dome = false;           ///< Not of a disc.
 };
 
 /// Light from infinitely far away that comes from more than one direction: skies, the glow of the ground, the sun's

@@ -1,0 +1,160 @@
+// Surfaces that light passes diffusely.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/reconstruct/error/path_reference.hpp"
+#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/transport/stage.hpp"
+#include "support/solved.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double rho = 0.3, tau = 0.4;  // of the pane
+
+/// Two rooms side by side, 2 x 1 x 1 m and 1 x 1 x 1 m, a pane between them; the walls of each have a material.
+struct TwoRooms {
+    SceneDescription d;
+
+    TwoRooms(const Material& first, const Material& second, const Material& front, const Material& back) {
+        d.file = "rooms.obj";
+        d.materials = {first, second, front, back};
+        d.groups = {"all"};
+        room(-2, 0, 0), room(0, 1, 1);
+        face({{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}}, 2);
+        face({{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}, 3);
+    }
+    void room(double a, double b, std::uint32_t material) {
+        face({{a, 0, 0}, {b, 0, 0}, {b, 1, 0}, {a, 1, 0}}, material);
+        face({{a, 0, 1}, {a, 1, 1}, {b, 1, 1}, {b, 0, 1}}, material);
+        face({{a, 0, 0}, {a, 0, 1}, {b, 0, 1}, {b, 0, 0}}, material);
+        face({{a, 1, 0}, {b, 1, 0}, {b, 1, 1}, {a, 1, 1}}, material);
+        if (a < 0)
+            face({{a, 0, 0}, {a, 1, 0}, {a, 1, 1}, {a, 0, 1}}, material);
+        else
+            face({{b, 0, 0}, {b, 0, 1}, {b, 1, 1}, {b, 1, 0}}, material);
+    }
+    void face(std::vector<Point> corners, std::uint32_t material) {
+        SceneDescription::Face f;
+        for (const Point& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        f.material = material;
+        d.faces.push_back(std::move(f));
+    }
+    Scene scene() const {
+        CheckedScene checked = make_scene(SceneDescription(d));
+        EXI_CHECK(static_cast<bool>(checked.scene));
+        return std::move(*checked.scene);
+    }
+};
+
+Material wall(double reflectance, double exitance) {
+    return {"wall", Spectrum(reflectance), Spectrum(exitance)};
+}
+
+Material pane(double exitance = 0, double through = tau / (rho + tau)) {
+    return {"pane", Spectrum(rho + tau), Spectrum(exitance), {}, through};
+}
+
+/// Light in the first room and none in the second.
+Scene lit_and_dark() {
+    TwoRooms rooms(wall(0.5, 0), wall(0.6, 0), pane(), pane());
+    rooms.d.materials.push_back(wall(0, 10));
+    rooms.face({{-1.2, 0.4, 0.9}, {-1.2, 0.7, 0.9}, {-0.8, 0.7, 0.9}, {-0.8, 0.4, 0.9}}, 4);
+    return rooms.scene();
+}
+
+const std::vector<ProbePoint> places = {{{0.5, 0.5, 0}, {0, 0, 1}}, {{1, 0.3, 0.6}, {-1, 0, 0}},
+                                        {{0, 0.4, 0.3}, {1, 0, 0}}, {{0, 0.4, 0.3}, {-1, 0, 0}},
+                                        {{-1, 0.5, 0}, {0, 0, 1}},  {{-0.1, 0.2, 0}, {0, 0, 1}}};
+
+}  // namespace
+
+/// All of the first room glows with B_1 and all of the second with B_2 where walls emit (1 - rho) B and the pane what
+/// is missing on either side: then the light of each room is even, whatever its shape.
+TEST(DiffusingPanes, TwoEvenRoomsStayEven) {
+    constexpr double first = 5, second = 3, white = 0.5;
+    TwoRooms rooms(wall(white, (1 - white) * first), wall(white, (1 - white) * second),
+                   pane(first - rho * first - tau * second), pane(second - rho * second - tau * first));
+    const Scene scene = rooms.scene();
+    EXPECT_TRUE(scene.has_diffusing_panes());
+    const Solution solution = solved(scene, {.method = Method::matrix, .error = 0.01});
+    const RadiosityFunction light(solution);
+    const std::vector<Light> at = light.at(places);
+    for (std::size_t i : {0u, 1u}) EXPECT_NEAR(at[i].radiosity[0], second, 0.01 * second) << i;
+    for (std::size_t i : {4u, 5u}) EXPECT_NEAR(at[i].radiosity[0], first, 0.01 * first) << i;
+    EXPECT_NEAR(at[2].radiosity[0], second, 0.01 * second);
+    EXPECT_NEAR(at[3].radiosity[0], first, 0.01 * first);
+    EXPECT_NEAR(at[3].irradiance[0], (rho * first + tau * second) / (rho + tau), 0.01 * first);
+    EXPECT_LT(solution.statistics.energy.defect, 2e-3);
+}
+
+TEST(DiffusingPanes, LightComesIntoADarkRoomAsByPaths) {
+    const Scene scene = lit_and_dark();
+    const Solution solution = solved(scene, {.error = 0.02});
+    EXPECT_EQ(solution.statistics.method, "matrix");
+    const std::vector<Light> at = RadiosityFunction(solution).at(places);
+    Progress progress;
+    const std::vector<ReferenceLight> exact = reference_light(scene, places, 1 << 14, 1, progress, StopRequest());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_GT(exact[i].irradiance[0], 0.01) << i;
+        EXPECT_NEAR(at[i].irradiance[0], exact[i].irradiance[0],
+                    4 * exact[i].standard_error[0] + 0.03 * exact[i].irradiance[0])
+            << i;
+    }
+    EXPECT_LT(solution.statistics.energy.defect, 5e-3);
+    EXPECT_LT(*solution.statistics.relative_error_estimate, 0.02);
+}
+
+TEST(DiffusingPanes, DirectLightIsThatOfBothSides) {
+    const Scene scene = lit_and_dark();
+    const Stage stage(scene);
+    DirectLight::Workspace workspace;
+    ReceiverLight light;
+    RegionId front, back;
+    for (const RegionId r : scene.regions().ids())
+        if (scene.material(r).is_diffusing_pane()) (scene.regions()[r].plane.n.x < 0 ? front : back) = r;
+    ASSERT_EQ(scene.behind(front), back);
+    ASSERT_EQ(scene.behind(back), front);
+    const Point x{0, 0.3, 0.2};
+    const double met = stage.direct.irradiance(x, {-1, 0, 0}, front, workspace)[0],
+                 behind = stage.direct.irradiance(x, {1, 0, 0}, back, workspace)[0];
+    EXPECT_GT(met, 0);
+    EXPECT_NEAR(behind / met, tau / rho, 1e-9) << "the second room has no light of its own";
+    stage.direct.prepare(scene.regions()[back].loops[0], {1, 0, 0}, back, light, workspace);
+    EXPECT_FALSE(light.is_dark());
+    EXPECT_NEAR(stage.direct.irradiance(light, x, workspace)[0], behind, 1e-9);
+}
+
+TEST(DiffusingPanes, APaneThatPassesNothingIsAWall) {
+    const Scene scene = TwoRooms(wall(0.5, 1), wall(0.5, 0), pane(0, 0), pane(0, 0)).scene();
+    EXPECT_FALSE(scene.has_diffusing_panes());
+    const Solution solution = solved(scene, {.error = 0.05});
+    EXPECT_EQ(RadiosityFunction(solution).at(places)[0].irradiance[0], 0);
+}
+
+TEST(DiffusingPanes, AFileMayGiveOneSide) {
+    TwoRooms rooms(wall(0.5, 1), wall(0.5, 0), pane(), pane());
+    const std::size_t faces = rooms.d.faces.size();
+    rooms.d.faces.pop_back();
+    const Scene scene = rooms.scene();
+    EXPECT_EQ(scene.surfaces().size(), faces);
+    EXPECT_TRUE(scene.has_diffusing_panes());
+}
+
+TEST(DiffusingPanes, OtherMethodsRefuseThem) {
+    const Scene scene = lit_and_dark();
+    Progress progress;
+    for (const Method method : {Method::progressive, Method::substructuring, Method::monte_carlo, Method::hierarchical,
+                                Method::wavelet, Method::discontinuity, Method::growing_cells}) {
+        const Result<Solution> none = solve_scene(scene, {.method = method}, progress, StopRequest());
+        ASSERT_FALSE(none);
+        EXPECT_EQ(none.error().code, ErrorCode::usage);
+        EXPECT_NE(none.error().hint.find("matrix"), std::string::npos);
+    }
+}
+
+}  // namespace exitance

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "exitance/scene/pane.hpp"
+#include "exitance/scene/sky/distant_light.hpp"
+
+namespace exitance {
+
+/// The sky as it is seen through a pane, in one band: radiance by direction times what the pane lets through.
+class SkyWindow {
+  public:
+    /// The pane's normal leads inwards. `light` must outlive it.
+    SkyWindow(const Pane& pane, const DistantLight& light, std::size_t band);
+
+    /// Seen in a direction w of length 1, out of the window, over `reference`. Tables are right to 1e-5.
+    double relative(const Vec3& w) const {
+        double sum = 0;
+        for (const Half& half : halves_)
+            if (half.sky->below == (w.z < 0)) sum += half.scale * half.value(w);
+        return sum > 0 ? sum * at(through_, -dot(n_, w)) : 0;
+    }
+    /// pi times radiance in the mean over directions, W/m^2.
+    double reference() const { return reference_; }
+    bool is_dark() const { return !(reference_ > 0); }
+    /// Over how wide an angle it is smooth but at the horizon, radians.
+    double smooth_width() const { return width_; }
+
+  private:
+    static constexpr int steps = 1024;
+    using Table = std::array<float, steps + 2>;
+    /// Linear between entries, x from 0 to 1.
+    static double at(const Table& table, double x) {
+        const double place = std::clamp(x, 0.0, 1.0) * steps;
+        const int i = static_cast<int>(place);
+        const double low = table[static_cast<std::size_t>(i)];
+        return low + (place - i) * (table[static_cast<std::size_t>(i) + 1] - low);
+    }
+    struct Half {
+        const SkyModel* sky;
+        double scale;
+        bool is_uniform, has_tables;
+        Table by_height, by_sun;  ///< The model's two factors: by w.z, by the sine of half the angle to the sun.
+
+        Half(const SkyModel& model, double irradiance);
+        double value(const Vec3& w) const {
+            if (is_uniform) return 1;
+            if (!has_tables) return sky->relative(w);
+            const double sine_squared = 0.5 * (1 - dot(w, sky->sun));
+            constexpr double far = 0.95;  // there the table is steep
+            if (sine_squared > far) return sky->relative(w);
+            const double v = at(by_height, w.z) * at(by_sun, std::sqrt(std::max(0.0, sine_squared)));
+            return std::max(0.0, v);
+        }
+    };
+
+    Normal n_;
+    std::vector<Half> halves_;
+    Table through_;
+    double reference_ = 0, width_;
+};
+
+}  // namespace exitance
