@@ -11,6 +11,7 @@
 #include "exitance/reconstruct/discontinuity/face_lights.hpp"
 #include "exitance/reconstruct/discontinuity/findable.hpp"
 #include "exitance/reconstruct/discontinuity/mesh_progress.hpp"
+#include "exitance/reconstruct/discontinuity/misfit.hpp"
 #include "exitance/reconstruct/discontinuity/receiver_triangles.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -235,22 +236,7 @@ class Builder {
 
     /// `centre`: of the face, or of a triangle of it.
     ShadowClass class_of(std::uint32_t face, const Point& centre) const {
-        const ReceiverLight& light = lights_[face];
-        if (light.is_dark()) return ShadowClass::umbra;
-        if (!light.is_unshadowed()) return ShadowClass::penumbra;
-        std::size_t facing = 0;
-        for (const DirectLight::Emitter& e : stage_.direct.emitters()) {
-            if (e.region == light.own || e.plane.signed_distance(centre) <= 0) continue;
-            for (const PieceId p : e.pieces) {
-                const auto corners = stage_.occluders.corners(p);
-                facing += std::any_of(corners.begin(), corners.end(), [&](const Point& c) {
-                    return dot(light.n, c - centre) > stage_.occluders.rounding();
-                });
-            }
-        }
-        for (const PunctualLight& l : stage_.scene.lights())
-            facing += dot(light.n, l.is_directional() ? -l.direction : l.position - centre) > 0;
-        return light.sources.size() + light.beams.size() >= facing ? ShadowClass::lit : ShadowClass::penumbra;
+        return shadow_class(stage_.direct, lights_[face], centre);
     }
 
     /// Exact light at the nodes that have none yet. False, and nothing is done, where a request to stop cuts it short.
@@ -288,37 +274,9 @@ class Builder {
         return out;
     }
 
-    struct Misfit {
-        double squared = 0;  ///< Area times the mean square, W^2/m^2.
-        double largest = 0;  ///< W/m^2
-    };
-
-    /// The polynomial's misfit by its values at quarters of edges and within. A cubic error vanishes at the nodes: its
-    /// mean square is that of its parts x (1 - x) (x - 1/2) along the edges and of the bubble within.
-    Misfit misfit(std::uint32_t number) const {
-        const BisectionMesh::Triangle& t = mesh_.triangles()[number];
-        const Spectrum w = weight(region_[t.face]);
-        Misfit out;
-        double square = 0;
-        const auto look = [&](const Spectrum& error, double part) {
-            square += part * squared(w * error) / static_cast<double>(bands);
-            out.largest = std::max(out.largest, std::abs(mean(w * error)));
-        };
-        constexpr double of_edge = 0.1354 / 2, of_bubble = 0.2893 * (32.0 / 27) * (32.0 / 27);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Spectrum &a = values_[t.corner[i]], &b = values_[t.corner[(i + 1) % 3]], &m = values_[t.middle[i]];
-            look(values_[t.quarter[i][0]] - (0.375 * a + 0.75 * m - 0.125 * b), of_edge);
-            look(values_[t.quarter[i][1]] - (0.375 * b + 0.75 * m - 0.125 * a), of_edge);
-        }
-        const std::size_t i = t.longest, j = (i + 1) % 3, k = (i + 2) % 3;
-        // Weights of six nodes at the coordinates 1/4, 1/4 of the longest edge's ends and 1/2 of the corner across.
-        const Spectrum inner = -0.125 * (values_[t.corner[i]] + values_[t.corner[j]]) + 0.25 * values_[t.middle[i]] +
-                               0.5 * (values_[t.middle[j]] + values_[t.middle[k]]);
-        look(values_[t.inner] - inner, of_bubble);
-        out.squared = mesh_.area(number) * square;
-        return out;
+    Misfit misfit_of(std::uint32_t t) const {
+        return misfit(mesh_, t, values_, weight(region_[mesh_.triangles()[t].face]));
     }
-
     bool is_full() const { return mesh_.triangles().size() >= options_.max_triangles; }
 
     void refine(double tolerance) {
@@ -334,7 +292,7 @@ class Builder {
             }
             misfits_.resize(mesh_.triangles().size());
             const std::vector<std::uint32_t> fresh = mesh_.take_changed();
-            parallel_for(fresh.size(), 256, [&](std::size_t i) { misfits_[fresh[i]] = misfit(fresh[i]); });
+            parallel_for(fresh.size(), 256, [&](std::size_t i) { misfits_[fresh[i]] = misfit_of(fresh[i]); });
             double sum = 0;
             for (const Misfit& m : misfits_) sum += m.squared;
             const auto count = static_cast<double>(misfits_.size());

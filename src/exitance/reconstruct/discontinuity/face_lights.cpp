@@ -76,4 +76,22 @@ void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines
     if (!whole.is_dark()) Halves(direct, outlines, lights, stop, workspace).run(whole);
 }
 
+ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre) {
+    if (light.is_dark()) return ShadowClass::umbra;
+    if (!light.is_unshadowed()) return ShadowClass::penumbra;
+    const Occluders& occluders = direct.occluders();
+    std::size_t facing = 0;
+    for (const DirectLight::Emitter& e : direct.emitters()) {
+        if (e.region == light.own || e.plane.signed_distance(centre) <= 0) continue;
+        for (const PieceId p : e.pieces) {
+            const auto corners = occluders.corners(p);
+            facing += std::any_of(corners.begin(), corners.end(),
+                                  [&](const Point& c) { return dot(light.n, c - centre) > occluders.rounding(); });
+        }
+    }
+    for (const PunctualLight& l : occluders.scene().lights())
+        facing += dot(light.n, l.is_directional() ? -l.direction : l.position - centre) > 0;
+    return light.sources.size() + light.beams.size() >= facing ? ShadowClass::lit : ShadowClass::penumbra;
+}
+
 }  // namespace exitance

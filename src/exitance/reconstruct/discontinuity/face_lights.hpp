@@ -5,6 +5,7 @@
 
 #include "exitance/core/progress.hpp"
 #include "exitance/direct/direct_light.hpp"
+#include "exitance/mesh/discontinuity/six_node_mesh.hpp"
 
 namespace exitance {
 
@@ -20,5 +21,8 @@ struct FaceOutlines {
 /// is as long as there are faces. What has not been looked at when `stop` is requested stays dark.
 void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines, const ReceiverLight& whole,
                          std::span<ReceiverLight> lights, const StopRequest& stop, DirectLight::Workspace& workspace);
+
+/// Are the sources that a face's front can see all lit, all hidden, or neither? `centre`: of the face or of a part.
+ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre);
 
 }  // namespace exitance
