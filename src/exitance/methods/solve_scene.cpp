@@ -252,6 +252,14 @@ class Solver {
         statistics().seconds["mesh"] += watch.seconds();
     }
 
+    /// Plain elements for when no time is left for a mesh that follows shadows.
+    void project_coarsely() {
+        constexpr double coarse = 0.1;
+        const Knobs fine = std::exchange(knobs_, knobs_for_error(coarse, stage_.lit_pieces(), options_));
+        project_direct();
+        knobs_ = fine;
+    }
+
     /// One attempt: what the last one found is kept as far as it is good enough.
     void attempt() {
         if (step_ == Step::project) {
@@ -482,15 +490,20 @@ class Solver {
     bool make_discontinuity() {
         progress_.phase("discontinuities");
         reach(Step::output);
+        // Under a limit, coarse elements come first, so that there is light whenever time runs out.
+        const bool has_none = direct_.tree.size() == 0;
+        if (has_none && std::isfinite(stop_.seconds_left())) project_coarsely();
         SafePoints points = safe_points();
         const DiscontinuityReport report =
             add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
         statistics().seconds["mesh"] += report.mesh_seconds, statistics().seconds["direct"] += report.direct_seconds;
         mesh_seconds_ = report.mesh_seconds + report.direct_seconds;
         if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-        if (!solution_.discontinuity.empty()) return true;
-        if (direct_.tree.size() == 0) project_direct();
-        return false;
+        const bool follows_shadows = !solution_.discontinuity.empty();
+        // What is told of the mesh is not to depend on whether there was a limit.
+        if (follows_shadows && options_.bounces == 0 && !solution_.scene.has_light_from_outside()) direct_ = {};
+        if (!follows_shadows && direct_.tree.size() == 0) project_coarsely();
+        return follows_shadows;
     }
 
     void make_output_mesh() {
