@@ -492,7 +492,10 @@ class Solver {
         reach(Step::output);
         // Under a limit, coarse elements come first, so that there is light whenever time runs out.
         const bool has_none = direct_.tree.size() == 0;
-        if (has_none && std::isfinite(stop_.seconds_left())) project_coarsely();
+        if (has_none && std::isfinite(stop_.seconds_left())) {
+            project_coarsely();
+            progress_.phase("discontinuities");
+        }
         SafePoints points = safe_points();
         const DiscontinuityReport report =
             add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
