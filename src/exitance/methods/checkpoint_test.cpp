@@ -102,4 +102,41 @@ TEST(Checkpoint, WhatWasKeptBeforeAnInterruptLeadsToTheSameBits) {
     }
 }
 
+TEST(Checkpoint, ADiscontinuityMeshThatWasInterruptedGoesOnWithWhatItHad) {
+    /// Asks for a stop once so many states have been kept.
+    class StopsAfterStates final : public CheckpointStore {
+      public:
+        StopsAfterStates(std::size_t count, StopRequest& stop) : left_(count), stop_(stop) {}
+        bool is_due() const override { return true; }
+        void keep(std::string state) override {
+            last = std::move(state);
+            if (--left_ == 0) stop_.interrupt();
+        }
+        std::string resumed() const override { return {}; }
+        std::string last;
+
+      private:
+        std::size_t left_;
+        StopRequest& stop_;
+    };
+    const Scene scene = built_scene("table");
+    const SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
+    const Solution whole = solved(scene, options, nullptr);
+    for (const std::size_t states : {2, 3, 4}) {  // curves, first nodes, nodes of a round of bisection
+        StopRequest stop;
+        Progress progress;
+        StopsAfterStates store(states, stop);
+        ASSERT_TRUE(solve_scene(scene, options, progress, stop, &store));
+        ASSERT_TRUE(stop.requested());
+        AllStates resumed(store.last);
+        const Solution again = solved(scene, options, &resumed);
+        expect_same(again, whole);
+        EXPECT_EQ(again.discontinuity.values, whole.discontinuity.values);
+        EXPECT_EQ(again.discontinuity.nodes, whole.discontinuity.nodes);
+        EXPECT_EQ(again.discontinuity.curves.size(), whole.discontinuity.curves.size());
+        EXPECT_EQ(again.statistics.figures.at("resumed_receivers"), static_cast<double>(scene.regions().size()));
+        EXPECT_EQ(again.statistics.figures.at("resumed_nodes") > 0, states > 2);
+    }
+}
+
 }  // namespace exitance

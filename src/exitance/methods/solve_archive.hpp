@@ -46,6 +46,12 @@ void archive(Archive& a, GlobalLight& light) {
 }
 
 template <class Archive>
+void archive(Archive& a, KeptLinks& kept) {
+    auto& [elements, links] = kept;
+    a(elements, links);
+}
+
+template <class Archive>
 void archive(Archive& a, LocalPassReport& report) {
     auto& [rays, noise, interpolation, leaves, interrupted] = report;
     a(rays, noise, interpolation, leaves, interrupted);

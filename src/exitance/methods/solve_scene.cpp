@@ -64,8 +64,8 @@ class Solver {
         }
         if (options_.bounces != 0 && stage_.has_indirect_light()) {
             resume();
-            solve_indirect_light();
-        } else {
+            if (step_ != Step::output) solve_indirect_light();
+        } else if (resume(); step_ != Step::output) {
             if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
             statistics().elements = direct_.tree.size();
             statistics().leaf_elements = direct_.tree.leaves().size();
@@ -91,7 +91,7 @@ class Solver {
     }
 
     /// What comes next within an attempt.
-    enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide };
+    enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide, output };
 
     SolveStatistics& statistics() { return solution_.statistics; }
 
@@ -113,8 +113,8 @@ class Solver {
     void archive_state(Archive& a, std::string& phase) {
         a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase,
           becomes_linear_);
-        a(light_in_, solution_.indirect, solution_.cells, solution_.direct_share, solution_.direct_in_elements,
-          solution_.statistics);
+        a(light_in_, solution_.indirect, solution_.links, solution_.cells, solution_.direct_share,
+          solution_.direct_in_elements, solution_.statistics);
         bool has_local_pass = local_pass_.has_value();
         a(has_local_pass);
         if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
@@ -226,6 +226,14 @@ class Solver {
             direct_ = std::move(fresh);
         }
         statistics().seconds["mesh"] += watch.seconds();
+    }
+
+    /// Plain elements for when no time is left for a mesh that follows shadows.
+    void project_coarsely() {
+        constexpr double coarse = 0.1;
+        const Knobs fine = std::exchange(knobs_, knobs_for_error(coarse, stage_.lit_pieces(), options_));
+        project_direct();
+        knobs_ = fine;
     }
 
     /// One attempt: what the last one found is kept as far as it is good enough.
@@ -456,13 +464,24 @@ class Solver {
     /// stop left no time for any: then plain elements are made.
     bool make_discontinuity() {
         progress_.phase("discontinuities");
-        const DiscontinuityReport report = add_discontinuity_mesh(stage_, options_, solution_, stop_);
+        reach(Step::output);
+        // Under a limit, coarse elements come first, so that there is light whenever time runs out.
+        const bool has_none = direct_.tree.size() == 0;
+        if (has_none && std::isfinite(stop_.seconds_left())) {
+            project_coarsely();
+            progress_.phase("discontinuities");
+        }
+        SafePoints points = safe_points();
+        const DiscontinuityReport report =
+            add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
         statistics().seconds["mesh"] += report.mesh_seconds, statistics().seconds["direct"] += report.direct_seconds;
         mesh_seconds_ = report.mesh_seconds + report.direct_seconds;
         if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-        if (!solution_.discontinuity.empty()) return true;
-        if (direct_.tree.size() == 0) project_direct();
-        return false;
+        const bool follows_shadows = !solution_.discontinuity.empty();
+        // What is told of the mesh is not to depend on whether there was a limit.
+        if (follows_shadows && options_.bounces == 0 && !solution_.scene.has_light_from_outside()) direct_ = {};
+        if (!follows_shadows && direct_.tree.size() == 0) project_coarsely();
+        return follows_shadows;
     }
 
     void make_output_mesh() {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/error/path_reference.hpp"
@@ -311,6 +312,41 @@ TEST(SolveScene, ADiscontinuityMeshThatIsNeverMadeLeavesPlainElements) {
     EXPECT_EQ(solution->statistics.stopped_by, "interrupt");
     EXPECT_TRUE(solution->discontinuity.empty());
     EXPECT_GE(solution->interpolant.tree.roots().size(), scene.regions().size());
+}
+
+TEST(SolveScene, UnderALimitADiscontinuityMeshThatIsNotReadyLeavesLight) {
+    /// Asks for a stop once plain elements have their light.
+    class StopsAfterPlainElements final : public Progress {
+      public:
+        explicit StopsAfterPlainElements(StopRequest& stop) : stop_(stop) {}
+        void note(std::string_view message) override {
+            if (message.starts_with("direct light scaled")) stop_.interrupt();
+        }
+
+      private:
+        StopRequest& stop_;
+    };
+    const Scene scene = built_scene("gcr2");
+    const SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error = 0.02};
+    const auto far = StopRequest::Clock::now() + std::chrono::hours(1);
+    StopRequest stop;
+    stop.set_deadline(far);
+    StopsAfterPlainElements stops(stop);
+    const Result<Solution> cut_short = solve_scene(scene, options, stops, stop);
+    ASSERT_TRUE(cut_short);
+    EXPECT_TRUE(cut_short->discontinuity.empty());
+    EXPECT_FALSE(cut_short->statistics.relative_error_estimate_interpolant);
+    EXPECT_LT(cut_short->statistics.energy.defect, 0.05);
+    // A limit that is never reached changes nothing.
+    Progress progress;
+    StopRequest unused;
+    unused.set_deadline(far);
+    const Result<Solution> limited = solve_scene(scene, options, progress, unused);
+    const Solution whole = solved(scene, options);
+    ASSERT_TRUE(limited);
+    EXPECT_EQ(limited->discontinuity.values, whole.discontinuity.values);
+    EXPECT_EQ(limited->interpolant.values, whole.interpolant.values);
+    EXPECT_EQ(limited->statistics.energy.absorbed, whole.statistics.energy.absorbed);
 }
 
 /// Interrupts a solve in a round of links of its second attempt.

@@ -62,6 +62,7 @@ void ShadowEventFinder::find_non_emitter(const PlaneFrame& receiver, RegionId ow
     if (source.is_point) return;
     set(receiver, own, lo, hi, source, among);
     for (const auto& [number, w] : corners_) {
+        if (is_stopped()) return;
         if (frame_->height(w) <= least_ || source.plane.signed_distance(w) <= least_) continue;
         for (const std::uint32_t e : among) {
             const BlockerEdges::Edge& edge = edges_->edges()[e];

@@ -74,34 +74,54 @@ bool ShadowEventFinder::clip_to_box(Wedge& wedge, double height) const {
            side(a.y, b.y, d.y, hi_.y, -1);
 }
 
-/// Adds to hidden_ the parameters of sight lines that a piece stands in.
-void ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId number) {
+/// Adds to hidden_ the parameters of sight lines that a piece stands in. True where it stands in all of them.
+bool ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId number) {
     const ConvexPiece& piece = occluders_->pieces()[number];
-    if (occluders_->is_own(piece.region, own_) || piece.region == source_->region) return;
+    if (occluders_->is_own(piece.region, own_) || piece.region == source_->region) return false;
     const double tolerance = edges_->tolerance();
     const bool holds_apex = std::abs(piece.plane.signed_distance(wedge.apex)) <= tolerance;
     const bool holds_base = std::abs(piece.plane.signed_distance(wedge.base)) <= tolerance &&
                             std::abs(piece.plane.signed_distance(wedge.base + wedge.along)) <= tolerance;
     if (holds_base || (holds_apex && (wedge.beyond || wedge.passes_apex)))
-        return;  // it meets the wedge in the sight lines' own corner or edge
+        return false;  // it meets the wedge in the sight lines' own corner or edge
     Point c, d;
-    if (!crossing(occluders_->corners(number), wedge.apex, normal, tolerance, c, d)) return;
-    if (!cut(c, d, frame_->height(c), frame_->height(d), least_)) return;
+    if (!crossing(occluders_->corners(number), wedge.apex, normal, tolerance, c, d)) return false;
+    if (!cut(c, d, frame_->height(c), frame_->height(d), least_)) return false;
     if (!source_->is_point && !cut(c, d, source_->plane.signed_distance(c), source_->plane.signed_distance(d), least_))
-        return;
+        return false;
     // p = apex + m (base - apex + t along), by two equations in the wedge's plane
     const Vec3 b = wedge.base - wedge.apex;
     const double area = dot(cross(b, wedge.along), normal);
     const auto m_of = [&](const Point& p) { return dot(cross(p - wedge.apex, wedge.along), normal) / area; };
     const auto mt_of = [&](const Point& p) { return dot(cross(b, p - wedge.apex), normal) / area; };
+    bool all = false;
     const auto add = [&](Point from, Point to, double sign) {
         constexpr double near = 1e-9;
         if (!cut(from, to, sign * m_of(from), sign * m_of(to), near)) return;
         const double s = mt_of(from) / m_of(from), t = mt_of(to) / m_of(to);
         hidden_.emplace_back(std::min(s, t), std::max(s, t));
+        all |= hidden_.back().first <= wedge.first && hidden_.back().second >= wedge.last;
     };
     add(c, d, 1);
     if (wedge.beyond || wedge.passes_apex) add(c, d, -1);
+    return all;
+}
+
+/// The part of a wedge's plane, as thick as what is one, between its outermost sight lines: on the base's side of the
+/// apex (1) or on the other (-1), before the receiver and the source.
+ConvexRegion ShadowEventFinder::fan(const Wedge& wedge, const Vec3& normal, double side) const {
+    const Point p = wedge.base + wedge.first * wedge.along, q = wedge.base + wedge.last * wedge.along;
+    const double slack = edges_->tolerance(), at = dot(normal, wedge.apex);
+    ConvexRegion out;
+    out.add({normal, at - slack}), out.add({-normal, -at - slack});
+    for (const auto& [from, other] : {std::pair{p, q}, std::pair{q, p}}) {
+        Vec3 inside = cross(normal, from - wedge.apex);
+        if (side * dot(inside, other - wedge.apex) < 0) inside = -inside;
+        out.add({inside, dot(inside, wedge.apex) - slack * norm(inside)});
+    }
+    out.add({frame_->n, dot(frame_->n, frame_->origin)});
+    if (!source_->is_point) out.add(source_->plane);
+    return out;
 }
 
 void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std::vector<ShadowEvent>& events) {
@@ -112,24 +132,17 @@ void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std:
     if (!(area > 0)) return;
     const Vec3 normal = across / area;
     hidden_.clear();
-    ConvexRegion region;
-    const double slack = edges_->tolerance();
-    const double at = dot(normal, wedge.apex);
-    region.add({normal, at - slack}), region.add({-normal, -at - slack});
-    const auto visit = [&](PieceId piece) {
-        blank(wedge, normal, piece);
-        return false;
-    };
-    // Within the fan only, where sight lines end at the receiver; beyond the apex there are two fans.
-    if (!wedge.beyond && !wedge.passes_apex)
-        for (const auto& [from, other] : {std::pair{p, q}, std::pair{q, p}}) {
-            Vec3 inside = cross(normal, from - wedge.apex);
-            if (dot(inside, other - wedge.apex) < 0) inside = -inside;
-            region.add({inside, dot(inside, wedge.apex) - slack * norm(inside)});
-        }
-    region.add({frame_->n, dot(frame_->n, frame_->origin)});
-    occluders_->visit_inner(Occluders::Size::large, region, visit, {});
-    occluders_->visit_inner(Occluders::Size::small, region, visit, {});
+    bool all = false;
+    const auto visit = [&](PieceId piece) { return all = blank(wedge, normal, piece); };
+    // Sight lines that go on beyond the apex have a fan on either side of it.
+    const bool both = wedge.beyond || wedge.passes_apex;
+    for (const double side : {1.0, -1.0}) {
+        if (side < 0 && !both) break;
+        const ConvexRegion region = fan(wedge, normal, side);
+        for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})
+            if (!all) occluders_->visit_inner(size, region, visit, {});
+    }
+    if (all) return;
     std::sort(hidden_.begin(), hidden_.end());
     constexpr double shortest = 1e-9;
     double from = wedge.first;
@@ -147,7 +160,8 @@ void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std:
 }
 
 void ShadowEventFinder::add_corner_over_edge(const Point& s, const Vec3& before, const Vec3& after,
-                                             const BlockerEdges::Edge& edge, std::vector<ShadowEvent>& events) {
+                                             const BlockerEdges::Edge& edge, double gain,
+                                             std::vector<ShadowEvent>& events) {
     const double height = frame_->height(s);
     if (height <= least_ || !edges_->is_outline(edge, s)) return;
     Wedge wedge{s, edge.a, edge.b - edge.a};
@@ -162,14 +176,18 @@ void ShadowEventFinder::add_corner_over_edge(const Point& s, const Vec3& before,
     const double size = norm(plane);
     if (!(size > 0)) return;
     ShadowEvent event;
+    event.gain = gain;
     for (const Vec3& f : {before, after}) event.is_kink |= std::abs(dot(plane, f)) <= coplanar_sine * size * norm(f);
+    if (!counts(event)) return;
     const double t = 0.5 * (wedge.first + wedge.last), h = frame_->height(edge.a + t * (edge.b - edge.a));
     event.width = source_->size * std::max(h, 0.0) / std::max(height - h, 1e-9 * height);
     keep_visible(wedge, event, events);
 }
 
-void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, std::uint32_t corner, const Point& w,
+void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, std::size_t index,
                                              std::vector<ShadowEvent>& events) {
+    const std::uint32_t corner = corners_[index].first;
+    const Point w = corners_[index].second;
     const double height = frame_->height(w);
     if (height <= least_ || source_->plane.signed_distance(w) <= least_) return;
     const Vec3 plane = cross(q0 - w, q1 - w);
@@ -177,7 +195,7 @@ void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, s
     if (!(size > 0)) return;
     bool outline = false;
     ShadowEvent event;
-    event.by_edge_of_source = true;
+    event.by_edge_of_source = true, event.gain = corner_gains_[index];
     auto at = std::lower_bound(edges_at_.begin(), edges_at_.end(), std::pair{corner, 0u});
     for (; at != edges_at_.end() && at->first == corner; ++at) {
         const BlockerEdges::Edge& edge = edges_->edges()[at->second];
@@ -186,7 +204,7 @@ void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, s
         const Vec3 d = edge.b - edge.a;
         event.is_kink |= std::abs(dot(plane, d)) <= coplanar_sine * size * norm(d);
     }
-    if (!outline) return;
+    if (!outline || !counts(event)) return;
     Wedge wedge{w, q0, q1 - q0, 0, 1, true};
     if (!clip_to_box(wedge, height)) return;
     const double t = 0.5 * (wedge.first + wedge.last), h = frame_->height(q0 + t * (q1 - q0));
@@ -210,6 +228,14 @@ void ShadowEventFinder::set(const PlaneFrame& receiver, RegionId own, Vec2 lo, V
         std::unique(corners_.begin(), corners_.end(), [](const auto& x, const auto& y) { return x.first == y.first; }),
         corners_.end());
     std::sort(edges_at_.begin(), edges_at_.end());
+    corner_gains_.assign(corners_.size(), bounds_.gains.empty() ? HUGE_VAL : 0);
+    for (std::size_t i = 0; i < bounds_.gains.size() && i < among.size(); ++i)
+        for (const std::uint32_t end : edges_->edges()[among[i]].ends) {
+            const auto at = std::lower_bound(corners_.begin(), corners_.end(), end,
+                                             [](const auto& corner, std::uint32_t n) { return corner.first < n; });
+            double& gain = corner_gains_[static_cast<std::size_t>(at - corners_.begin())];
+            gain = std::max(gain, bounds_.gains[i]);
+        }
 }
 
 void ShadowEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
@@ -219,10 +245,11 @@ void ShadowEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, 
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const Point &s = loop[i], &next = loop[(i + 1) % loop.size()];
             const Point& previous = loop[(i + loop.size() - 1) % loop.size()];
-            for (const std::uint32_t e : among)
-                add_corner_over_edge(s, previous - s, next - s, edges_->edges()[e], events);
+            for (std::size_t e = 0; e < among.size() && !is_stopped(); ++e)
+                add_corner_over_edge(s, previous - s, next - s, edges_->edges()[among[e]],
+                                     bounds_.gains.empty() ? HUGE_VAL : bounds_.gains[e], events);
             if (source.is_point) continue;
-            for (const auto& [number, w] : corners_) add_edge_over_corner(s, next, number, w, events);
+            for (std::size_t c = 0; c < corners_.size() && !is_stopped(); ++c) add_edge_over_corner(s, next, c, events);
         }
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "exitance/core/progress.hpp"
 #include "exitance/visibility/blocker_edges.hpp"
 #include "exitance/visibility/critical_lines.hpp"
 #include "exitance/visibility/occluders.hpp"
@@ -18,6 +20,14 @@ struct ShadowEvent {
     bool by_edge_of_source = false;  ///< An edge of the source over a blocker's corner (EV), not a corner over an edge.
     bool by_blockers_alone = false;  ///< A corner of a blocker over another edge of one (NEV), before the source.
     double width = 0;                ///< Of the half-shadow that begins here, metres.
+    double gain = HUGE_VAL;          ///< What the source may bring beyond the edge at most, as EventBounds tells.
+};
+
+/// What the source may bring at most beyond each edge of a blocker, and what an event must bring to be looked for.
+struct EventBounds {
+    std::span<const double> gains = {};  ///< By edge, as they are numbered in `among`; empty: any.
+    double least_bend = 0;               ///< Of events that bend light only (D2).
+    const StopRequest* stop = nullptr;   ///< Once it is requested, what is found is not complete.
 };
 
 /// The corners and edges of a source, the front of whose plane it shines into. A point alone is a source, too: then
@@ -39,7 +49,8 @@ struct EventSource {
 /// a blocker's edge.
 class ShadowEventFinder {
   public:
-    ShadowEventFinder(const Occluders& occluders, const BlockerEdges& edges) : occluders_(&occluders), edges_(&edges) {}
+    ShadowEventFinder(const Occluders& occluders, const BlockerEdges& edges, const EventBounds& bounds = {})
+        : occluders_(&occluders), edges_(&edges), bounds_(bounds) {}
 
     /// Appends the events of the blockers' edges numbered `among`, as far as they reach into the box lo..hi of the
     /// receiver. `own` is the receiver's region.
@@ -51,7 +62,8 @@ class ShadowEventFinder {
     void find_non_emitter(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
                           std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events);
 
-    std::size_t wedges = 0;  ///< Looked at so far.
+    std::size_t wedges = 0;    ///< Looked at so far.
+    std::size_t too_weak = 0;  ///< Wedges of D2 events that were left out for what they may bring.
 
   private:
     /// A fan of sight lines: from `apex` through base + t along, t in [first, last]; `beyond`: lines end behind the
@@ -70,14 +82,25 @@ class ShadowEventFinder {
     void add_corner_before_edge(std::uint32_t corner, const Point& w, const BlockerEdges::Edge& edge, bool beyond,
                                 std::vector<ShadowEvent>& events);
     void add_corner_over_edge(const Point& s, const Vec3& before, const Vec3& after, const BlockerEdges::Edge& edge,
-                              std::vector<ShadowEvent>& events);
-    void add_edge_over_corner(const Point& q0, const Point& q1, std::uint32_t corner, const Point& w,
-                              std::vector<ShadowEvent>& events);
+                              double gain, std::vector<ShadowEvent>& events);
+    void add_edge_over_corner(const Point& q0, const Point& q1, std::size_t corner, std::vector<ShadowEvent>& events);
     bool clip_to_box(Wedge& wedge, double height) const;
+    ConvexRegion fan(const Wedge& wedge, const Vec3& normal, double side) const;
     void keep_visible(const Wedge& wedge, ShadowEvent event, std::vector<ShadowEvent>& events);
-    void blank(const Wedge& wedge, const Vec3& normal, PieceId piece);
+    bool blank(const Wedge& wedge, const Vec3& normal, PieceId piece);
     Vec2 shadow(const Wedge& wedge, double t) const;
     bool limit(double at_zero, double rate, double& first, double& last) const;
+    /// The clock is looked at for every so many wedges only.
+    bool is_stopped() {
+        constexpr std::size_t wedges_a_look = 64;
+        return bounds_.stop && ++asked_ % wedges_a_look == 0 && bounds_.stop->requested();
+    }
+    /// Does an event of so much light count? Those that only bend it count from a limit on.
+    bool counts(const ShadowEvent& event) {
+        const bool weak = !source_->is_point && !event.is_kink && event.gain < bounds_.least_bend;
+        too_weak += weak;
+        return !weak;
+    }
 
     const Occluders* occluders_;
     const BlockerEdges* edges_;
@@ -88,7 +111,10 @@ class ShadowEventFinder {
     Vec2 lo_, hi_;
     double least_ = 0;  ///< Metres: what is lower over a plane lies in it.
     std::vector<std::pair<double, double>> hidden_;
+    EventBounds bounds_;
+    std::size_t asked_ = 0;  ///< How often whether to stop.
     std::vector<std::pair<std::uint32_t, Point>> corners_;
+    std::vector<double> corner_gains_;                               ///< The most of the edges that end there.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_at_;  ///< Corner, edge; sorted.
 };
 

@@ -195,7 +195,7 @@ void ThreeEdgeEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 l
                 const BlockerEdges::Edge& edge = edges_->edges()[e];
                 if (edges_->is_outline(edge, q0) || edges_->is_outline(edge, q1)) outlines.push_back(e);
             }
-            for (std::size_t j = 0; j < outlines.size(); ++j)
+            for (std::size_t j = 0; j < outlines.size() && !(stop_ && stop_->requested()); ++j)
                 for (std::size_t k = j + 1; k < outlines.size(); ++k) {
                     const BlockerEdges::Edge &e = edges_->edges()[outlines[j]], &f = edges_->edges()[outlines[k]];
                     const bool meet = e.ends[0] == f.ends[0] || e.ends[0] == f.ends[1] || e.ends[1] == f.ends[0] ||

@@ -32,8 +32,9 @@ struct ThreeEdgeEvent {
 /// what remains is O(log n) each. Source: [Heckbert92], [Drettakis94].
 class ThreeEdgeEventFinder {
   public:
-    ThreeEdgeEventFinder(const Occluders& occluders, const BlockerEdges& edges)
-        : occluders_(&occluders), edges_(&edges) {}
+    /// Once `stop` is requested, what is found is not complete.
+    ThreeEdgeEventFinder(const Occluders& occluders, const BlockerEdges& edges, const StopRequest* stop = nullptr)
+        : occluders_(&occluders), edges_(&edges), stop_(stop) {}
 
     /// Appends events of the edges numbered `among` within the box lo..hi of the receiver. With `umbra_only` those that
     /// may bound an umbra. `sagitta`: how far a polyline may be off its conic, metres.
@@ -60,6 +61,7 @@ class ThreeEdgeEventFinder {
 
     const Occluders* occluders_;
     const BlockerEdges* edges_;
+    const StopRequest* stop_;
     const PlaneFrame* frame_ = nullptr;
     const EventSource* source_ = nullptr;
     RegionId own_;

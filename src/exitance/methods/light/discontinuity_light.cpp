@@ -58,11 +58,12 @@ ConicCurves conics_of(ThreeEdgeEvents asked) {
 }  // namespace
 
 DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOptions& options, Solution& solution,
-                                           const StopRequest& stop) {
+                                           const StopRequest& stop, SafePoints* safe_points) {
     const ElementLocator locator(solution.indirect.tree, solution.scene.regions().size());
     DiscontinuityOptions ask{.error = options.error_interpolant.value_or(options.error_target()),
                              .direct_weight = Spectrum(1.0) - solution.direct_share,
-                             .seed = options.seed};
+                             .seed = options.seed,
+                             .safe_points = safe_points};
     ask.largest_error = calibrated::largest_dm_error * ask.error;
     if (options.bounces != 0)
         ask.indirect = [&](RegionId r, const Point& p) { return solution.indirect.at(locator.find(r, p)); };
@@ -80,6 +81,10 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     statistics.discontinuity = report.counts;
     statistics.elements = statistics.leaf_elements = report.counts.triangles;
     statistics.figures["candidate_share"] = report.candidate_share;
+    if (report.resumed_receivers > 0) {
+        statistics.figures["resumed_receivers"] = static_cast<double>(report.resumed_receivers);
+        statistics.figures["resumed_nodes"] = static_cast<double>(report.resumed_nodes);
+    }
     if (choice.sources) {
         statistics.figures["secondary_sources"] = static_cast<double>(ask.secondary.size());
         statistics.figures["secondary_curves"] = static_cast<double>(report.secondary_curves);

@@ -8,7 +8,10 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
+#include "exitance/reconstruct/discontinuity/face_lights.hpp"
 #include "exitance/reconstruct/discontinuity/findable.hpp"
+#include "exitance/reconstruct/discontinuity/mesh_progress.hpp"
+#include "exitance/reconstruct/discontinuity/misfit.hpp"
 #include "exitance/reconstruct/discontinuity/receiver_triangles.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -37,6 +40,7 @@ class Builder {
 
     SixNodeMesh run() {
         Stopwatch watch;
+        resume();
         look_ahead();
         report_.direct_seconds += watch.restart();
         if (!stop_.requested()) find_curves();
@@ -106,6 +110,42 @@ class Builder {
         area_ = total;
     }
 
+    /// What an earlier run has found, as far as it came.
+    void resume() {
+        if (!options_.safe_points) return;
+        const std::size_t regions = stage_.scene.regions().size();
+        options_.safe_points->resume([&](ArchiveReader& a) { a(found_); });
+        if (found_.receivers.size() != regions) found_ = {};
+        found_.receivers.resize(regions);
+        for (const FoundCurves& found : found_.receivers) report_.resumed_receivers += found.is_done;
+        report_.resumed_nodes = found_.values.size();
+    }
+
+    /// Values that an earlier run knew beyond those that are looked at again remain what there is to go on from.
+    void keep() {
+        if (!options_.safe_points) return;
+        options_.safe_points->pass([&](ArchiveWriter& a) {
+            const bool ahead = values_.size() > found_.values.size();
+            a(found_.receivers, ahead ? values_ : found_.values);
+        });
+    }
+
+    ReceiverCurves curves_of(const CurveFinder& finder, std::uint32_t number) {
+        const RegionId region(number);
+        if (!found_.receivers.empty() && found_.receivers[number].is_done) {
+            const FoundCurves& found = found_.receivers[number];
+            ReceiverCurves out = finder.look(region);
+            out.loops = found.loops, out.curves = found.curves;
+            out.wedges = found.wedges, out.left_out = found.left_out;
+            return out;
+        }
+        ReceiverCurves out = finder.find(region);
+        if (options_.indirect) finder.add_contacts_in_the_dark(region, out);
+        if (!found_.receivers.empty() && !stop_.requested())
+            found_.receivers[number] = {true, out.loops, out.curves, out.wedges, out.left_out};
+        return out;
+    }
+
     void find_curves() {
         const BlockerEdges edges(stage_.occluders);
         constexpr double unseen = 0.1, tiny = 1e-5;
@@ -125,13 +165,16 @@ class Builder {
         std::vector<ReceiverTriangles> triangles(regions);
         const TriangleOptions cut{options_.triangulation, options_.premesh, options_.penumbra_first,
                                   1e-7 * stage_.scene.size()};
-        parallel_for(regions, 1, [&](std::size_t i) {
-            if (stop_.requested()) return;
-            receivers[i].emplace(finder.find(RegionId(static_cast<std::uint32_t>(i))));
-            if (options_.indirect)
-                finder.add_contacts_in_the_dark(RegionId(static_cast<std::uint32_t>(i)), *receivers[i]);
-            if (!stop_.requested()) triangles[i] = receiver_triangles(*receivers[i], cut);
-        });
+        // Where the state is kept from time to time, some receivers have to be ready together.
+        const std::size_t batch = options_.safe_points ? 256 : regions;
+        for (std::size_t first = 0; first < regions && !stop_.requested(); first += batch) {
+            parallel_for(std::min(batch, regions - first), 1, [&](std::size_t k) {
+                if (stop_.requested()) return;
+                receivers[first + k].emplace(curves_of(finder, static_cast<std::uint32_t>(first + k)));
+                if (!stop_.requested()) triangles[first + k] = receiver_triangles(*receivers[first + k], cut);
+            });
+            keep();
+        }
         if (stop_.requested()) return;
         std::vector<std::uint32_t> whole;
         for (const RegionId r : stage_.scene.regions().ids()) {
@@ -142,15 +185,17 @@ class Builder {
             record(r, receiver);
         }
         lights_.resize(region_.size());
-        parallel_ranges(region_.size(), 16, [&](std::size_t first, std::size_t last) {
+        std::vector<std::size_t> first_face(regions + 1, 0);
+        for (const std::uint32_t r : whole) ++first_face[r + 1];
+        std::partial_sum(first_face.begin(), first_face.end(), first_face.begin());
+        parallel_for(regions, 1, [&](std::size_t r) {
+            FaceOutlines outlines{{}, receivers[r]->frame.u, receivers[r]->frame.v};
+            const std::size_t first = first_face[r], count = first_face[r + 1] - first;
+            for (std::size_t f = first; f < first + count; ++f)
+                outlines.faces.push_back(outline(static_cast<std::uint32_t>(f)));
             DirectLight::Workspace workspace;
-            for (std::size_t f = first; f < last && !stop_.requested(); ++f) {
-                const ReceiverLight& light = receivers[whole[f]]->light;
-                if (light.is_dark())
-                    lights_[f].n = light.n, lights_[f].own = light.own;
-                else
-                    stage_.direct.prepare(outline(static_cast<std::uint32_t>(f)), light, lights_[f], workspace);
-            }
+            prepare_face_lights(stage_.direct, outlines, receivers[r]->light, std::span(lights_).subspan(first, count),
+                                stop_, workspace);
         });
         std::size_t candidates = 0;
         for (std::uint32_t f = 0; f < lights_.size(); ++f) {
@@ -191,36 +236,32 @@ class Builder {
 
     /// `centre`: of the face, or of a triangle of it.
     ShadowClass class_of(std::uint32_t face, const Point& centre) const {
-        const ReceiverLight& light = lights_[face];
-        if (light.is_dark()) return ShadowClass::umbra;
-        if (!light.is_unshadowed()) return ShadowClass::penumbra;
-        std::size_t facing = 0;
-        for (const DirectLight::Emitter& e : stage_.direct.emitters()) {
-            if (!stage_.direct.shines_on(e, light.own) || e.plane.signed_distance(centre) <= 0) continue;
-            for (const PieceId p : e.pieces) {
-                const auto corners = stage_.occluders.corners(p);
-                facing += std::any_of(corners.begin(), corners.end(), [&](const Point& c) {
-                    return dot(light.n, c - centre) > stage_.occluders.rounding();
-                });
-            }
-        }
-        for (const PunctualLight& l : stage_.scene.lights())
-            facing += dot(light.n, l.is_directional() ? -l.direction : l.position - centre) > 0;
-        return light.sources.size() + light.beams.size() >= facing ? ShadowClass::lit : ShadowClass::penumbra;
+        return shadow_class(stage_.direct, lights_[face], centre);
     }
 
     /// Exact light at the nodes that have none yet. False, and nothing is done, where a request to stop cuts it short.
     bool light_nodes() {
-        const std::size_t first_node = values_.size();
-        values_.resize(mesh_.nodes().size());
-        std::atomic<std::size_t> left = values_.size() - first_node;
-        parallel_ranges(values_.size() - first_node, 32, [&](std::size_t first, std::size_t last) {
-            DirectLight::Workspace workspace;
-            for (std::size_t i = first_node + first; i < first_node + last && !stop_.requested(); ++i)
-                values_[i] = light(mesh_.nodes()[i], workspace), --left;
-        });
-        if (left > 0) values_.resize(first_node);
-        return left == 0;
+        constexpr std::size_t at_once = 4'096;  // nodes between two safe points
+        const std::size_t before = values_.size(), count = mesh_.nodes().size();
+        if (found_.values.size() > before)
+            values_.insert(values_.end(), found_.values.begin() + static_cast<std::ptrdiff_t>(before),
+                           found_.values.begin() + static_cast<std::ptrdiff_t>(std::min(count, found_.values.size())));
+        while (values_.size() < count) {
+            const std::size_t first_node = values_.size();
+            values_.resize(std::min(count, first_node + at_once));
+            std::atomic<std::size_t> left = values_.size() - first_node;
+            parallel_ranges(values_.size() - first_node, 32, [&](std::size_t first, std::size_t last) {
+                DirectLight::Workspace workspace;
+                for (std::size_t i = first_node + first; i < first_node + last && !stop_.requested(); ++i)
+                    values_[i] = light(mesh_.nodes()[i], workspace), --left;
+            });
+            if (left > 0) {
+                values_.resize(before);
+                return false;
+            }
+            keep();
+        }
+        return true;
     }
 
     Spectrum light(const BisectionMesh::Node& node, DirectLight::Workspace& workspace) const {
@@ -233,37 +274,9 @@ class Builder {
         return out;
     }
 
-    struct Misfit {
-        double squared = 0;  ///< Area times the mean square, W^2/m^2.
-        double largest = 0;  ///< W/m^2
-    };
-
-    /// The polynomial's misfit by its values at quarters of edges and within. A cubic error vanishes at the nodes: its
-    /// mean square is that of its parts x (1 - x) (x - 1/2) along the edges and of the bubble within.
-    Misfit misfit(std::uint32_t number) const {
-        const BisectionMesh::Triangle& t = mesh_.triangles()[number];
-        const Spectrum w = weight(region_[t.face]);
-        Misfit out;
-        double square = 0;
-        const auto look = [&](const Spectrum& error, double part) {
-            square += part * squared(w * error) / static_cast<double>(bands);
-            out.largest = std::max(out.largest, std::abs(mean(w * error)));
-        };
-        constexpr double of_edge = 0.1354 / 2, of_bubble = 0.2893 * (32.0 / 27) * (32.0 / 27);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Spectrum &a = values_[t.corner[i]], &b = values_[t.corner[(i + 1) % 3]], &m = values_[t.middle[i]];
-            look(values_[t.quarter[i][0]] - (0.375 * a + 0.75 * m - 0.125 * b), of_edge);
-            look(values_[t.quarter[i][1]] - (0.375 * b + 0.75 * m - 0.125 * a), of_edge);
-        }
-        const std::size_t i = t.longest, j = (i + 1) % 3, k = (i + 2) % 3;
-        // Weights of six nodes at the coordinates 1/4, 1/4 of the longest edge's ends and 1/2 of the corner across.
-        const Spectrum inner = -0.125 * (values_[t.corner[i]] + values_[t.corner[j]]) + 0.25 * values_[t.middle[i]] +
-                               0.5 * (values_[t.middle[j]] + values_[t.middle[k]]);
-        look(values_[t.inner] - inner, of_bubble);
-        out.squared = mesh_.area(number) * square;
-        return out;
+    Misfit misfit_of(std::uint32_t t) const {
+        return misfit(mesh_, t, values_, weight(region_[mesh_.triangles()[t].face]));
     }
-
     bool is_full() const { return mesh_.triangles().size() >= options_.max_triangles; }
 
     void refine(double tolerance) {
@@ -279,7 +292,7 @@ class Builder {
             }
             misfits_.resize(mesh_.triangles().size());
             const std::vector<std::uint32_t> fresh = mesh_.take_changed();
-            parallel_for(fresh.size(), 256, [&](std::size_t i) { misfits_[fresh[i]] = misfit(fresh[i]); });
+            parallel_for(fresh.size(), 256, [&](std::size_t i) { misfits_[fresh[i]] = misfit_of(fresh[i]); });
             double sum = 0;
             for (const Misfit& m : misfits_) sum += m.squared;
             const auto count = static_cast<double>(misfits_.size());
@@ -380,6 +393,7 @@ class Builder {
     std::vector<RegionId> region_;       ///< Of faces.
     std::vector<ReceiverLight> lights_;  ///< Of faces.
     std::vector<Spectrum> values_;       ///< Of nodes.
+    MeshProgress found_;                 ///< By an earlier run, and what is kept of this one's curves.
     std::vector<Misfit> misfits_;        ///< Of triangles.
     std::vector<Place> places_;
     std::vector<DiscontinuityCurve> curves_;

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "exitance/core/checkpoint.hpp"
 #include "exitance/core/progress.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
 #include "exitance/mesh/dm_tree/triangulation_scheme.hpp"
@@ -25,7 +26,8 @@ struct DiscontinuityOptions {
     bool penumbra_first = false;  ///< Longest curves of half-shadows first; not with Delaunay's triangulation.
     bool premesh = false;         ///< A coarse grid before all curves, likewise.
     std::size_t max_triangles = 2'000'000;
-    std::uint64_t seed = 1;  ///< Of the places at which the mesh is tried.
+    std::uint64_t seed = 1;             ///< Of the places at which the mesh is tried.
+    SafePoints* safe_points = nullptr;  ///< Where curves and values at nodes are kept on the way.
 };
 
 struct DiscontinuityReport {
@@ -35,7 +37,8 @@ struct DiscontinuityReport {
     bool interrupted = false;
     DiscontinuityCounts counts;
     double mesh_seconds = 0, direct_seconds = 0;
-    std::size_t secondary_curves = 0;   ///< Of the curves, those of secondary sources.
+    std::size_t resumed_receivers = 0, resumed_nodes = 0;  ///< Those that a checkpoint has spared.
+    std::size_t secondary_curves = 0;                      ///< Of the curves, those of secondary sources.
     std::size_t winged_edge_bytes = 0;  ///< Of the trees before triangles are made of them; 0 with Delaunay's.
     double candidate_share = 0;         ///< Mean over faces in penumbra of what may hide a source, of all polygons.
 };

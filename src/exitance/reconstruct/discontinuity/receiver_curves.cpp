@@ -55,11 +55,17 @@ ReceiverCurves::ReceiverCurves(const Region& region) : frame(frame_of(region)) {
     }
 }
 
-ReceiverCurves CurveFinder::find(RegionId number) const {
+ReceiverCurves CurveFinder::look(RegionId number) const {
     const Region& region = stage_->scene.regions()[number];
     ReceiverCurves out(region);
     DirectLight::Workspace workspace;
     stage_->direct.prepare(convex_around(region, out), region.plane.n, number, out.light, workspace);
+    return out;
+}
+
+ReceiverCurves CurveFinder::find(RegionId number) const {
+    const Region& region = stage_->scene.regions()[number];
+    ReceiverCurves out = look(number);
     if (out.light.is_dark() && options_.secondary.empty()) return out;
     add_contacts(number, out);
     if (region.area >= options_.least_area)
@@ -94,21 +100,41 @@ void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out)
     out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
 }
 
-/// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M. `weight`:
-/// M times the region's reflectance.
-double CurveFinder::greatest_effect(RegionId region, RegionId source, const Point& centre, double radius,
-                                    double weight) const {
+/// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
+double CurveFinder::greatest_effect(RegionId region, RegionId source, const Effect& effect) const {
     Box box;
     for (const auto& loop : stage_->scene.regions()[region].loops)
         for (const Point& p : loop) box.add(p);
     double squared_gap = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double gap = std::max({0.0, box.lo[k] - centre[k], centre[k] - box.hi[k]});
+        const double gap = std::max({0.0, box.lo[k] - effect.centre[k], effect.centre[k] - box.hi[k]});
         squared_gap += gap * gap;
     }
-    const double distance = std::max(0.0, std::sqrt(squared_gap) - radius);
+    const double distance = std::max(0.0, std::sqrt(squared_gap) - effect.radius);
     const double area = stage_->scene.regions()[source].area;
-    return weight * (area < pi * distance * distance ? area / (pi * distance * distance) : 1);
+    return effect.weight * (area < pi * distance * distance ? area / (pi * distance * distance) : 1);
+}
+
+/// The same where lines of sight by an edge may meet the region. From x there to any point s of the source it is at
+/// least as far as d, the edge's distance from the source's centre less three radii: a line of sight that passes the
+/// edge has one of them before it, and two are as far apart as points of the source may be. So E is at most
+/// M A / (pi d^2) times cosines, h/d at x where the source rises to h over the region's plane, and at s what the edge
+/// rises over the source's plane over d.
+double CurveFinder::effect_beyond(const BlockerEdges::Edge& edge, const EventSource& source, const Effect& effect,
+                                  const ReceiverCurves& receiver) const {
+    if (!(effect.weight > 0)) return effect.gain;
+    const Vec3 along = edge.b - edge.a, to = effect.centre - edge.a;
+    const double length = squared_norm(along);
+    const double t = length > 0 ? std::clamp(dot(to, along) / length, 0.0, 1.0) : 0;
+    const double d = norm(to - t * along) - 3 * effect.radius;
+    if (!(d > 0)) return effect.gain;
+    double rise = 0;
+    for (const auto& loop : source.loops)
+        for (const Point& p : loop) rise = std::max(rise, receiver.frame.height(p));
+    const double out = std::max(source.plane.signed_distance(edge.a), source.plane.signed_distance(edge.b));
+    const double area = stage_->scene.regions()[source.region].area;
+    const double cosines = std::min(1.0, rise / d) * std::clamp(out / d, 0.0, 1.0);
+    return std::min(effect.gain, effect.weight * cosines * area / (pi * d * d));
 }
 
 void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
@@ -122,15 +148,17 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         if (options_.stop && options_.stop->requested()) return;
         const DirectLight::Emitter& emitter = stage_->direct.emitters()[number];
         if (stage_->direct.is_distant(number)) continue;  // bisection follows the shadows of skies and suns
-        const double gain = greatest_effect(region, emitter.region, emitter.centre, emitter.radius,
-                                            mean(light_weight(stage_->scene.material(region)) * emitter.exitance));
-        if (gain < options_.least_effect) {
+        Effect effect{.centre = emitter.centre,
+                      .radius = emitter.radius,
+                      .weight = mean(light_weight(stage_->scene.material(region)) * emitter.exitance)};
+        effect.gain = greatest_effect(region, emitter.region, effect);
+        if (effect.gain < options_.least_effect) {
             ++out.left_out;
             continue;
         }
         const EventSource source{stage_->scene.regions()[emitter.region].loops, emitter.plane, emitter.region, false,
                                  2 * emitter.radius};
-        add_events(region, source, gain, pieces, out);
+        add_events(region, source, effect, pieces, out);
     }
     for (const Beam& beam : out.light.beams) {
         if (beam.count == 0) continue;
@@ -141,12 +169,12 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
                                 ? stage_->scene.box().centre() - (far * stage_->scene.size()) * light.direction
                                 : light.position;
         const EventSource source{{{place}}, Plane{}, RegionId(), true, 0};
-        add_events(region, source, HUGE_VAL, candidates(beam), out);
+        add_events(region, source, {}, candidates(beam), out);
     }
 }
 
-void CurveFinder::add_events(RegionId region, const EventSource& source, double gain, std::span<const PieceId> blockers,
-                             ReceiverCurves& out) const {
+void CurveFinder::add_events(RegionId region, const EventSource& source, const Effect& effect,
+                             std::span<const PieceId> blockers, ReceiverCurves& out) const {
     std::vector<std::uint32_t> regions, edges;
     for (const PieceId p : blockers) regions.push_back(stage_->occluders.pieces()[p].region.value);
     std::sort(regions.begin(), regions.end());
@@ -157,24 +185,31 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, double 
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    // Beyond edges far from the source its light, and so its shadow, is too weak to matter.
+    std::vector<std::uint32_t> strong;
+    std::vector<double> gains;
+    for (const std::uint32_t e : edges) {
+        const double gain = effect_beyond(edges_->edges()[e], source, effect, out);
+        if (gain >= options_.least_effect) strong.push_back(e), gains.push_back(gain);
+    }
+    out.left_out += edges.size() - strong.size();
     const FlatBox box(out.loops);
-    ShadowEventFinder finder(stage_->occluders, *edges_);
+    ShadowEventFinder finder(stage_->occluders, *edges_, {gains, options_.least_bend, options_.stop});
     std::vector<ShadowEvent> events;
-    finder.find(out.frame, region, box.lo, box.hi, source, edges, events);
-    out.wedges += finder.wedges;
-    const bool bends = gain >= options_.least_bend;
-    for (const ShadowEvent& e : events) {
-        const bool weak = !source.is_point && !e.is_kink && !bends;
-        out.left_out += weak;
-        if (weak) continue;
+    finder.find(out.frame, region, box.lo, box.hi, source, strong, events);
+    out.wedges += finder.wedges, out.left_out += finder.too_weak;
+    for (const ShadowEvent& e : events)
         out.curves.push_back({e.a, e.b,
                               source.is_point ? CurveOrder::d0
                               : e.is_kink     ? CurveOrder::d1
                                               : CurveOrder::d2,
                               e.by_edge_of_source ? CurveCause::edge_vertex : CurveCause::vertex_edge, source.region,
-                              gain});
-    }
-    if (bends && !source.is_point) add_non_emitter_events(region, source, gain, edges, out);
+                              e.gain});
+    if (source.is_point || effect.gain < options_.least_bend) return;
+    std::erase_if(edges, [&](std::uint32_t e) {
+        return effect_beyond(edges_->edges()[e], source, effect, out) < options_.least_bend;
+    });
+    add_non_emitter_events(region, source, effect.gain, edges, out);
 }
 
 /// NEV and EEE: pairs of blockers' edges, so that where there are very many they are left to bisection.
@@ -186,7 +221,7 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
         return;
     }
     const FlatBox box(out.loops);
-    ShadowEventFinder finder(stage_->occluders, *edges_);
+    ShadowEventFinder finder(stage_->occluders, *edges_, {.stop = options_.stop});
     std::vector<ShadowEvent> events;
     finder.find_non_emitter(out.frame, region, box.lo, box.hi, source, edges, events);
     out.wedges += finder.wedges;
@@ -198,7 +233,7 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
     constexpr double beside = 1e-3;
     const double sagitta = beside * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
     std::vector<ThreeEdgeEvent> conics;
-    ThreeEdgeEventFinder(stage_->occluders, *edges_)
+    ThreeEdgeEventFinder(stage_->occluders, *edges_, options_.stop)
         .find(out.frame, region, box.lo, box.hi, source, edges, options_.conics == ConicCurves::at_umbras, sagitta,
               conics);
     for (const ThreeEdgeEvent& c : conics)
@@ -223,14 +258,15 @@ void CurveFinder::add_secondary(RegionId region, ReceiverCurves& out) const {
         for (const Point& p : from) centre = centre + (1.0 / static_cast<double>(from.size())) * p;
         double radius = 0;
         for (const Point& p : from) radius = std::max(radius, norm(p - centre));
-        const double gain =
-            greatest_effect(region, s.region, centre, radius,
-                            s.radiosity * mean(light_weight(stage_->scene.material(region)) * Spectrum(1.0)));
-        if (gain < options_.least_effect) {
+        Effect effect{.centre = centre,
+                      .radius = radius,
+                      .weight = s.radiosity * mean(light_weight(stage_->scene.material(region)) * Spectrum(1.0))};
+        effect.gain = greatest_effect(region, s.region, effect);
+        if (effect.gain < options_.least_effect) {
             ++out.left_out;
             continue;
         }
-        add_events(region, {source.loops, source.plane, s.region, false, 2 * radius}, gain, candidates, out);
+        add_events(region, {source.loops, source.plane, s.region, false, 2 * radius}, effect, candidates, out);
     }
 }
 

@@ -49,6 +49,8 @@ class CurveFinder {
         : stage_(&stage), edges_(&edges), options_(options) {}
 
     ReceiverCurves find(RegionId region) const;
+    /// The light alone, no curves.
+    ReceiverCurves look(RegionId region) const;
 
     /// Where no direct light comes there are no curves of it, but what is reflected jumps at contacts all the same:
     /// adds these to what was found of such a region.
@@ -56,13 +58,22 @@ class CurveFinder {
 
   private:
     void add_contacts(RegionId region, ReceiverCurves& out) const;
+    /// What a source brings to a region, W/m^2 of rho E.
+    struct Effect {
+        double gain = HUGE_VAL;  ///< At most, anywhere.
+        Point centre;            ///< Of a ball around the source.
+        double radius = 0;       ///< Metres.
+        double weight = 0;       ///< Its exitance times the region's reflectance; 0: `gain` is all there is to know.
+    };
     void add_events(RegionId region, ReceiverCurves& out) const;
-    void add_events(RegionId region, const EventSource& source, double gain, std::span<const PieceId> blockers,
+    void add_events(RegionId region, const EventSource& source, const Effect& effect, std::span<const PieceId> blockers,
                     ReceiverCurves& out) const;
+    double effect_beyond(const BlockerEdges::Edge& edge, const EventSource& source, const Effect& effect,
+                         const ReceiverCurves& receiver) const;
     void add_non_emitter_events(RegionId region, const EventSource& source, double gain,
                                 std::span<const std::uint32_t> edges, ReceiverCurves& out) const;
     void add_secondary(RegionId region, ReceiverCurves& out) const;
-    double greatest_effect(RegionId region, RegionId source, const Point& centre, double radius, double weight) const;
+    double greatest_effect(RegionId region, RegionId source, const Effect& effect) const;
 
     const Stage* stage_;
     const BlockerEdges* edges_;
