@@ -166,9 +166,17 @@ Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene
     return {};
 }
 
-/// Reads what it has written, too, if asked for.
-Result<void> write_checked(const std::string& path, const Solution& solution, bool reads_back) {
+/// What is told of a solution that has been written stays of it: statistics, options and the like. The rest makes room.
+void drop_light(Solution& solution) {
+    solution.scene = {}, solution.indirect = {}, solution.interpolant = {};
+    solution.links = {}, solution.discontinuity = {}, solution.cells = {};
+    release_freed_memory();
+}
+
+/// Reads what it has written, too, if asked for; the light itself is in the file alone from then on.
+Result<void> write_checked(const std::string& path, Solution& solution, bool reads_back) {
     if (const Result<void> written = write_solution(path, solution); !written || !reads_back) return written;
+    drop_light(solution);
     if (const Result<Solution> read_back = load_solution(path, Rehearsed::already); !read_back)
         return Error{ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message, path,
                      "please report the scene that it is of"};
@@ -249,9 +257,10 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     std::optional<SharedCheckpoints> checkpoints;
     if (arguments.checkpoint_every || arguments.resume) checkpoints.emplace(checkpoint ? &*checkpoint : nullptr);
     const bool is_classical = arguments.classical.any();
-    Result<Solution> solution = is_classical ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
-                                             : solve_scene(*checked.scene, arguments.options, tracing.progress(), stop,
-                                                           checkpoints ? &*checkpoints : nullptr);
+    Result<Solution> solution = is_classical
+                                    ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
+                                    : solve_scene(std::move(*checked.scene), arguments.options, tracing.progress(),
+                                                  stop, checkpoints ? &*checkpoints : nullptr);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
     const std::optional<ExitCode> signal = signal_of_any(signals.received());
     if (!solution && signal) return *signal;
@@ -259,7 +268,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
 
     SolveStatistics& statistics = solution->statistics;
     if (!is_classical) solution->options = options_json(arguments.options);
-    add_findings(statistics.warnings, checked.findings, checked.scene->file());
+    add_findings(statistics.warnings, checked.findings, solution->scene.file());
     statistics.seconds["read"] = read_seconds;
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
@@ -269,6 +278,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
 
     tracing.progress().phase("write");
     Stopwatch writing;
+    if (!is_first_process()) drop_light(*solution);
     const bool reads_back = !stop.requested();
     if (const Result<void> written = by_first([&] { return write_checked(arguments.output, *solution, reads_back); });
         !written)

@@ -42,9 +42,15 @@ const MethodEntry& entry_of(Method id) {
 
 class Solver {
   public:
-    Solver(const Scene& scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
+    Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
            CheckpointStore* checkpoints)
-        : progress_(progress), stop_(stop), checkpoints_(checkpoints), solution_{.scene = scene}, stage_(scene) {
+        : progress_(progress),
+          stop_(stop),
+          checkpoints_(checkpoints),
+          solution_{.scene = std::move(scene)},
+          stage_(solution_.scene) {
+        share_on_node(solution_.scene.surfaces().span());
+        share_on_node(stage_.occluders), share_on_node(stage_.contacts), share_on_node(std::span(stage_.pieces));
         const auto [options, why, is_second] = choose_method(stage_, asked);
         options_ = options;
         may_become_linear_ = asked.method == Method::automatic && options.method == Method::matrix;
@@ -62,7 +68,7 @@ class Solver {
         statistics().basis = chosen ? name_in(basis_names, *options.basis) : method.basis;
         statistics().threads = threads();
         statistics().schedule = name_in(schedule_names, schedule());
-        statistics().surfaces = scene.surfaces().size();
+        statistics().surfaces = solution_.scene.surfaces().size();
         const bool sharp = method.id == Method::discontinuity && options.bounces < 0;
         has_links_ = method.id == Method::hierarchical || method.id == Method::wavelet || sharp;
         if (!options.importance.empty() && !has_links_)
@@ -112,6 +118,7 @@ class Solver {
         light_.reset();
         local_pass_.reset();
         gathered_ = {};
+        release_freed_memory();
         make_output_mesh();
         return std::move(solution_);
     }
@@ -560,8 +567,8 @@ void part_times(const PhaseTimes& phases, std::map<std::string, double>& seconds
 
 }  // namespace
 
-Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
-                             const StopRequest& stop, CheckpointStore* checkpoints) {
+Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
+                             CheckpointStore* checkpoints) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
     if (options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e)
@@ -569,7 +576,7 @@ Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Pr
     if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);
     const Stopwatch watch;
     PhaseTimes phases(progress);
-    Result<Solution> solution = Solver(scene, options, phases, stop, checkpoints).run();
+    Result<Solution> solution = Solver(std::move(scene), options, phases, stop, checkpoints).run();
     if (!solution) return solution;
     phases.close();
     part_times(phases, solution->statistics.seconds);

@@ -226,6 +226,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         active = split_where_needed(active, demand);
     }
     tree_.shrink_to_fit(), sampled_.shrink_to_fit();
+    share_on_node(tree_), share_on_node(sampled_.span());
     return finished(demand, report);
 }
 
