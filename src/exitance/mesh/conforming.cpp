@@ -6,6 +6,7 @@
 #include "exitance/core/shared_results.hpp"
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/joining/weld.hpp"
+#include "exitance/mesh/found_leaves.hpp"
 #include "exitance/mesh/planes.hpp"
 
 namespace exitance {
@@ -313,27 +314,6 @@ void PlaneNodes::choose_fans() {
     }
 }
 
-/// The leaves of a plane, side by side: what they are cut to, and their nodes.
-struct FoundLeaves {
-    FoundLeaves() = default;
-    explicit FoundLeaves(const PlaneNodes& found) : node_count(found.node_count) {
-        for (const PlaneNodes::Leaf& l : found.leaves) {
-            leaf.push_back(l.leaf);
-            places.push_back(static_cast<std::uint32_t>(l.fan.border.empty() ? 0 : 1 + l.fan.border.size()));
-            nodes.push_back(static_cast<std::uint32_t>(l.node.size()));
-            if (places.back() > 0) place.push_back(l.fan.apex);
-            place.insert(place.end(), l.fan.border.begin(), l.fan.border.end());
-            node.insert(node.end(), l.node.begin(), l.node.end());
-        }
-    }
-
-    std::uint32_t node_count = 0;
-    std::vector<ElementId> leaf;
-    std::vector<std::uint32_t> places, nodes;  ///< Of a leaf, how many of these are its own:
-    std::vector<Vec2> place;                   ///< of a fan, its apex and its border; of a leaf that stays, none,
-    std::vector<std::uint32_t> node;           ///< and of the apex, then of the border; of the leaf's corners.
-};
-
 /// Makes room for all fans, and for the nodes of all leaves.
 void reserve(const std::vector<FoundLeaves>& found, ElementTree& tree, SharedNodes& nodes) {
     std::size_t elements = tree.size(), corners = 0;
@@ -362,8 +342,12 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
             if (leaves[p].empty()) return FoundLeaves();
             double largest = 0;
             for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
-            return FoundLeaves(
-                PlaneNodes(tree, leaves[p], contacts.over_plane(regions[p], ContactLines::height_of_jump(largest))));
+            const PlaneNodes nodes(tree, leaves[p],
+                                   contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
+            FoundLeaves out;
+            out.node_count = nodes.node_count;
+            for (const PlaneNodes::Leaf& l : nodes.leaves) out.add(l.leaf, l.fan, l.node);
+            return out;
         },
         [](auto& archive, FoundLeaves& f) { archive(f.node_count, f.leaf, f.places, f.nodes, f.place, f.node); },
         "nodes");

@@ -49,6 +49,7 @@ class Solver {
           checkpoints_(checkpoints),
           solution_{.scene = std::move(scene)},
           stage_(solution_.scene) {
+        release_freed_memory();
         share_on_node(solution_.scene.surfaces().span());
         share_on_node(stage_.occluders), share_on_node(stage_.contacts), share_on_node(std::span(stage_.pieces));
         const auto [options, why, is_second] = choose_method(stage_, asked);
@@ -82,6 +83,7 @@ class Solver {
         }
         statistics().converged = true;
         solution_.indirect = dark(stage_);
+        share_on_node(solution_.indirect.tree);
         // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
         // another run may go on: its light is not to depend on how long this one had.
         constexpr double coarse = 0.08;
@@ -91,6 +93,7 @@ class Solver {
         stage_.leave_out(find_unlit_sides(stage_, options.seed, stop));
         const std::vector<Piece> lit = stage_.lit_pieces();
         stage_.rooms = find_light_rooms(stage_, options.seed, stop);
+        release_freed_memory();
         knobs_ = knobs_for_error(error, lit, options);
         sums_ = ElementGather::suits(stage_);
         if (sums_) knobs_ = knobs_for_sums(knobs_, error, lit, options);
@@ -278,6 +281,7 @@ class Solver {
         Stopwatch watch;
         const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
         const QuickFunction b(light, stage_.scene.regions().size());
+        release_freed_memory();
         if (step_ == Step::gather) {
             refined_.clear();
             const bool whole = deliver(parts_to_sum({&light, 1}), b, fresh_);
