@@ -8,6 +8,7 @@
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/terminal.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/core/memory.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
@@ -39,6 +40,7 @@ int run_program(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
     using namespace exitance;
     leave_at_signals();
+    keep_large_arrays_apart();
     if (const Result<void> joined = join_processes(); !joined)
         return static_cast<int>(Terminal({}).fail(joined.error()));
     const int status = run_program({argv + 1, argv + std::max(argc, 1)});

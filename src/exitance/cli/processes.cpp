@@ -72,6 +72,7 @@ void record_processes(SolveStatistics& statistics) {
     statistics.peak_memory_bytes = static_cast<std::size_t>(largest_of_all(own));
     auto& figures = statistics.figures;
     figures["peak_memory_bytes_of_all"] = sum_of_all(own);
+    figures["shared_memory_bytes"] = largest_of_all(static_cast<double>(shared_memory_bytes()));
     figures["processes"] = static_cast<double>(processes());
     const ExchangeTime time = exchange_time();
     figures["waiting_seconds_of_all"] = sum_of_all(time.waiting);

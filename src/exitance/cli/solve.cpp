@@ -168,10 +168,17 @@ Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene
     return {};
 }
 
-/// Reads what it has written, too, if asked for.
-Result<void> write_checked(const std::string& path, const Solution& solution, const LightGroups& groups,
-                           bool reads_back) {
+/// What is told of a solution that has been written stays of it: statistics, options and the like. The rest makes room.
+void drop_light(Solution& solution) {
+    solution.scene = {}, solution.indirect = {}, solution.interpolant = {};
+    solution.links = {}, solution.discontinuity = {}, solution.cells = {};
+    release_freed_memory();
+}
+
+/// Reads what it has written, too, if asked for; the light itself is in the file alone from then on.
+Result<void> write_checked(const std::string& path, Solution& solution, const LightGroups& groups, bool reads_back) {
     if (const Result<void> written = write_solution(path, solution, &groups); !written || !reads_back) return written;
+    drop_light(solution);
     LightGroups groups_again;
     if (const Result<Solution> read_back = load_solution(path, Rehearsed::already, &groups_again); !read_back)
         return Error{ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message, path,
@@ -255,9 +262,10 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     std::optional<SharedCheckpoints> checkpoints;
     if (arguments.checkpoint_every || arguments.resume) checkpoints.emplace(checkpoint ? &*checkpoint : nullptr);
     const bool is_classical = arguments.classical.any();
-    Result<Solution> solution = is_classical ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
-                                             : solve_scene(*checked.scene, arguments.options, tracing.progress(), stop,
-                                                           checkpoints ? &*checkpoints : nullptr);
+    Result<Solution> solution = is_classical
+                                    ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
+                                    : solve_scene(std::move(*checked.scene), arguments.options, tracing.progress(),
+                                                  stop, checkpoints ? &*checkpoints : nullptr);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
     const std::optional<ExitCode> signal = signal_of_any(signals.received());
     if (!solution && signal) return *signal;
@@ -268,7 +276,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const LightGroups& groups = *kept;
     SolveStatistics& statistics = solution->statistics;
     if (!is_classical) solution->options = options_json(arguments.options);
-    add_findings(statistics.warnings, checked.findings, checked.scene->file());
+    add_findings(statistics.warnings, checked.findings, solution->scene.file());
     statistics.seconds["read"] = read_seconds;
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
@@ -278,6 +286,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
 
     tracing.progress().phase("write");
     Stopwatch writing;
+    if (!is_first_process()) drop_light(*solution);
     const bool reads_back = !stop.requested();
     if (const Result<void> written =
             by_first([&] { return write_checked(arguments.output, *solution, groups, reads_back); });

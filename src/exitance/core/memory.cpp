@@ -1,5 +1,6 @@
 #include "exitance/core/memory.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 namespace exitance {
@@ -8,6 +9,19 @@ std::size_t peak_memory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
+}
+
+void keep_large_arrays_apart() {
+#ifdef __GLIBC__
+    // Else the library takes larger and larger arrays from its heap, in whose gaps much of the memory stays.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
+void release_freed_memory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }
 
 }  // namespace exitance

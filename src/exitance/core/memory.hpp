@@ -7,4 +7,11 @@ namespace exitance {
 /// The most memory the process has held at once so far, bytes (its peak resident set).
 std::size_t peak_memory_bytes();
 
+/// From here on large arrays have pages of their own, which go back to the system as soon as they are freed. To be
+/// called once, first of all.
+void keep_large_arrays_apart();
+
+/// Gives pages that nothing stands on any more back to the system. To be called between phases.
+void release_freed_memory();
+
 }  // namespace exitance

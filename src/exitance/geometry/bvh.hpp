@@ -58,6 +58,11 @@ class Bvh {
 
     std::size_t size() const { return items_.size(); }
     std::size_t memory_bytes() const;
+    /// Calls visit(span) for the plain arrays that most of it stands in.
+    template <class Visit>
+    void visit_arrays(const Visit& visit) const {
+        visit(std::span(nodes_)), visit(std::span(items_));
+    }
 
     /// Calls visit(item) for every item whose box is not wholly outside one plane of the region. Where visit returns a
     /// bool, true ends the walk; returns whether it was ended. Of two subtrees, what lies farther back along

@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "exitance/core/disjoint_sets.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/core/shared_results.hpp"
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/joining/weld.hpp"
+#include "exitance/mesh/found_leaves.hpp"
 #include "exitance/mesh/planes.hpp"
 
 namespace exitance {
@@ -313,6 +314,19 @@ void PlaneNodes::choose_fans() {
     }
 }
 
+/// Makes room for all fans, and for the nodes of all leaves.
+void reserve(const std::vector<FoundLeaves>& found, ElementTree& tree, SharedNodes& nodes) {
+    std::size_t elements = tree.size(), corners = 0;
+    for (const FoundLeaves& f : found)
+        for (std::size_t k = 0; k < f.leaf.size(); ++k) {
+            const std::size_t triangles = f.places[k] == 0 ? 0 : f.places[k] - 2;
+            elements += triangles;
+            corners += triangles > 0 ? 3 * triangles : f.nodes[k];
+        }
+    tree.reserve(elements);
+    nodes.first_corner.reserve(elements), nodes.node_of.reserve(corners);
+}
+
 }  // namespace
 
 SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
@@ -321,19 +335,26 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
     const std::size_t planes = leaves.size();
     std::vector<std::vector<RegionId>> regions(planes);
     for (RegionId r : plane.ids()) regions[plane[r]].push_back(r);
-    std::vector<std::vector<PlaneNodes::Leaf>> found(planes);
-    std::vector<std::uint32_t> count(planes);
-    parallel_for(planes, 1, [&](std::size_t p) {
-        if (leaves[p].empty()) return;
-        double largest = 0;
-        for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
-        PlaneNodes nodes(tree, leaves[p], contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
-        found[p] = std::move(nodes.leaves);
-        count[p] = nodes.node_count;
-    });
+    std::vector<FoundLeaves> found(planes);
+    find_together(
+        found, 1,
+        [&](std::size_t p) {
+            if (leaves[p].empty()) return FoundLeaves();
+            double largest = 0;
+            for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
+            const PlaneNodes nodes(tree, leaves[p],
+                                   contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
+            FoundLeaves out;
+            out.node_count = nodes.node_count;
+            for (const PlaneNodes::Leaf& l : nodes.leaves) out.add(l.leaf, l.fan, l.node);
+            return out;
+        },
+        [](auto& archive, FoundLeaves& f) { archive(f.node_count, f.leaf, f.places, f.nodes, f.place, f.node); },
+        "nodes");
 
     SharedNodes out;
     out.first_node.push_back(0);
+    reserve(found, tree, out);
     for (std::size_t p = 0; p < planes; ++p) {
         const std::uint32_t first = out.first_node.back();
         std::uint32_t more = 0;  // nodes of slivers that could not be cut after all
@@ -342,22 +363,28 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
             out.first_corner[e] = static_cast<std::uint32_t>(out.node_of.size());
             out.node_of.insert(out.node_of.end(), nodes);
         };
-        for (const PlaneNodes::Leaf& leaf : found[p]) {
-            const std::vector<std::uint32_t>& n = leaf.node;
-            const ElementId child = leaf.fan.border.empty() ? ElementId() : tree.split_fan(leaf.leaf, leaf.fan);
+        const FoundLeaves& f = found[p];
+        const std::uint32_t* n = f.node.data();
+        const Vec2* place = f.place.data();
+        for (std::size_t k = 0; k < f.leaf.size(); n += f.nodes[k], place += f.places[k], ++k) {
+            const ElementId leaf = f.leaf[k],
+                            child = f.places[k] > 0 ? tree.split_fan(leaf, {place[0], {place + 1, place + f.places[k]}})
+                                                    : ElementId();
             if (!child.is_none()) {
-                for (std::uint32_t i = 0; i + 1 < leaf.fan.border.size(); ++i)
+                for (std::uint32_t i = 0; i + 2 < f.places[k]; ++i)
                     add_leaf(ElementId(child.value + i), {first + n[0], first + n[i + 1], first + n[i + 2]});
                 continue;
             }
-            const bool stays = leaf.fan.border.empty();
-            const auto corner = [&](std::size_t i) { return first + (stays ? n[i] : count[p] + more++); };
-            if (tree.patch(leaf.leaf).is_triangle())
-                add_leaf(leaf.leaf, {corner(0), corner(1), corner(2)});
+            const auto corner = [&](std::size_t i) {
+                return first + (f.places[k] == 0 ? n[i] : f.node_count + more++);
+            };
+            if (tree.patch(leaf).is_triangle())
+                add_leaf(leaf, {corner(0), corner(1), corner(2)});
             else
-                add_leaf(leaf.leaf, {corner(0), corner(1), corner(2), corner(3)});
+                add_leaf(leaf, {corner(0), corner(1), corner(2), corner(3)});
         }
-        out.first_node.push_back(first + count[p] + more);
+        out.first_node.push_back(first + f.node_count + more);
+        found[p] = {};
     }
     out.first_corner.resize(tree.size());
     return out;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/core/shared_results.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -197,9 +197,18 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
         std::size_t of_parent = ~std::size_t(0);  ///< Lines that the element had before a line cut it,
         int unchanged = 0;                        ///< and how often a part had no fewer.
     };
-    // Most have none: all are looked at on all threads, and what is left to cut is little.
+    // Most have none: all are looked at together, and what is left to cut is little.
     std::vector<std::vector<std::pair<Vec2, Vec2>>> of_given(from.size());
-    parallel_for(from.size(), 64, [&](std::size_t i) { of_given[i] = contacts.within(tree, from[i]); });
+    find_together(
+        of_given, 64, [&](std::size_t i) { return contacts.within(tree, from[i]); },
+        [](auto& archive, std::vector<std::pair<Vec2, Vec2>>& lines) {
+            std::vector<std::array<Vec2, 2>> plain;
+            for (const auto& [a, b] : lines) plain.push_back({a, b});
+            archive(plain);
+            lines.clear();
+            for (const std::array<Vec2, 2>& line : plain) lines.emplace_back(line[0], line[1]);
+        },
+        "contacts");
     std::vector<Open> open;
     for (std::size_t i = 0; i < from.size(); ++i)
         if (!of_given[i].empty()) open.push_back({from[i], ~std::size_t(0), 0, i});

@@ -36,6 +36,12 @@ class ContactLines {
     /// jump to elements whose area (m^2) is so large.
     static double height_of_jump(double area) { return 0.05 * std::sqrt(area); }
 
+    /// Calls visit(span) for the plain arrays that most of it stands in.
+    template <class Visit>
+    void visit_arrays(const Visit& visit) const {
+        faces_.visit_arrays(visit), borders_.visit_arrays(visit), visit(std::span(edges_));
+    }
+
   private:
     struct Edge {
         Point a, b;

@@ -276,6 +276,12 @@ ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
     return {e, into_shape(uv, content_->nodes[e].shape)};
 }
 
+void ElementTree::reserve(std::size_t elements) {
+    Content& c = content_.change();
+    c.patch.reserve(elements), c.nodes.reserve(elements), c.parent.reserve(elements), c.region.reserve(elements);
+    c.area.reserve(elements), c.cell.reserve(elements);
+}
+
 void ElementTree::shrink_to_fit() {
     Content& c = content_.change();
     c.patch.shrink_to_fit(), c.nodes.shrink_to_fit(), c.parent.shrink_to_fit(), c.region.shrink_to_fit();

@@ -130,6 +130,15 @@ class ElementTree {
     Place leaf_at(ElementId e, Vec2 uv) const;
 
     std::size_t memory_bytes() const;
+    /// Calls visit(span) for the plain arrays that most of it stands in.
+    template <class Visit>
+    void visit_arrays(const Visit& visit) const {
+        const Content& c = *content_;
+        visit(c.patch.span()), visit(c.nodes.span()), visit(c.parent.span()), visit(c.region.span());
+        visit(c.area.span()), visit(c.cell.span()), visit(std::span(c.cuts)), visit(std::span(c.corners));
+    }
+    /// Makes room for so many elements in all, so that growing to them copies nothing.
+    void reserve(std::size_t elements);
     /// Gives back memory kept for growth.
     void shrink_to_fit();
 

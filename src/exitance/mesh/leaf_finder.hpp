@@ -37,6 +37,11 @@ class LeafFinder {
 
     ElementId id(std::uint32_t leaf) const { return leaves_[leaf].id; }
     std::size_t size() const { return leaves_.size(); }
+    /// Calls visit(span) for the plain arrays that most of it stands in.
+    template <class Visit>
+    void visit_arrays(const Visit& visit) const {
+        visit(std::span(nodes_)), visit(std::span(leaves_)), visit(std::span(grids_)), visit(std::span(start_));
+    }
 
   private:
     /// A cut: points with normal . uv >= offset lie in the second part. Parts are nodes, or leaves by their number.

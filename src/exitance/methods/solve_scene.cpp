@@ -42,10 +42,18 @@ const MethodEntry& entry_of(Method id) {
 
 class Solver {
   public:
-    Solver(const Scene& scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
+    Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
            CheckpointStore* checkpoints)
-        : progress_(progress), stop_(stop), checkpoints_(checkpoints), solution_{.scene = scene}, stage_(scene) {
+        : progress_(progress),
+          stop_(stop),
+          checkpoints_(checkpoints),
+          solution_{.scene = std::move(scene)},
+          stage_(solution_.scene) {
+        release_freed_memory();
+        share_on_node(solution_.scene.surfaces().span());
+        share_on_node(stage_.occluders), share_on_node(stage_.contacts), share_on_node(std::span(stage_.pieces));
         survey(stage_, asked, stop);
+        release_freed_memory();
         // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
         // another run may go on: its light is not to depend on how long this one had.
         plan_ = make_plan(stage_, asked, seconds_left(stop) < calibrated::near_deadline && !checkpoints_);
@@ -54,6 +62,7 @@ class Solver {
             progress.note(fmt::format("method {}: {}", name_in(method_names, options_.method), plan_.why));
         record_plan();
         solution_.indirect = dark(stage_);
+        share_on_node(solution_.indirect.tree);
     }
 
     Result<Solution> run() {
@@ -78,6 +87,7 @@ class Solver {
         light_.reset();
         local_pass_.reset();
         gathered_ = {};
+        release_freed_memory();
         make_output_mesh();
         return std::move(solution_);
     }
@@ -255,6 +265,7 @@ class Solver {
         Stopwatch watch;
         const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
         const QuickFunction b(light, stage_.scene.regions().size());
+        release_freed_memory();
         if (step_ == Step::gather) {
             refined_.clear();
             const bool whole = deliver(parts_to_sum({&light, 1}), b, fresh_);
@@ -556,8 +567,8 @@ void part_times(const PhaseTimes& phases, std::map<std::string, double>& seconds
 
 }  // namespace
 
-Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
-                             const StopRequest& stop, CheckpointStore* checkpoints) {
+Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
+                             CheckpointStore* checkpoints) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
     if (const Result<void> passes = check_diffusing_panes(scene, options); !passes) return passes.error();
@@ -566,7 +577,7 @@ Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Pr
     if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);
     const Stopwatch watch;
     PhaseTimes phases(progress);
-    Result<Solution> solution = Solver(scene, options, phases, stop, checkpoints).run();
+    Result<Solution> solution = Solver(std::move(scene), options, phases, stop, checkpoints).run();
     if (!solution) return solution;
     phases.close();
     part_times(phases, solution->statistics.seconds);

@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// The whole job: scene to solution.
+/// The whole job: scene to solution, which takes the scene with it.
 ///
 /// A method finds the light that each element reflects; the local pass gathers it into a function; the certificate says
 /// how far that function is from the truth. While it is farther than the error asked for, the knobs are tightened and
@@ -17,7 +17,7 @@ namespace exitance {
 /// With a store for checkpoints, the state is kept from time to time: between the steps of an attempt and between
 /// slices of the local pass. A solve that goes on from there gives the same bits, statistics aside, as one that never
 /// stopped.
-Result<Solution> solve_scene(const Scene& scene, const SolveOptions& options, Progress& progress,
-                             const StopRequest& stop, CheckpointStore* checkpoints = nullptr);
+Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
+                             CheckpointStore* checkpoints = nullptr);
 
 }  // namespace exitance

@@ -151,6 +151,7 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
     out.tree = f.tree;
     const Field<RegionId, std::uint32_t> plane = plane_of_regions(scene);
     const SharedNodes nodes = make_conforming(out.tree, plane, contacts);
+    share_on_node(out.tree);
     const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(out.tree, plane);
     std::vector<std::vector<Spectrum>> value(leaves.size());
     for (std::size_t p = 0; p < value.size(); ++p) value[p].resize(nodes.first_node[p + 1] - nodes.first_node[p]);
@@ -167,6 +168,7 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
         const std::uint32_t p = plane[out.tree.region(e)];
         for (const std::uint32_t node : nodes.of(e, out.tree)) out.add_value(value[p][node - nodes.first_node[p]]);
     }
+    share_on_node(std::span(out.values));
     return out;
 }
 

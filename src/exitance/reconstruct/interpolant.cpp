@@ -1,5 +1,7 @@
 #include "exitance/reconstruct/interpolant.hpp"
 
+#include <optional>
+
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -18,8 +20,7 @@ class Interpolation {
           direct_(direct),
           indirect_(indirect),
           direct_weight_(Spectrum(1.0) - direct_share),
-          options_(options),
-          locator_(indirect.tree, stage.scene.regions().size()) {
+          options_(options) {
         out_.tree = direct.tree;
     }
 
@@ -28,6 +29,7 @@ class Interpolation {
         std::vector<ElementId> active = out_.tree.leaves();
         for (int round = 0;; ++round) {
             fitted_.resize(out_.tree.size());
+            locator_.emplace(indirect_.tree, stage_.scene.regions().size());
             shared_ranges(
                 active.size(), 8,
                 [&](std::size_t begin, std::size_t end) {
@@ -35,12 +37,13 @@ class Interpolation {
                     for (std::size_t i = begin; i < end; ++i) {
                         const ElementId e = active[i];
                         fitted_[e] = round > 0 && stop.requested()
-                                         ? inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)])
-                                         : fit(e, room);
+                                         ? Fit(inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)].as_direct()))
+                                         : Fit(fit(e, room));
                     }
                 },
-                [&](std::size_t i) -> DirectFit& { return fitted_[active[i]]; },
+                [&](std::size_t i) -> Fit& { return fitted_[active[i]]; },
                 {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
+            locator_.reset();  // it makes room for what comes next
             report.error = error();
             report.interrupted = stop.requested();
             const bool last =
@@ -55,6 +58,25 @@ class Interpolation {
     }
 
   private:
+    /// What of a fit is delivered, as precisely as it is.
+    struct Fit {
+        std::array<std::array<float, bands>, 4> corners;
+        double misfit_squared = 0;
+
+        Fit() = default;
+        explicit Fit(const DirectFit& fit) : misfit_squared(fit.misfit_squared) {
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                for (std::size_t k = 0; k < bands; ++k) corners[i][k] = static_cast<float>(fit.corners[i][k]);
+        }
+        DirectFit as_direct() const {
+            DirectFit out;
+            out.misfit_squared = misfit_squared;
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                for (std::size_t k = 0; k < bands; ++k) out.corners[i][k] = static_cast<double>(corners[i][k]);
+            return out;
+        }
+    };
+
     /// Direct light as projected, or anew on a leaf that is new; indirect light on top.
     DirectFit fit(ElementId e, DirectFitRoom& room) const {
         const Patch& patch = out_.tree.patch(e);
@@ -68,7 +90,7 @@ class Interpolation {
         const std::vector<WeightedPlace> rule = element_rule(out_.tree, e, RuleOrder::fine);
         std::vector<Spectrum> value(rule.size());
         for (std::size_t i = 0; i < rule.size(); ++i) {
-            value[i] = indirect_.at(locator_.find(region, patch.at(rule[i].uv)));
+            value[i] = indirect_.at(locator_->find(region, patch.at(rule[i].uv)));
             out.mean += rule[i].weight * value[i];
         }
         const ElementFit indirect(out_.tree, e, rule, value);
@@ -89,7 +111,7 @@ class Interpolation {
         for (ElementId e : out_.tree.leaves()) {
             apart.first_value[e] = static_cast<std::uint32_t>(apart.values.size());
             for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i)
-                apart.add_value(fitted_[e].corners[static_cast<std::size_t>(i)]);
+                apart.values.push_back(fitted_[e].corners[static_cast<std::size_t>(i)]);
         }
         ElementFunction out = nearest_continuous(apart, stage_.scene, stage_.contacts);
         for (auto& value : out.values)  // all light together is nowhere below zero
@@ -154,9 +176,9 @@ class Interpolation {
     const ElementFunction& indirect_;
     const Spectrum direct_weight_;
     const InterpolantOptions& options_;
-    ElementLocator locator_;
+    std::optional<ElementLocator> locator_;  ///< Of the indirect light, while leaves are fitted.
     ElementFunction out_;
-    Field<ElementId, DirectFit> fitted_;
+    Field<ElementId, Fit> fitted_;
 };
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace exitance {
 LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
     : stage_(stage), seed_(seed), tree_(stage.make_elements(mesh)) {
     mean_area_ = stage.area / static_cast<double>(tree_.leaves().size());
+    share_on_node(tree_);
 }
 
 /// The light of the room that an element is in, by the mean light.
@@ -226,6 +227,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         active = split_where_needed(active, demand);
     }
     tree_.shrink_to_fit(), sampled_.shrink_to_fit();
+    share_on_node(tree_), share_on_node(sampled_.span());
     return finished(demand, report);
 }
 

@@ -1,11 +1,14 @@
 #include "exitance/reconstruct/quick_function.hpp"
 
+#include "exitance/transport/distributed.hpp"
+
 namespace exitance {
 
 QuickFunction::QuickFunction(const ElementFunction& function, std::size_t region_count)
     : locator_(function.tree, region_count) {
     const ElementTree& tree = function.tree;
     Field<ElementId, ElementId> root(tree.size());
+    leaves_.reserve(locator_.leaves().size());
     for (ElementId e : tree.ids()) {
         root[e] = tree.parent(e).is_none() ? e : root[tree.parent(e)];
         if (!tree.is_leaf(e)) continue;
@@ -28,6 +31,7 @@ QuickFunction::QuickFunction(const ElementFunction& function, std::size_t region
         }
         leaves_.push_back(p);
     }
+    share_on_node(std::span(leaves_)), share_on_node(locator_.leaves());
 }
 
 void QuickFunction::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {

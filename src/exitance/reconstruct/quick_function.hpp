@@ -10,6 +10,7 @@ namespace exitance {
 /// a leaf's polynomial stands in one line of memory. The same values as the function's, up to single precision.
 class QuickFunction final : public ReflectedLight {
   public:
+    /// Stands once a node where several processes make it, as all of them have to.
     QuickFunction(const ElementFunction& function, std::size_t region_count);
 
     void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;

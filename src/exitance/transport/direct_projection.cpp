@@ -315,6 +315,7 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         active = std::move(fresh);
     }
     out.tree.shrink_to_fit(), out.fit.shrink_to_fit();
+    share_on_node(out.tree), share_on_node(out.fit.span());
     return out;
 }
 

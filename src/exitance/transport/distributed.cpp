@@ -1,7 +1,13 @@
 #include "exitance/transport/distributed.hpp"
 
+#include "exitance/core/shared_results.hpp"
+
 #define OMPI_SKIP_MPICXX 1
+#include <fcntl.h>
 #include <mpi.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +25,9 @@ struct Team {
     const StopRequest* asked = nullptr;
     StopRequest* agreed = nullptr;
     std::uint64_t meetings = 0;
+    MPI_Comm node = MPI_COMM_NULL;  ///< Those that have memory in common with this one.
+    int node_size = 1;
+    std::size_t shared_bytes = 0;
     std::map<std::string, Traffic> traffic;
     ExchangeTime time;
 };
@@ -44,6 +53,31 @@ void count(const char* what, std::size_t bytes) {
     ++t.exchanges, t.messages += team.size - 1, t.bytes += bytes * (team.size - 1);
 }
 
+/// Until it is done, without taking the processor from others: MPI itself would look again and again. Looks follow one
+/// another at first, and are then up to `longest` microseconds apart.
+void wait_for(MPI_Request& request, int longest) {
+    int done = 0;
+    for (int looks = 0; !done; ++looks) {
+        constexpr int eager = 200, step = 20;
+        if (looks >= eager)
+            usleep(static_cast<useconds_t>(std::min(longest, (looks - eager) * step)));
+        else if (looks > 0)
+            sched_yield();
+        MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    }
+}
+void exchange_results(std::span<std::string> blocks, const char* what) {
+    std::vector<std::uint64_t> sizes(blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b) sizes[b] = blocks[b].size();
+    exchange_values(
+        blocks.size(), 1, [&](std::size_t b) -> std::uint64_t& { return sizes[b]; }, what);
+    for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].resize(sizes[b]);
+    exchange_values(
+        blocks.size(), 1, [&](std::size_t b) { return std::span<char>(blocks[b]); }, what);
+}
+
+constexpr int between_meetings = 1000, while_sending = 100;  // microseconds
+
 }  // namespace
 
 Result<void> join_processes() {
@@ -56,11 +90,14 @@ Result<void> join_processes() {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     team.joined = true;
     team.size = static_cast<std::size_t>(size), team.own = static_cast<std::size_t>(rank);
+    if (size > 1) result_sharing() = {team.size, team.own, exchange_results};
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &team.node);
+    MPI_Comm_size(team.node, &team.node_size);
     return {};
 }
 
 void leave_processes() {
-    if (team.joined) MPI_Finalize();
+    if (team.joined) MPI_Comm_free(&team.node), MPI_Finalize();
     team.joined = false;
 }
 
@@ -92,6 +129,10 @@ ExchangeTime exchange_time() {
     return team.time;
 }
 
+std::size_t shared_memory_bytes() {
+    return team.shared_bytes;
+}
+
 std::string as_first(std::string bytes, const char* what) {
     if (team.size == 1) return bytes;
     bytes.resize(as_first(bytes.size()));
@@ -100,7 +141,9 @@ std::string as_first(std::string bytes, const char* what) {
 }
 
 Result<void> by_first(const std::function<Result<void>()>& work) {
+    const ResultSharing sharing = std::exchange(result_sharing(), ResultSharing());  // the others do nothing
     const Result<void> done = is_first_process() ? work() : Result<void>();
+    result_sharing() = sharing;
     if (team.size == 1 || as_first(static_cast<bool>(done))) return done;
     const Error none, &own = done ? none : done.error();
     Error error{as_first(own.code), {}, {}, {}};
@@ -147,13 +190,74 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
         of_own);
 }
 
+namespace {
+
+/// A file without a name that holds these bytes in memory, or -1.
+int memory_file(const char* bytes, std::size_t size) {
+    const int file = memfd_create("exitance", MFD_CLOEXEC);
+    for (std::size_t done = 0; file >= 0 && done < size;) {
+        const ssize_t written = write(file, bytes + done, size - done);
+        if (written <= 0) {
+            close(file);
+            return -1;
+        }
+        done += static_cast<std::size_t>(written);
+    }
+    return file;
+}
+
+/// Is it so in all processes of the node?
+bool all_on_node(bool own) {
+    int value = own ? 1 : 0, all = 0;
+    MPI_Allreduce(&value, &all, 1, MPI_INT, MPI_MIN, team.node);
+    return all == 1;
+}
+
+/// What all processes of the node give alike, for what stands at one place of a page in all of them.
+bool is_alike_on_node(std::size_t a, std::size_t b) {
+    std::array<std::uint64_t, 4> own{a, ~std::uint64_t{a}, b, ~std::uint64_t{b}}, all{};
+    MPI_Allreduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, team.node);
+    return all == own;
+}
+
+}  // namespace
+
 namespace detail {
+
+void share_pages(char* begin, std::size_t size) {
+    constexpr std::size_t least = std::size_t(1) << 20;
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const std::size_t skipped = (page - reinterpret_cast<std::uintptr_t>(begin) % page) % page;
+    if (team.node_size == 1 || size < least + page || !is_alike_on_node(skipped, size)) return;
+    begin += skipped;
+    const std::size_t bytes = (size - skipped) / page * page;
+    int rank = 0;
+    MPI_Comm_rank(team.node, &rank);
+    // The first of the node writes its pages to memory that the others find by its name.
+    int file = rank == 0 ? memory_file(begin, bytes) : -1;
+    std::array<std::int64_t, 2> place{getpid(), file};
+    MPI_Bcast(place.data(), 2, MPI_INT64_T, 0, team.node);
+    if (rank != 0 && place[1] >= 0) {
+        const std::string path = "/proc/" + std::to_string(place[0]) + "/fd/" + std::to_string(place[1]);
+        file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    }
+    // Private pages: whoever writes to one gets its own, and memory that is freed is nobody else's.
+    if (all_on_node(file >= 0)) {
+        if (mmap(begin, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, file, 0) == MAP_FAILED)
+            end_job("the system does not let processes have memory in common any more");
+        team.shared_bytes += bytes;
+    }
+    if (file >= 0) close(file);
+}
 
 void send_from_first(void* data, std::size_t size, const char* what) {
     constexpr std::size_t most = std::size_t(1) << 28;  // MPI counts by int
-    for (std::size_t done = 0; done < size; done += most)
-        MPI_Bcast(static_cast<char*>(data) + done, static_cast<int>(std::min(most, size - done)), MPI_BYTE, 0,
-                  MPI_COMM_WORLD);
+    for (std::size_t done = 0; done < size; done += most) {
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Ibcast(static_cast<char*>(data) + done, static_cast<int>(std::min(most, size - done)), MPI_BYTE, 0,
+                   MPI_COMM_WORLD, &request);
+        wait_for(request, while_sending);
+    }
     Traffic& t = team.traffic[what];
     ++t.exchanges;
     if (is_first_process()) t.messages += team.size - 1, t.bytes += size * (team.size - 1);
@@ -164,7 +268,9 @@ void meet(std::size_t things, const char* what) {
     const std::uint64_t place = ++team.meetings << 40 ^ things;
     std::array<std::uint64_t, 3> own{place, ~place, stops}, all{};
     const Stopwatch watch;
-    MPI_Allreduce(own.data(), all.data(), 3, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(own.data(), all.data(), 3, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD, &request);
+    wait_for(request, between_meetings);
     team.time.waiting += watch.seconds();
     count("agreement", sizeof own);
     if (all[0] != place || all[1] != ~place)
@@ -179,8 +285,10 @@ void exchange(std::span<char> all, std::span<const std::size_t> first, const cha
         sizes.push_back(static_cast<int>(first[p + 1] - first[p]));
         places.push_back(static_cast<int>(first[p]));
     }
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), sizes.data(), places.data(), MPI_BYTE,
-                   MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), sizes.data(), places.data(), MPI_BYTE,
+                    MPI_COMM_WORLD, &request);
+    wait_for(request, while_sending);
     team.time.sending += watch.seconds();
     count(what, first[team.own + 1] - first[team.own]);
 }

@@ -168,4 +168,30 @@ void shared_ranges(std::size_t count, std::size_t grain, const std::function<voi
     exchange_values(count, grain, value, work.name);
 }
 
+namespace detail {
+void share_pages(char* begin, std::size_t size);
+}
+
+/// Finished values that all processes hold alike stand once in the memory of a node from here on, instead of once a
+/// process: whole pages of them. Whoever writes to them all the same gets pages of its own again. Where the system does
+/// not let processes have pages in common, and where values are few, nothing is done. All.
+template <class T>
+void share_on_node(std::span<T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (processes() == 1) return;
+    // Only the place matters, which is not written to here.
+    detail::share_pages(reinterpret_cast<char*>(const_cast<std::remove_const_t<T>*>(values.data())),
+                        values.size_bytes());
+}
+/// The same of what stands in several arrays.
+template <class T>
+requires requires(const T& value) {
+    value.visit_arrays([](const auto&) {});
+}
+void share_on_node(const T& value) {
+    if (processes() > 1) value.visit_arrays([](const auto& array) { share_on_node(array); });
+}
+/// Of what this process holds, bytes that stand once a node.
+std::size_t shared_memory_bytes();
+
 }  // namespace exitance

@@ -49,6 +49,9 @@ const std::map<std::string, Traffic>& traffic() {
 ExchangeTime exchange_time() {
     return {};
 }
+std::size_t shared_memory_bytes() {
+    return 0;
+}
 
 void parallel_own_ranges(std::size_t count, std::size_t grain,
                          const std::function<void(std::size_t, std::size_t)>& body, const Work& work) {
@@ -58,6 +61,7 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
 namespace detail {
 void send_from_first(void*, std::size_t, const char*) {}
 void meet(std::size_t, const char*) {}
+void share_pages(char*, std::size_t) {}
 void exchange(std::span<char>, std::span<const std::size_t>, const char*) {}
 }  // namespace detail
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace exitance {
@@ -35,6 +36,15 @@ TEST(Distributed, AloneItsWordIsThatOfAll) {
     const StopTogether together(asked, agreed);
     asked.set_deadline(StopRequest::Clock::now());
     EXPECT_LE(seconds_left(processes() > 1 ? agreed : asked), 0);
+}
+
+TEST(Distributed, AloneNothingOfItsMemoryIsShared) {
+    std::vector<double> values(1 << 20, 0.5);
+    const double* const before = values.data();
+    share_on_node(std::span(values));
+    EXPECT_EQ(values.data(), before);
+    EXPECT_EQ(std::count(values.begin(), values.end(), 0.5), 1 << 20);
+    EXPECT_EQ(shared_memory_bytes(), 0u);
 }
 
 }  // namespace exitance

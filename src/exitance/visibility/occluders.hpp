@@ -101,6 +101,13 @@ class Occluders {
     bool is_covered(const Point& x, const Normal& n, RegionId own) const;
 
     std::size_t memory_bytes() const;
+    /// Calls visit(span) for the plain arrays that most of it stands in.
+    template <class Visit>
+    void visit_arrays(const Visit& visit) const {
+        visit(pieces_.span()), visit(of_region_.span()), visit(std::span(corners_)), visit(other_side_.span());
+        for (const Tree* tree : {&trees_[0], &trees_[1], &outer_})
+            visit(std::span(tree->pieces)), tree->bvh.visit_arrays(visit);
+    }
 
   private:
     void make_trees();

@@ -27,6 +27,7 @@ class Replay {
 
     std::optional<std::string> run(ElementTree& tree) {
         std::size_t root = 0;
+        tree.reserve(parent_.size());
         while (tree.size() < parent_.size()) {
             const std::size_t at = tree.size();
             const bool good = parent_[at] == none ? add_root(tree, root++) : split(tree);

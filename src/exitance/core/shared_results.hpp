@@ -1,0 +1,65 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exitance/core/archive.hpp"
+#include "exitance/core/check.hpp"
+#include "exitance/core/parallel.hpp"
+
+namespace exitance {
+
+/// How processes that solve one scene together tell one another what they have found. The layer that knows them sets
+/// it; those below it need not.
+struct ResultSharing {
+    std::size_t processes = 1, own = 0;
+    /// Block b's bytes are known to process b % processes, and to all afterwards. All processes call it.
+    void (*exchange)(std::span<std::string> blocks, const char* what) = nullptr;
+};
+inline ResultSharing& result_sharing() {
+    static ResultSharing sharing;
+    return sharing;
+}
+
+/// out[i] = find(i) for all i of `out`, on all threads and, where several processes work together, dealt out to them by
+/// blocks of `grain`: then all of them call this alike. `archive_one(archive, value)` takes a value to bytes and back.
+/// The same values on any number of processes.
+template <class T, class Find, class ArchiveOne>
+void find_together(std::vector<T>& out, std::size_t grain, const Find& find, const ArchiveOne& archive_one,
+                   const char* what) {
+    const ResultSharing sharing = result_sharing();
+    const std::size_t blocks = (out.size() + grain - 1) / grain;
+    const auto for_block = [&](std::size_t b, const auto& body) {
+        for (std::size_t i = b * grain; i < std::min(out.size(), (b + 1) * grain); ++i) body(i);
+    };
+    // Told in rounds, so that little stands twice.
+    constexpr std::size_t rounds = 16;
+    const std::size_t together = blocks / rounds + 1;
+    const auto is_own = [&](std::size_t b) { return b % together % sharing.processes == sharing.own; };
+    parallel_for(blocks, 1,
+                 [&](std::size_t b) {
+                     if (is_own(b)) for_block(b, [&](std::size_t i) { out[i] = find(i); });
+                 },
+                 {what});
+    if (sharing.processes == 1) return;
+    for (std::size_t first = 0; first < blocks; first += together) {
+        std::vector<std::string> bytes(std::min(together, blocks - first));
+        parallel_for(bytes.size(), 16, [&](std::size_t k) {
+            if (!is_own(first + k)) return;
+            ArchiveWriter writer;
+            for_block(first + k, [&](std::size_t i) { archive_one(writer, out[i]); });
+            bytes[k] = writer.take();
+        });
+        sharing.exchange(bytes, what);
+        parallel_for(bytes.size(), 16, [&](std::size_t k) {
+            if (is_own(first + k)) return;
+            ArchiveReader reader(bytes[k]);
+            for_block(first + k, [&](std::size_t i) { archive_one(reader, out[i]); });
+            EXI_CHECK(reader.good() && reader.left() == 0);
+        });
+    }
+}
+
+}  // namespace exitance
