@@ -94,7 +94,7 @@ std::string summary(const Forecast& f) {
         "method     {}\n"
         "elements   about {} to solve on, {} to gather on\n"
         "rays       about {:.2g}\n"
-        "time       about {:.2g} s, within a factor of five\n"
+        "time       about {:.2g} s\n"
         "memory     about {}\n",
         f.surfaces, f.regions, f.emitters, f.method, f.solve_elements, f.gather_elements, f.rays, f.seconds,
         bytes(static_cast<std::size_t>(f.memory_bytes)));

@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -27,9 +28,10 @@ double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
 /// rays; half of that exponent, since both are estimates.)
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
     const double usual = 4 * demand.rays.average;
+    // Exponents are given by the least rays for a mean square, halved.
     const double dear = std::clamp(std::pow(sampled.place_rays / usual, 0.25), 0.5, 2.0);
-    const double allowed =
-        demand.noise * light_near(e, demand) * dear * std::pow(mean_area_ / stage_.counted_area(tree_, e), 0.25);
+    const double allowed = demand.noise * light_near(e, demand) * dear *
+                           std::pow(mean_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
 
@@ -39,13 +41,12 @@ double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDeman
     const double share =
         demand.tolerance * light_near(e, demand) * std::sqrt(mean_area_ / stage_.counted_area(tree_, e));
     if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
-    constexpr double darkest = 0.3;
-    return std::min(share, std::max(demand.relative_tolerance * light, darkest * demand.tolerance));
+    return std::min(share, std::max(demand.relative_tolerance * light, calibrated::dim_light_share * demand.tolerance));
 }
 
 bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
     const double share = allowed_misfit(e, sampled.light, demand);
-    // Five freedoms of noise alone leave over 2.3 times what they do on average once in twenty times.
+    // Given by five freedoms: noise alone leaves over 2.3 times what they do on average once in twenty times.
     return sampled.misfit_squared > share * share + 2.3 * sampled.noise_in_misfit;
 }
 
@@ -93,14 +94,13 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
         hopeless ? std::bit_ceil(demand.rays.least) : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
     unsigned rays = std::max({4u, first, before});
     w.growing.assign(places.size(), {});
-    constexpr double tolerated = 1.2;  // the noise is itself an estimate
     for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
         const unsigned cast = gather_at(e, places, b, rays, more, demand, w);
         SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, demand.curved, spread_.gain());
         out.place_rays = rays;
         out.rays = cast;
         if (may_cut && is_too_rough(e, out, demand)) return out;
-        if (noise_excess(e, out, demand) <= tolerated || 2 * rays > demand.rays.most) {
+        if (noise_excess(e, out, demand) <= calibrated::tolerated_noise || 2 * rays > demand.rays.most) {
             if (may_cut && demand.elements.empty()) look_between(e, out, b, demand, w);
             return out;
         }
@@ -131,6 +131,7 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
     }
     sampled.rays += rays * count;
     const double allowed = allowed_misfit(e, sampled.light, demand);
+    // Given by five freedoms, as in is_too_rough.
     if (misfit > allowed * allowed + 3 * noise)
         sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
 }
@@ -148,11 +149,10 @@ std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId
 ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassReport& report) const {
     ElementFunction out;
     out.tree = tree_;
-    constexpr double small = 0.3;  // of the error that there is anyway
     const std::vector<StraightLeaf> straight = add_straight(
         out, tree_.leaves(), [&](ElementId e) -> const SampledElement& { return sampled_[e]; },
         [&](ElementId e) { return stage_.scene.material(tree_.region(e)).reflectance; },
-        [&](ElementId e) { return small * allowed_misfit(e, sampled_[e].light, demand); });
+        [&](ElementId e) { return calibrated::straightening_share * allowed_misfit(e, sampled_[e].light, demand); });
     report.leaves.resize(out.tree.size());
     for (const auto [leaf, of] : straight) {
         const SampledElement& s = sampled_[of];
@@ -187,7 +187,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
     std::vector<ElementId> kept;
     if (known && !resumed) {
         const auto good = [&](ElementId e) {
-            return sampled_[e].place_rays > 0 && noise_excess(e, sampled_[e], demand) <= 1.5;
+            return sampled_[e].place_rays > 0 && noise_excess(e, sampled_[e], demand) <= calibrated::kept_noise;
         };
         std::copy_if(active.begin(), active.end(), std::back_inserter(kept), good);
         std::erase_if(active, good);
