@@ -256,10 +256,26 @@ std::vector<Triangle> triangles_of(const Scene& scene, RegionId r) {
     return out;
 }
 
-/// Does anything lie beyond a window?
+/// Do all windows lie in the box?
+bool is_in(const Box& box, const std::vector<Pane>& windows, double slack) {
+    const Box larger = grown(box, slack);
+    return std::all_of(windows.begin(), windows.end(), [&](const Pane& window) {
+        return std::all_of(window.corners.begin(), window.corners.end(), [&](const Point& p) {
+            return p.x >= larger.lo.x && p.y >= larger.lo.y && p.z >= larger.lo.z && p.x <= larger.hi.x &&
+                   p.y <= larger.hi.y && p.z <= larger.hi.z;
+        });
+    });
+}
+
+/// Does nothing lie beyond a window?
 bool hides_nothing(const Scene& scene, const std::vector<Pane>& windows, double slack) {
+    const bool are_in = is_in(scene.box(), windows, slack);
     for (const Pane& window : windows) {
         const auto is_beyond = [&](const Point& p) { return dot(window.n, p - window.corners[0]) < -slack; };
+        const Box& box = scene.box();  // of most buildings it tells enough
+        const Point farthest{window.n.x > 0 ? box.lo.x : box.hi.x, window.n.y > 0 ? box.lo.y : box.hi.y,
+                             window.n.z > 0 ? box.lo.z : box.hi.z};
+        if (are_in && !is_beyond(farthest)) continue;
         for (const SurfaceId s : scene.surfaces().ids())
             if (const auto outline = scene.outline(s); std::any_of(outline.begin(), outline.end(), is_beyond))
                 return false;
