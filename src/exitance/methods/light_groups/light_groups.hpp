@@ -58,8 +58,8 @@ constexpr std::size_t most_light_groups = 64;
 
 /// What is to change.
 struct LightChange {
-    std::vector<std::pair<std::string, double>> dim;            ///< Groups by name, and factors of at least 0.
-    std::vector<std::pair<std::string, Spectrum>> reflectance;  ///< Materials by name, [0, 1).
+    std::vector<std::pair<std::string, double>> dim = {};            ///< Groups by name, and factors of at least 0.
+    std::vector<std::pair<std::string, Spectrum>> reflectance = {};  ///< Materials by name, [0, 1).
 };
 
 /// Changes light and scene of a solution, and the groups' factors. The estimate of the error is the groups' by their
