@@ -240,8 +240,8 @@ class Solver {
 
     /// Plain elements for when no time is left for a mesh that follows shadows.
     void project_coarsely() {
-        constexpr double coarse = 0.1;
-        const Knobs fine = std::exchange(knobs_, knobs_for_error(coarse, stage_.lit_pieces(), options_));
+        const Knobs fine =
+            std::exchange(knobs_, knobs_for_error(calibrated::coarse_light_error, stage_.lit_pieces(), options_));
         project_direct();
         knobs_ = fine;
     }

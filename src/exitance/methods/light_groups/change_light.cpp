@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/light_groups/light_groups.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
@@ -13,8 +14,7 @@
 namespace exitance {
 namespace {
 
-/// Of the change of light in a step, where repainting ends; and after how many steps it does in any case.
-constexpr double settled = 1e-4;
+/// After how many steps repainting ends in any case.
 constexpr int most_steps = 100;
 
 Error unknown(const std::string& what, const std::string& name, std::vector<std::string> known) {
@@ -73,7 +73,7 @@ class LeafLight {
                 for (std::size_t band = 0; band < bands; ++band)
                     moved += std::abs(next[i][band] - indirect[i][band]), all += next[i][band];
             indirect = std::move(next);
-            if (moved <= settled * all) break;
+            if (moved <= calibrated::changed_light_settled * all) break;
         }
         return indirect;
     }
@@ -101,7 +101,7 @@ void add_up(const std::vector<LightGroup>& groups, CornerValues LightGroup::*val
 
 /// Corners of leaves that lie at one place of one region are one node.
 void number_nodes(const ElementFunction& f, double scene_size, LightGroups& groups) {
-    const double grid = 1e-6 * scene_size;
+    const double grid = 1e-6 * scene_size;  // Given by single precision, in which other programs hold corners.
     std::map<std::array<std::int64_t, 4>, std::uint32_t> nodes;
     for (const ElementId e : f.tree.leaves()) {
         const Patch& patch = f.tree.patch(e);

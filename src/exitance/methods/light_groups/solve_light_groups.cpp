@@ -18,7 +18,7 @@ constexpr std::size_t rays_in_all = std::size_t(1) << 21;
 constexpr std::uint32_t fewest_rays = 16, most_rays = 1024;
 
 /// How far corners lie from where they are evaluated, in elements: light may jump at their borders.
-constexpr double inwards = 1e-3;
+constexpr double inwards = 1e-3;  // Given by the tolerance of places: a thousandth of an element is above it.
 
 /// The places at which a function's values are taken: a little inside, and where the element ends before its frame's
 /// corner, where it ends.

@@ -14,14 +14,19 @@ Misfit misfit(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const
         square += part * squared(weight * error) / static_cast<double>(bands);
         out.largest = std::max(out.largest, std::abs(mean(weight * error)));
     };
+    // Given by the integrals of the squares of the functions of one node over a triangle, of its area.
     constexpr double of_edge = 0.1354 / 2, of_bubble = 0.2893 * (32.0 / 27) * (32.0 / 27);
     for (std::size_t i = 0; i < 3; ++i) {
         const Spectrum &a = values[t.corner[i]], &b = values[t.corner[(i + 1) % 3]], &m = values[t.middle[i]];
-        look(values[t.quarter[i][0]] - (0.375 * a + 0.75 * m - 0.125 * b), of_edge);
-        look(values[t.quarter[i][1]] - (0.375 * b + 0.75 * m - 0.125 * a), of_edge);
+        // Given by quadratic interpolation a quarter of the way from each end.
+        const Spectrum near_a = 0.375 * a + 0.75 * m - 0.125 * b;
+        // Given by it, too.
+        const Spectrum near_b = 0.375 * b + 0.75 * m - 0.125 * a;
+        look(values[t.quarter[i][0]] - near_a, of_edge), look(values[t.quarter[i][1]] - near_b, of_edge);
     }
     const std::size_t i = t.longest, j = (i + 1) % 3, k = (i + 2) % 3;
-    // Weights of six nodes at the coordinates 1/4, 1/4 of the longest edge's ends and 1/2 of the corner across.
+    // Given by the weights of six nodes at the coordinates 1/4, 1/4 of the longest edge's ends and 1/2 of the corner
+    // across.
     const Spectrum inner = -0.125 * (values[t.corner[i]] + values[t.corner[j]]) + 0.25 * values[t.middle[i]] +
                            0.5 * (values[t.middle[j]] + values[t.middle[k]]);
     look(values[t.inner] - inner, of_bubble);
