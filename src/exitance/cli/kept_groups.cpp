@@ -25,6 +25,15 @@ Result<void> check_light_groups(const SolveArguments& arguments) {
     return {};
 }
 
+Result<void> check_light_groups(const SolveArguments& arguments, const Scene& scene) {
+    const std::size_t count = arguments.light_groups ? find_emitter_groups(scene).size() : 0;
+    if (count <= most_light_groups) return {};
+    return Error{ErrorCode::usage,
+                 "there are " + std::to_string(count) + " groups that emit, at most " +
+                     std::to_string(most_light_groups) + " are solved one by one",
+                 "--light-groups", "name lamps that are switched together alike"};
+}
+
 Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution& solution, Progress& progress,
                                       const StopRequest& stop) {
     if (!arguments.light_groups || !solution.scene.has_light()) return LightGroups();

@@ -7,6 +7,8 @@ namespace exitance {
 
 /// Can --light-groups be obeyed together with what else is asked for?
 Result<void> check_light_groups(const SolveArguments& arguments);
+/// Found out before the work: has the scene no more groups than are solved one by one?
+Result<void> check_light_groups(const SolveArguments& arguments, const Scene& scene);
 
 /// The light groups of a solution, where they are to be kept; its statistics tell their size and time. None, and a
 /// warning, where a stop came first.

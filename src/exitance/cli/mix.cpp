@@ -29,8 +29,12 @@ ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     if (const Result<void> changed = change_light(*solution, groups, change); !changed)
         return terminal.fail(changed.error());
     solution->statistics.seconds["mix"] = watch.seconds();
-    const Stage stage(solution->scene);
-    solution->statistics.energy = energy_balance(*solution, stage);
+    solution->statistics.energy = {};
+    if (!solution->scene.has_light_from_outside()) {
+        Stage stage(solution->scene);
+        stage.rooms = find_light_rooms(stage, 1, StopRequest());
+        solution->statistics.energy = energy_of_interpolant(*solution, stage);
+    }
     if (const Result<void> written = write_solution(arguments.output, *solution, &groups); !written)
         return terminal.fail(written.error());
     if (arguments.json)

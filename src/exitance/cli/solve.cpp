@@ -239,6 +239,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     CheckedScene checked = load_for_all(arguments.scene);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
+    if (const Result<void> few = check_light_groups(arguments, *checked.scene); !few) return terminal.fail(few.error());
     const double read_seconds = reading.seconds();
     if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
     if (const auto nonsense = find_nonsense(*checked.scene))

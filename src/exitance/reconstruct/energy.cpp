@@ -88,6 +88,24 @@ double mean_direct_light(const Stage& stage, const DirectProjection& direct) {
     return flux / stage.area;
 }
 
+EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage) {
+    const Scene& scene = solution.scene;
+    const ElementTree& tree = solution.interpolant.tree;
+    EnergyBalance out;
+    for (const Region& region : scene.regions())
+        out.emitted += region.area * sum(scene.materials()[region.material].exitance);
+    for (const PunctualLight& light : scene.lights()) out.emitted += sum(light.power());
+    for (const ElementId e : tree.leaves()) {
+        const Material& material = scene.material(tree.region(e));
+        const Spectrum E = solution.interpolant.at({e, tree.centre(e)});
+        const double lost = stage.rooms.lost_share(tree.region(e), tree.patch(e).at(tree.centre(e)));
+        out.absorbed += tree.area(e) * sum((Spectrum(1.0) - material.reflectance) * E);
+        out.escaped += lost * tree.area(e) * sum(material.exitance + material.reflectance * E);
+    }
+    out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
+    return out;
+}
+
 EnergyBalance energy_balance(const Solution& solution, const Stage& stage) {
     DirectProjection none;
     for (const Piece& piece : stage.pieces) none.tree.add_root(piece.region, piece.patch);

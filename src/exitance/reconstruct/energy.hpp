@@ -13,6 +13,9 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
 /// The same where nothing was projected: the emitted flux is read at the pieces.
 EnergyBalance energy_balance(const Solution& solution, const Stage& stage);
 
+/// The same of what is exported, which holds all light; of scenes that no light comes to from outside.
+EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage);
+
 /// Mean over all surfaces and bands of E_dir, W/m^2.
 double mean_direct_light(const Stage& stage, const DirectProjection& direct);
 

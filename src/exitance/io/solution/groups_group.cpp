@@ -22,7 +22,7 @@ std::vector<double> flat(const std::vector<Spectrum>& values) {
 }
 
 bool is_light(float v) {
-    return std::isfinite(v) && v >= 0;
+    return std::isfinite(v);
 }
 
 CornerValues part_of(const std::vector<float>& all, std::size_t part, std::size_t count) {
@@ -69,7 +69,7 @@ void read_values(Hdf5Reader& file, const std::string& name, std::size_t corners,
                  CornerValues LightGroup::*values) {
     const auto all = file.read<float>(name, bands, groups.size() * corners);
     if (file.failed()) return;
-    if (!std::all_of(all.begin(), all.end(), is_light)) return file.fail(name, "holds light below 0");
+    if (!std::all_of(all.begin(), all.end(), is_light)) return file.fail(name, "holds a number that is not finite");
     for (std::size_t g = 0; g < groups.size(); ++g) groups[g].*values = part_of(all, g, corners);
 }
 

@@ -131,9 +131,13 @@ std::vector<Spectrum> averaged_at_corners(const ElementFunction& f, const std::v
     return out;
 }
 
-/// By what light on the leaves grows with the new reflectances; 1 where there was none.
-std::vector<Spectrum> growth_of_leaves(const Solution& solution, const LightGroups& groups,
-                                       const std::vector<Spectrum>& reflectance) {
+/// How light on the leaves follows the new reflectances: v becomes growth v + added. Where there was none nothing can
+/// grow.
+struct Repainted {
+    std::vector<Spectrum> growth, added;
+};
+Repainted repainted_leaves(const Solution& solution, const LightGroups& groups,
+                           const std::vector<Spectrum>& reflectance) {
     const LeafLight light(solution, groups);
     const std::size_t n = groups.rays > 0 ? groups.met.size() / groups.rays : 0;
     std::vector<Spectrum> direct(n), held(n);
@@ -142,24 +146,29 @@ std::vector<Spectrum> growth_of_leaves(const Solution& solution, const LightGrou
     for (std::size_t i = 0; i < n; ++i) held[i] = solution.direct_share * direct[i];
     const std::vector<Spectrum> before = light.settle(direct, groups.reflectance, std::vector<Spectrum>(n));
     const std::vector<Spectrum> after = light.settle(direct, reflectance, before);
-    std::vector<Spectrum> growth(n, Spectrum(1));
+    Repainted out{std::vector<Spectrum>(n, Spectrum(1)), std::vector<Spectrum>(n)};
     for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t band = 0; band < bands; ++band)
-            if (before[i][band] > 0)
-                growth[i][band] = (after[i][band] + held[i][band]) / (before[i][band] + held[i][band]);
-    return growth;
+        for (std::size_t band = 0; band < bands; ++band) {
+            const double was = before[i][band] + held[i][band];
+            if (was > 0)
+                out.growth[i][band] = (after[i][band] + held[i][band]) / was;
+            else
+                out.added[i][band] = after[i][band];
+        }
+    return out;
 }
 
 /// What the elements of `indirect` hold is multiplied; what is exported changes by as much light as that.
 void repaint(Solution& solution, LightGroups& groups, const std::vector<Spectrum>& reflectance) {
     if (groups.node.empty()) number_nodes(solution.indirect, solution.scene.size(), groups);
-    const std::vector<Spectrum> growth =
-        averaged_at_corners(solution.indirect, growth_of_leaves(solution, groups, reflectance), groups);
+    const Repainted fresh = repainted_leaves(solution, groups, reflectance);
+    const std::vector<Spectrum> growth = averaged_at_corners(solution.indirect, fresh.growth, groups);
+    const std::vector<Spectrum> added = averaged_at_corners(solution.indirect, fresh.added, groups);
     ElementFunction change{solution.indirect.tree, solution.indirect.first_value, solution.indirect.values};
     parallel_for(growth.size(), 4096, [&](std::size_t i) {
         for (std::size_t band = 0; band < bands; ++band) {
             const float old = solution.indirect.values[i][band];
-            const float fresh = static_cast<float>(static_cast<double>(old) * growth[i][band]);
+            const float fresh = static_cast<float>(static_cast<double>(old) * growth[i][band] + added[i][band]);
             solution.indirect.values[i][band] = fresh, change.values[i][band] = fresh - old;
         }
     });

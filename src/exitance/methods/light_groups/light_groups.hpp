@@ -20,12 +20,14 @@ using CornerValues = std::vector<std::array<float, bands>>;
 /// One group's light, undimmed, on the elements of the whole solution.
 struct LightGroup {
     EmitterGroup emitters;
-    double factor = 1;            ///< By which it is dimmed in the solution that it is stored with.
-    CornerValues indirect;        ///< Of Solution::indirect: the groups' sum is its value.
-    CornerValues interpolant;     ///< Of Solution::interpolant, likewise.
-    CornerValues direct;          ///< Direct light at the centres of the leaves of `indirect`.
-    std::optional<double> error;  ///< Estimated, with this group alone, relative to its own light.
-    double reflected = 0;         ///< Mean of the light that it makes surfaces reflect, W/m^2.
+    double factor = 1;         ///< By which it is dimmed in the solution that it is stored with.
+    CornerValues indirect;     ///< Of Solution::indirect: the groups' sum is its value.
+    CornerValues interpolant;  ///< Of Solution::interpolant, likewise.
+    CornerValues direct;       ///< Direct light at the centres of the leaves of `indirect`.
+    /// Estimated, with this group alone, relative to its own light: of its own solve, and of what the whole solution's
+    /// elements miss of it.
+    std::optional<double> error;
+    double reflected = 0;  ///< Mean of the light that it makes surfaces reflect, W/m^2.
 };
 
 /// What dimming and repainting need. Dimming is a sum. Repainting solves E = F rho (E_direct + E) twice on the leaves,
@@ -49,9 +51,9 @@ struct LightGroups {
 };
 
 /// Solves every group by itself as `options` say, evaluates it at the corners of the solution's elements, and spreads
-/// what the sum lacks to the solution over the groups in proportion. Takes as long as the groups' solves and about 2
-/// seconds of rays. The scene's emitters must be parted by group. Error: usage, where there are more than
-/// `most_light_groups`; limit, where a stop came first.
+/// what the sum lacks to the solution over the groups. Takes as long as the groups' solves and about 2
+/// seconds of rays. The scene's emitters must be parted by group, and be in `most_light_groups` at
+/// most. Error: limit, where a stop came first.
 Result<LightGroups> solve_light_groups(const Solution& solution, const SolveOptions& options, Progress& progress,
                                        const StopRequest& stop);
 constexpr std::size_t most_light_groups = 64;

@@ -67,30 +67,34 @@ CornerValues values_at(const Corners& corners, const RadiosityFunction& light, C
             value = at_centre + (value - at_centre) * (1 / reach);
         }
         if (!direct.empty()) value += direct_share * direct[i].irradiance;
-        for (std::size_t band = 0; band < bands; ++band) out[i][band] = static_cast<float>(std::max(0.0, value[band]));
+        for (std::size_t band = 0; band < bands; ++band) out[i][band] = static_cast<float>(value[band]);
     }
     return out;
 }
 
-/// Makes the groups' sum what is there. Where they have nothing, each gets its share of all light.
+/// Makes the groups' sum what is there: what it lacks goes to those that have light there, by how much they have.
+/// Where none has any, each gets its share of all light.
 void spread_remainder(const CornerValues& whole, std::vector<LightGroup>& groups, CornerValues LightGroup::*values) {
-    std::vector<double> all(groups.size(), 0);
-    double sum_of_all = 0;
+    std::vector<double> of_all(groups.size(), 0);
+    double all = 0;
     for (std::size_t g = 0; g < groups.size(); ++g) {
         for (const auto& v : groups[g].*values)
-            for (const float x : v) all[g] += static_cast<double>(x);
-        sum_of_all += all[g];
+            for (const float x : v) of_all[g] += std::max(0.0, static_cast<double>(x));
+        all += of_all[g];
     }
-    for (std::size_t g = 0; g < groups.size(); ++g)
-        all[g] = sum_of_all > 0 ? all[g] / sum_of_all : 1 / static_cast<double>(groups.size());
+    for (double& share : of_all) share = all > 0 ? share / all : 1 / static_cast<double>(groups.size());
     parallel_for(whole.size(), 4096, [&](std::size_t i) {
         for (std::size_t band = 0; band < bands; ++band) {
-            double sum = 0;
-            for (const LightGroup& g : groups) sum += static_cast<double>((g.*values)[i][band]);
-            const double right = static_cast<double>(whole[i][band]);
+            double sum = 0, light = 0;
+            for (const LightGroup& g : groups) {
+                const double v = static_cast<double>((g.*values)[i][band]);
+                sum += v, light += std::max(0.0, v);
+            }
+            const double lacking = static_cast<double>(whole[i][band]) - sum;
             for (std::size_t g = 0; g < groups.size(); ++g) {
                 float& v = (groups[g].*values)[i][band];
-                v = static_cast<float>(sum > 0 ? static_cast<double>(v) * right / sum : all[g] * right);
+                const double share = light > 0 ? std::max(0.0, static_cast<double>(v)) / light : of_all[g];
+                v = static_cast<float>(static_cast<double>(v) + share * lacking);
             }
         }
     });
@@ -142,6 +146,29 @@ void trace_leaves(const Solution& solution, LightGroups& out) {
     });
 }
 
+/// RMS over the leaves of what they reflect of light that the solution's elements miss of a group's own, at their
+/// centres, W/m^2.
+double missed_light(const Solution& solution, const Corners& corners, const CornerValues& values,
+                    const RadiosityFunction& own) {
+    const ElementTree& tree = solution.indirect.tree;
+    ElementFunction held{tree, solution.indirect.first_value, values};
+    const std::vector<Light> right = own.at(corners.centre, Component::indirect);
+    std::vector<Light> direct;
+    if (max(solution.direct_share) > 0) direct = own.at(corners.centre, Component::direct);
+    double sum = 0, area = 0;
+    std::size_t number = 0;
+    for (const ElementId e : tree.leaves()) {
+        Spectrum off = held.at({e, tree.centre(e)}) - right[number].irradiance;
+        if (!direct.empty()) off -= solution.direct_share * direct[number].irradiance;
+        const Spectrum reflected = solution.scene.material(tree.region(e)).reflectance * off;
+        for (std::size_t band = 0; band < bands; ++band)
+            sum += tree.area(e) * reflected[band] * reflected[band] / static_cast<double>(bands);
+        area += tree.area(e);
+        ++number;
+    }
+    return area > 0 ? std::sqrt(sum / area) : 0;
+}
+
 /// Mean over the leaves of what they reflect of a group's light, W/m^2 and band.
 double mean_reflected(const Solution& solution, const LightGroup& group) {
     const ElementTree& tree = solution.indirect.tree;
@@ -181,17 +208,13 @@ Result<LightGroups> solve_light_groups(const Solution& solution, const SolveOpti
     const Scene& scene = solution.scene;
     LightGroups out;
     const std::vector<EmitterGroup> found = find_emitter_groups(scene);
-    if (found.size() > most_light_groups)
-        return Error{ErrorCode::usage,
-                     fmt::format("there are {} groups that emit, at most {} are solved one by one", found.size(),
-                                 most_light_groups),
-                     "--light-groups", "name lamps that are switched together alike"};
     for (const Material& m : scene.materials())
         out.reflectance.push_back(m.reflectance), out.exitance.push_back(m.exitance);
     for (const PunctualLight& light : scene.lights()) out.intensity.push_back(light.intensity);
     for (const auto& dome : scene.distant().domes) out.distant.push_back(dome.irradiance);
     for (const auto& disc : scene.distant().discs) out.distant.push_back(disc.irradiance);
     const Corners of_indirect(solution.indirect, scene), of_interpolant(solution.interpolant, scene);
+    std::vector<double> missed;
     for (const EmitterGroup& emitters : found) {
         progress.phase("group " + emitters.name);
         const Scene lit = alone(scene, emitters);
@@ -202,13 +225,18 @@ Result<LightGroups> solve_light_groups(const Solution& solution, const SolveOpti
         group.emitters = emitters, group.error = own->statistics.relative_error_estimate;
         const RadiosityFunction light(*own);
         group.indirect = values_at(of_indirect, light, Component::indirect, solution.direct_share);
+        missed.push_back(missed_light(solution, of_indirect, group.indirect, light));
         group.interpolant = values_at(of_interpolant, light, Component::total, Spectrum());
         for (const Light& l : light.at(of_indirect.centre, Component::direct))
             group.direct.push_back(as_floats(l.irradiance));
     }
     spread_remainder(solution.indirect.values, out.groups, &LightGroup::indirect);
     spread_remainder(solution.interpolant.values, out.groups, &LightGroup::interpolant);
-    for (LightGroup& group : out.groups) group.reflected = mean_reflected(solution, group);
+    for (std::size_t g = 0; g < out.groups.size(); ++g) {
+        LightGroup& group = out.groups[g];
+        group.reflected = mean_reflected(solution, group);
+        if (group.error && group.reflected > 0) group.error = std::hypot(*group.error, missed[g] / group.reflected);
+    }
     progress.phase("rays for repainting");
     trace_leaves(solution, out);
     return out;
