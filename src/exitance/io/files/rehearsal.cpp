@@ -17,6 +17,12 @@ namespace {
 
 constexpr int crash_signals[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU};
 
+/// Seconds by the clock after which a copy has not computed but waited, for a lock say that another thread held when
+/// the copy was made: that tells nothing about the file.
+unsigned longest_wait(rlim_t seconds) {
+    return static_cast<unsigned>(std::min<rlim_t>(30 + 10 * seconds, std::numeric_limits<int>::max()));
+}
+
 enum Outcome { went_well, failed, lacks_memory };  ///< The copy's exit status.
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -39,6 +45,8 @@ void limit_memory(std::size_t bytes) {
 
 [[noreturn]] void perform(const std::function<bool()>& work, rlim_t seconds, std::size_t memory) {
     for (const int signal : crash_signals) ::signal(signal, SIG_DFL);
+    ::signal(SIGALRM, SIG_DFL);
+    ::alarm(longest_wait(seconds));
     const rlimit time = {seconds, seconds + 1}, no_core = {0, 0};
     ::setrlimit(RLIMIT_CPU, &time);
     ::setrlimit(RLIMIT_CORE, &no_core);
@@ -71,7 +79,7 @@ std::optional<std::string> rehearse(const std::function<bool()>& work, double se
     if (signal == SIGXCPU) return "takes more than " + std::to_string(limit) + " s";
     for (const int crash : crash_signals)
         if (signal == crash) return "crashes";
-    return {};  // ended from outside
+    return {};  // ended from outside, or by its waiting
 }
 
 }  // namespace exitance

@@ -45,6 +45,15 @@ TEST(Rehearsal, TakesNoMoreMemoryThanItMay) {
 }
 #endif
 
+TEST(Rehearsal, DoesNotWaitForEverAndSaysNothingThen) {
+    const auto waits = [] {
+        const unsigned seconds_left = ::alarm(1);  // in place of the long limit, of which nearly all must be left
+        if (seconds_left >= 40 && seconds_left <= 80) ::pause();
+        return false;
+    };
+    EXPECT_FALSE(rehearse(waits, 5));
+}
+
 TEST(Rehearsal, EndedByTheUserSaysNothingOfTheWork) {
     EXPECT_FALSE(rehearse([] { return ::raise(SIGTERM) == 0; }, 5));
 }
