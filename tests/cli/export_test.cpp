@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/small_scene.hpp"
@@ -45,6 +47,26 @@ TEST(ProgramExport, WritesDiscontinuityCurvesAndQuadraticTriangles) {
     ASSERT_EQ(run_program({"export", solution, "-o", cells}).status, 0);
     const std::string count = "NumberOfCells=\"" + std::to_string(json["triangles"].get<int>()) + "\"";
     EXPECT_NE(read_text(cells).find(count), std::string::npos);
+}
+
+TEST(ProgramExport, TablesOfFacesTellTheErrorOfEachAndWhatItRestsOn) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", table = folder / "room.csv";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    ASSERT_EQ(run_program({"export", solution, "-o", table}).status, 0);
+    std::istringstream lines(read_text(table));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_TRUE(line.ends_with(",relative_error,error_points")) << line;
+    double points = 0;
+    while (std::getline(lines, line)) {
+        const std::size_t last = line.rfind(','), before = line.rfind(',', last - 1);
+        const double error = std::stod(line.substr(before + 1));
+        EXPECT_GE(error, 0) << line;  // 0 where nothing is reflected
+        EXPECT_LT(error, 0.5) << line;
+        points += std::stod(line.substr(last + 1));
+    }
+    EXPECT_GT(points, 1000);
 }
 
 TEST(ProgramExport, OfASolutionWithoutCurvesIsAUsageError) {

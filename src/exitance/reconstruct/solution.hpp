@@ -39,6 +39,12 @@ struct RoomError {
     double error = 0;  ///< and the RMS error of radiosity relative to it.
 };
 
+/// How far the light of one input face is off.
+struct FaceError {
+    double error = 0;        ///< RMS error of radiosity, relative to the mean reflected radiosity of its room.
+    std::size_t points = 0;  ///< It was measured at; 0 where they were too few: the error is then that of its room.
+};
+
 /// What discontinuity meshing made.
 struct DiscontinuityCounts {
     std::size_t d0 = 0, d1 = 0, d2 = 0, eee = 0, left_out = 0;  ///< Curves; sources and curves that change too little.
@@ -63,6 +69,7 @@ struct SolveStatistics {
     std::optional<double> relative_error_estimate_interpolant;  ///< Of what `export` writes; likewise.
     std::vector<RoomError> rooms;                               ///< The largest first; one, where all is one room.
     std::optional<double> relative_error_estimate_worst_room;   ///< Of what `probe` evaluates.
+    std::vector<FaceError> surface_errors;                      ///< One a face; none where nothing was measured.
     /// Relative RMS standard error of the light that a random method found on its elements; 0 for other methods.
     double standard_error = 0;
     EnergyBalance energy;

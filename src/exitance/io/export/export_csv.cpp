@@ -32,6 +32,9 @@ Result<void> write_surface_table(const Solution& solution, const std::string& pa
                    (!scene.is_photometric() ? " [W/m^2]"
                     : prefix[1] == 'E'      ? " [lx]"
                                             : " [lm/m^2]");
+    row += ",relative_error,error_points";
+    const std::vector<FaceError>& errors = solution.statistics.surface_errors;
+    const bool has_errors = errors.size() == scene.surfaces().size();
     file->write(row + "\n");
     for (SurfaceId s : scene.surfaces().ids()) {
         const Surface& face = scene.surfaces()[s];
@@ -39,6 +42,10 @@ Result<void> write_surface_table(const Solution& solution, const std::string& pa
                           field(scene.material(s).name), face.area);
         for (const Spectrum& mean : {light[s].irradiance, light[s].radiosity})
             for (double value : mean.value) fmt::format_to(std::back_inserter(row), ",{:.10g}", value);
+        if (has_errors)
+            fmt::format_to(std::back_inserter(row), ",{:.4g},{}", errors[s.value].error, errors[s.value].points);
+        else
+            row += ",,";
         file->write(row + "\n");
     }
     return file->commit();

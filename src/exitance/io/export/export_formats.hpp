@@ -19,7 +19,8 @@ Result<void> write_vtu(const Solution& solution, const std::string& path);
 /// after each vertex. The materials go to a file of the same name ending in .mtl.
 Result<void> write_obj(const Solution& solution, const std::string& path);
 
-/// A row a face of the input, in its order: surface,line,group,material,area,E_*,B_* (means over the face).
+/// A row a face of the input, in its order: surface,line,group,material,area,E_*,B_* (means over the face),
+/// relative_error, error_points (empty where no error was measured; 0 points: the error is that of the face's room).
 Result<void> write_surface_table(const Solution& solution, const std::string& path);
 
 /// Binary glTF 2.0: triangles, Y up, metres. Vertex attributes: _RADIOSITY and _IRRADIANCE (W/m^2, float), COLOR_0 the

@@ -1,5 +1,8 @@
 #include "exitance/io/solution/solution_groups.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace exitance {
 namespace {
 
@@ -88,6 +91,13 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
         file.write(group + "/rooms", rooms, 3,
                    {"m^2, W/m^2, 1", "area, mean reflected radiosity and relative error of every room"});
     }
+    if (!statistics.surface_errors.empty()) {
+        std::vector<double> errors;
+        for (const FaceError& e : statistics.surface_errors)
+            errors.insert(errors.end(), {e.error, static_cast<double>(e.points)});
+        file.write(group + "/surface_errors", errors, 2,
+                   {"1, 1", "relative error of every face, and points it was measured at; 0: that of its room"});
+    }
     file.write_texts(group + "/warnings", statistics.warnings, {"1", "what the user should know"});
 }
 
@@ -124,6 +134,13 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
         const std::vector<double> values = file.read<double>(rooms, 3);
         for (std::size_t i = 0; i + 2 < values.size(); i += 3)
             statistics.rooms.push_back({values[i], values[i + 1], values[i + 2]});
+    }
+    if (const std::string errors = group + "/surface_errors"; file.has(errors)) {
+        const std::vector<double> values = file.read<double>(errors, 2);
+        for (std::size_t i = 0; i + 1 < values.size(); i += 2) {
+            const double points = std::isfinite(values[i + 1]) ? std::clamp(values[i + 1], 0.0, 1e15) : 0;
+            statistics.surface_errors.push_back({values[i], static_cast<std::size_t>(points)});
+        }
     }
     statistics.warnings = file.read_texts(group + "/warnings");
     return statistics;

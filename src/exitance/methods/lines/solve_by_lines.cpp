@@ -76,7 +76,7 @@ void certify(const Stage& stage, const SolveOptions& options, Solution& solution
     s.relative_error_bound = found.bound;
     s.relative_error_estimate_worst_room = found.largest();
     s.error_p99 = found.p99;
-    s.rooms = certifier.rooms();
+    s.rooms = certifier.rooms(), s.surface_errors = certifier.surface_errors();
     s.rays += found.rays;
 }
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/geometry/polygon.hpp"
+#include "exitance/reconstruct/error/surface_errors.hpp"
 #include "exitance/transport/distributed.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -21,17 +23,27 @@ struct WeightedSample {
 /// One point of the certificate: two independent estimates of the residual there.
 struct Sample {
     RegionId region;
+    SurfaceId surface;
     std::uint32_t room = 0;
     double weight = 0;
     Spectrum r1, r2;          ///< The residual.
+    double squared = 0;       ///< Of the error there, mean over the bands, (W/m^2)^2.
     Spectrum local1, local2;  ///< Its part by the local pass, where known.
     bool tells_local = false;
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
     std::uint32_t rays = 0;
 };
 
-/// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x expected error.
-/// A few lie on what is left out: should there be light, it is to be noticed.
+/// A number in [0, 1) moved towards both ends, where it is 1 / share as dense: elements are most wrong at their edges,
+/// beside corners and contacts, where light varies faster than any polynomial.
+struct TowardsEnds {
+    double at, share;
+
+    explicit TowardsEnds(double s) : at(s * s * (3 - 2 * s)), share(6 * s * (1 - s)) {}
+};
+
+/// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x the square of the
+/// expected error. A few lie on what is left out: should there be light, it is to be noticed.
 std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
                                               const CertificateOptions& options, std::uint64_t seed) {
     const std::size_t count = options.points;
@@ -40,7 +52,7 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
     // Where rooms are judged apart, all are looked at alike, and errors count by the light there.
     const auto error_at = [&](ElementId e) {
         const double light = options.light_in.empty() ? 1 : options.light_in[stage.rooms.of(tree, e)];
-        return (*known)[e].expected_error / light;
+        return std::pow((*known)[e].expected_error / light, 2);
     };
     double area = 0, error = 0;
     for (ElementId e : leaves) {
@@ -64,10 +76,20 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
         const auto share = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
         while (leaf + 1 < leaves.size() && before + share() <= wanted) before += share(), ++leaf;
         const ElementId e = leaves[leaf];
-        out.push_back({{e, tree.uniform(e, points(k, 1), points(k, 2))},
-                       share_of_all / (density(e) * static_cast<double>(count))});
+        const TowardsEnds s(points(k, 1)), t(points(k, 2));
+        out.push_back({{e, tree.uniform(e, s.at, t.at)},
+                       share_of_all * s.share * t.share / (density(e) * static_cast<double>(count))});
     }
     return out;
+}
+
+/// The face of a region that holds a point of it.
+SurfaceId surface_at(const Scene& scene, RegionId region, const Point& x) {
+    const auto& surfaces = scene.regions()[region].surfaces;
+    if (surfaces.size() > 1)
+        for (SurfaceId s : surfaces)
+            if (contains(scene.outline(s), scene.surfaces()[s].normal, x)) return s;
+    return surfaces[0];
 }
 
 /// The places given, again and again, `count` in all.
@@ -163,9 +185,10 @@ struct Certifier::Content {
     }
 
     void measure_residuals();
+    std::vector<Spectrum> mean_residuals() const;
     std::vector<Spectrum> late_response() const;
     Certificate judge();
-    void judge_rooms(const std::vector<Spectrum>& response, Certificate& out);
+    void judge_rooms(Certificate& out);
     std::vector<RoomError> rooms;
 };
 
@@ -202,6 +225,7 @@ void Certifier::Content::measure_residuals() {
                     delivered -= stage.clustered.at(x, n, region, point_accuracy(options.error), clustered).irradiance;
                 Sample& sample = samples[before + k];
                 sample.region = region, sample.weight = weight;
+                sample.surface = surface_at(stage.scene, region, x);
                 if (stage.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage.rooms.at(region, x));
                 sample.leaf = light.numbering.number[coarse.find(region, x).element];
                 if (options.summed) {
@@ -237,32 +261,66 @@ void Certifier::Content::measure_residuals() {
     ++looks;
 }
 
-/// The smooth part of the error: the coarse response to the mean residual of each region, less that residual itself. By
-/// leaf number of the coarse mesh.
-std::vector<Spectrum> Certifier::Content::late_response() const {
+/// The mean residual of each leaf of the coarse mesh. What regions have in common is told by all of their samples; what
+/// a leaf has beyond it by its own few, as far as samples of one leaf agree: beside a concave edge they do, and there
+/// two faces reflect to each other what a mean over the whole face does not show.
+std::vector<Spectrum> Certifier::Content::mean_residuals() const {
     // A region in several rooms is one in each.
     const std::size_t regions = stage.scene.regions().size();
-    std::vector<Spectrum> mean_residual(regions * std::max<std::size_t>(1, stage.rooms.count()));
-    std::vector<double> count(mean_residual.size());
+    std::vector<Spectrum> of_place(regions * std::max<std::size_t>(1, stage.rooms.count()));
+    std::vector<double> count(of_place.size());
+    const auto place_of = [&](const Sample& s) { return s.room * regions + s.region.value; };
+    const auto residual = [](const Sample& s) { return 0.5 * (s.r1 + s.r2); };
     for (const Sample& s : samples) {
         const double n = s.weight * static_cast<double>(options.points);
-        mean_residual[s.room * regions + s.region.value] += 0.5 * n * (s.r1 + s.r2);
-        count[s.room * regions + s.region.value] += n;
+        of_place[place_of(s)] += n * residual(s);
+        count[place_of(s)] += n;
     }
-    std::vector<Spectrum> rhs(rho.size());
-    for (std::size_t i = 0; i < rhs.size(); ++i) {
+    // A mean of few samples is mostly noise: it is drawn towards zero.
+    for (std::size_t p = 0; p < of_place.size(); ++p) of_place[p] = of_place[p] / (count[p] + 4);
+
+    struct Leaf {
+        Spectrum sum, square;  ///< Of what samples have beyond their region's mean, and of the squares of that.
+        double weight = 0;
+        std::size_t count = 0;
+    };
+    std::vector<Leaf> of_leaf(rho.size());
+    for (const Sample& s : samples) {
+        const Spectrum beyond = residual(s) - of_place[place_of(s)];
+        Leaf& leaf = of_leaf[s.leaf];
+        leaf.sum += s.weight * beyond, leaf.square += s.weight * s.weight * beyond * beyond;
+        leaf.weight += s.weight, ++leaf.count;
+    }
+    // How much of a sample another one of its leaf has too: products of different samples by squares of single ones.
+    double common = 0, all = 0;
+    for (const Leaf& leaf : of_leaf) {
+        if (leaf.count < 2) continue;
+        const double others = static_cast<double>(leaf.count - 1);
+        common += mean(leaf.sum * leaf.sum - leaf.square) / others, all += mean(leaf.square);
+    }
+    const double agreement = all > 0 ? std::clamp(common / all, 0.0, 1.0) : 0;
+    std::vector<Spectrum> out(rho.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
         const ElementId e = light.numbering.leaves[i];
-        const std::size_t place = stage.rooms.of(light.tree, e) * regions + light.tree.region(e).value;
-        // A mean of few samples is mostly noise: it is drawn towards zero.
-        rhs[i] = mean_residual[place] / (count[place] + 4);
+        out[i] = of_place[stage.rooms.of(light.tree, e) * regions + light.tree.region(e).value];
+        const Leaf& leaf = of_leaf[i];
+        const double n = static_cast<double>(leaf.count);
+        if (leaf.weight > 0) out[i] += agreement * n / (1 + agreement * (n - 1)) / leaf.weight * leaf.sum;
     }
+    return out;
+}
+
+/// The smooth part of the error: the coarse response to the mean residuals, less those themselves. By leaf number of
+/// the coarse mesh.
+std::vector<Spectrum> Certifier::Content::late_response() const {
+    const std::vector<Spectrum> rhs = mean_residuals();
     std::vector<Spectrum> response = respond({H, rho, rhs, area}, 0.02);
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
 }
 
 /// Every room by itself; parts of the residual are then those of the rooms, each by its own light.
-void Certifier::Content::judge_rooms(const std::vector<Spectrum>& response, Certificate& out) {
+void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
     if (count == 0) {
         rooms = {{stage.area, mean_reflected, out.estimate}};
@@ -273,8 +331,7 @@ void Certifier::Content::judge_rooms(const std::vector<Spectrum>& response, Cert
     std::vector<double> weight(count), told(count), local(count), method(count);
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
-        const Spectrum& late = response[s.leaf];
-        squares[s.room][k % batches] += s.weight * batches * mean((s.r1 + late) * (s.r2 + late));
+        squares[s.room][k % batches] += s.weight * batches * s.squared;
         weight[s.room] += s.weight;
         if (!s.tells_local) continue;
         told[s.room] += s.weight;
@@ -309,11 +366,12 @@ Certificate Certifier::Content::judge() {
     std::vector<std::pair<double, double>> squares;  // and how much of the area has them
     double local_squared = 0, method_squared = 0, told = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-        const Sample& s = samples[k];
+        Sample& s = samples[k];
         const double weight = s.weight / static_cast<double>(looks);
         const Spectrum& late = response[s.leaf];
         residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
-        squares.emplace_back(mean((s.r1 + late) * (s.r2 + late)), weight);
+        s.squared = mean((s.r1 + late) * (s.r2 + late));
+        squares.emplace_back(s.squared, weight);
         error_squared[k % batches] += weight * batches * squares.back().first;
         if (s.tells_local) {
             told += weight;
@@ -334,7 +392,7 @@ Certificate Certifier::Content::judge() {
     out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
     out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
     out.p99 = std::sqrt(std::max(0.0, quantile(std::move(squares), 0.99))) / mean_reflected;
-    judge_rooms(response, out);
+    judge_rooms(out);
     return out;
 }
 
@@ -345,6 +403,24 @@ Certifier::~Certifier() = default;
 
 const std::vector<RoomError>& Certifier::rooms() const {
     return content_->rooms;
+}
+
+std::vector<FaceError> Certifier::surface_errors() const {
+    const Content& c = *content_;
+    if (c.rooms.empty()) return {};
+    std::vector<PointError> points;
+    for (const Sample& s : c.samples) {
+        const double light_there = c.rooms[s.room].mean;
+        points.push_back({s.surface, s.weight, s.squared / (light_there * light_there)});
+    }
+    const Scene& scene = c.stage.scene;
+    std::vector<double> of_rooms;
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const RegionId region = scene.surfaces()[s].region;
+        const bool is_one = c.stage.rooms.count() == 0;
+        of_rooms.push_back(c.rooms[is_one ? 0 : c.stage.rooms.at(region, centroid(scene.outline(s)))].error);
+    }
+    return exitance::surface_errors(points, of_rooms);
 }
 
 Certificate Certifier::look() {

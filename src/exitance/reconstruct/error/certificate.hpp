@@ -81,6 +81,8 @@ class Certifier {
 
     /// As of the last look: every room's error, the largest room first.
     const std::vector<RoomError>& rooms() const;
+    /// As of the last look: every face's error; none when there was no light to measure. O(points + faces).
+    std::vector<FaceError> surface_errors() const;
 
   private:
     struct Content;

@@ -110,6 +110,21 @@ TEST(Certificate, FindsNoErrorInAnExactFurnace) {
     EXPECT_LT(furnace.summed_certificate(1).bound, 1e-5);
 }
 
+/// In the elements beside two facing edges of the floor, and nowhere else.
+double beside_edges(const Point& p) {
+    const double from_wall = std::min(p.x, 2 - p.x);
+    return (from_wall < 0.25 && p.z < 0.5) || (p.z < 0.25 && from_wall < 0.5) ? 0.1 : 0;
+}
+
+TEST(Certificate, SeesWhatTwoFacesReflectToEachOtherBesideAnEdge) {
+    const PlantedError planted(beside_edges, 0.2);
+    const double truth = planted.error(beside_edges);
+    double sum = 0;
+    constexpr std::uint64_t seeds = 8;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum += planted.summed_certificate(seed).estimate / seeds;
+    EXPECT_NEAR(sum, truth, 0.03 * truth);
+}
+
 struct Planted {
     const char* name;
     double (*error)(const Point&);

@@ -29,6 +29,15 @@ TEST(PathReference, FindsAFurnacesLightWithinItsOwnStandardError) {
     EXPECT_LT(z_squares / 30, 2.5);
 }
 
+/// From there a path may meet the light at no distance at all.
+TEST(PathReference, IsANumberBesideTheCornerOfALight) {
+    const Scene scene = box_scene(1, 1, 1, 0.7, 1, 1);
+    std::vector<ProbePoint> points;
+    for (int i = 0; i < 16; ++i)
+        points.push_back({{0, std::pow(10, -4 - 0.5 * i), 1 - std::pow(10, -4 - 0.4 * i)}, {1, 0, 0}});
+    for (const ReferenceLight& r : paths(scene, points, 1024)) EXPECT_TRUE(std::isfinite(r.irradiance[0]));
+}
+
 TEST(PathReference, HasTheSameBitsOnAnyNumberOfThreads) {
     const Scene scene = built_scene("gcr2");
     const std::vector<ProbePoint> points = {{{1, 0.5, 0}, {0, 0, 1}}, {{0.4, 1, 0}, {0, 0, 1}}};

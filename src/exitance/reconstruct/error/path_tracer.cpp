@@ -99,7 +99,9 @@ double PathTracer::shadow_density(const Vertex& y, const Vertex& target) const {
     const double total = chances(y, chance);
     if (total <= 0) return 0;
     const Vec3 w = target.x - y.x;
-    const double r2 = squared_norm(w), cosine = -dot(target.n, w) / std::sqrt(r2);
+    const double r2 = squared_norm(w);
+    if (r2 <= 0) return 0;
+    const double cosine = -dot(target.n, w) / std::sqrt(r2);
     if (cosine <= 0) return 0;
     double density = 0;
     for (std::size_t i = 0; i < lights_.size(); ++i) {
@@ -116,6 +118,7 @@ double PathTracer::shadow_density(const Vertex& y, const Vertex& target) const {
 
 double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) const {
     const double shadow = shadow_density(y, target);
+    if (shadow <= 0) return 0;  // also where a ray from a corner meets a light at no distance at all
     const Vec3 w = target.x - y.x;
     const double cosine = dot(y.n, w) / (pi * norm(w));
     return shadow / (shadow + std::max(cosine, 1e-300));
