@@ -1,5 +1,7 @@
 #include "exitance/methods/methods.hpp"
 
+#include <algorithm>
+
 namespace exitance {
 
 std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbering& numbering) {
@@ -31,6 +33,11 @@ std::span<const MethodEntry> method_table() {
         {Method::growing_cells, solve_growing_cells, "gaussian"},
     };
     return table;
+}
+
+const MethodEntry& entry_of(Method id) {
+    const auto table = method_table();
+    return *std::find_if(table.begin(), table.end(), [&](const MethodEntry& m) { return m.id == id; });
 }
 
 }  // namespace exitance

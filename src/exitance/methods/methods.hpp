@@ -38,6 +38,7 @@ std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbe
 
 /// The table: one line a method.
 std::span<const MethodEntry> method_table();
+const MethodEntry& entry_of(Method id);
 
 GlobalLight solve_matrix(const MethodInput& input);
 GlobalLight solve_progressive(const MethodInput& input);

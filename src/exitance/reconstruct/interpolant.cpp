@@ -49,7 +49,7 @@ class Interpolation {
             const bool last =
                 round == options_.max_depth || report.interrupted || out_.tree.size() > options_.max_elements;
             if (report.error <= options_.tolerance || last) {
-                ElementFunction continuous = join();
+                ElementFunction continuous = join(stop);
                 report.error = error();
                 if (report.error <= options_.tolerance || last) return continuous;
             }
@@ -104,7 +104,7 @@ class Interpolation {
     }
 
     /// The continuous function nearest to all fits. What it is further from the light than they are counts with them.
-    ElementFunction join() {
+    ElementFunction join(const StopRequest& stop) {
         ElementFunction apart;
         apart.tree = out_.tree;
         apart.first_value.resize(out_.tree.size());
@@ -113,7 +113,8 @@ class Interpolation {
             for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i)
                 apart.values.push_back(fitted_[e].corners[static_cast<std::size_t>(i)]);
         }
-        ElementFunction out = nearest_continuous(apart, stage_.scene, stage_.contacts);
+        // Nodes of a large mesh take their time: what is cut short is delivered with its steps.
+        ElementFunction out = stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts);
         for (auto& value : out.values)  // all light together is nowhere below zero
             for (float& of_band : value) of_band = std::max(of_band, 0.0f);
         shared_ranges(

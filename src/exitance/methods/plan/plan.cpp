@@ -18,6 +18,9 @@ void notice_unused_links(Plan& plan) {
     const std::string_view method = name_in(method_names, plan.options.method);
     if (!plan.options.importance.empty())
         plan.notices.push_back(fmt::format("--importance steers links, of which the method {} has none", method));
+    if (plan.options.keep_links)
+        plan.notices.push_back(
+            fmt::format("--keep-links keeps nothing: the method {} has no links (--method hierarchical has)", method));
     if (plan.options.oracle != LinkOracle::transport)
         plan.notices.push_back(fmt::format("--oracle judges links, of which the method {} has none", method));
 }

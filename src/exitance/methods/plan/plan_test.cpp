@@ -17,6 +17,8 @@ TEST(Plan, TellsWhereLightIsSummedAndWhatAMethodDoesNotObey) {
     SolveOptions options{.method = Method::progressive};
     options.oracle = LinkOracle::power;
     EXPECT_EQ(make_plan(cluttered, options, false).notices.size(), 1u);
+    options.keep_links = true;
+    EXPECT_EQ(make_plan(cluttered, options, false).notices.size(), 2u);
     options.method = Method::hierarchical;
     const Plan links = make_plan(cluttered, options, false);
     EXPECT_TRUE(links.has_links && links.notices.empty());

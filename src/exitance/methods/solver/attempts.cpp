@@ -1,0 +1,211 @@
+#include "exitance/methods/solver/solver.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/core/memory.hpp"
+#include "exitance/methods/light/refined_light.hpp"
+#include "exitance/methods/light/smoothing.hpp"
+#include "exitance/methods/methods.hpp"
+#include "exitance/methods/plan/memory_plan.hpp"
+#include "exitance/methods/solve_report.hpp"
+#include "exitance/reconstruct/continuous.hpp"
+#include "exitance/solve/direct_share.hpp"
+#include "exitance/transport/distributed.hpp"
+
+namespace exitance {
+
+void Solver::solve_indirect_light() {
+    constexpr int most_attempts = 9;
+    const std::optional<double> demand = options_.error_demand();
+    for (;; ++attempt_, step_ = Step::project) {
+        const Stopwatch watch;
+        attempt();
+        if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+        if (!demand || certificate_.largest() <= margin(certificate_.points) * *demand) {
+            if (statistics().stopped_by.empty() || demand)
+                statistics().converged = true, statistics().stopped_by.clear();
+            return;
+        }
+        if (light_->limited_by_memory) stop_early("memory limit");
+        if (statistics().stopped_by == "memory limit") return;
+        if (attempt_ == most_attempts) return stop_early("iterations");
+        const Tightened finer = tightened(knobs_, error_parts(), calibrated::attempt_aim * *demand, options_);
+        // One that cannot end in time would only be thrown away.
+        if (as_first(seconds_left(stop_) < watch.seconds() * finer.work)) return stop_early("time limit");
+        progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}", 100 * certificate_.largest(),
+                                   100 * *demand, finer.method ? "" : ", on the light that the method found"));
+        const Knobs before = std::exchange(knobs_, finer.knobs);
+        if (finer.method) light_.reset();
+        if (finer.method && may_become_linear()) become_linear(before);
+        if (options_.memory_limit_bytes) {
+            const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
+            if (!fits || !*fits) return stop_early("memory limit");
+        }
+    }
+}
+
+void Solver::become_linear(const Knobs& before) {
+    becomes_linear_ = true;
+    knobs_.solve_mesh = before.solve_mesh, knobs_.direct_tolerance = before.direct_tolerance;
+    knobs_.solve_rays = before.solve_rays;
+}
+
+void Solver::project_direct() {
+    progress_.phase("direct light");
+    const Stopwatch watch;
+    DirectProjection fresh = project_direct_light(stage_,
+                                                  {.mesh = knobs_.solve_mesh,
+                                                   .tolerance = knobs_.direct_tolerance,
+                                                   .least_area = options_.min_area,
+                                                   .may_give_up = direct_.tree.size() > 0,
+                                                   .seed = options_.seed},
+                                                  stop_);
+    if (fresh.tree.size() > 0) {
+        const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);
+        progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
+        direct_ = std::move(fresh);
+    }
+    statistics().seconds["mesh"] += watch.seconds();
+}
+
+void Solver::project_coarsely() {
+    const Knobs fine =
+        std::exchange(knobs_, knobs_for_error(calibrated::coarse_light_error, stage_.lit_pieces(), options_));
+    project_direct();
+    knobs_ = fine;
+}
+
+void Solver::attempt() {
+    if (step_ == Step::project) {
+        fresh_ = !light_;
+        const bool stays = fresh_ && becomes_linear_ && !options_.basis;  // the mesh, and direct light on it
+        if (becomes_linear_) options_.basis = BasisKind::linear, statistics().basis = "linear";
+        if (fresh_ && !stays) project_direct();
+        if (stop_.requested()) return;  // where there is no light of another attempt, direct light is all there is
+        reach(Step::solve);
+    }
+    if (step_ == Step::solve) {
+        find_light();
+        if (gives_up()) return;
+        reach(Step::gather);
+    }
+    if (step_ == Step::decide) return;
+    Stopwatch watch;
+    const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
+    const QuickFunction b(light, stage_.scene.regions().size());
+    release_freed_memory();
+    if (step_ == Step::gather) {
+        refined_.clear();
+        const bool whole = deliver(parts_to_sum({&light, 1}), b, fresh_);
+        statistics().seconds["reconstruct"] += watch.restart();
+        if (!whole) return;
+        reach(Step::refine);
+    }
+    if (step_ == Step::refine && refines()) {
+        if (refined_.empty()) refined_ = refine();
+        const bool whole = deliver(parts_to_sum(refined_), b, true);
+        statistics().seconds["reconstruct"] += watch.restart();
+        if (!whole) return;
+    }
+    reach(Step::certify);
+    const std::vector<ElementGather> elements = refines() ? parts_to_sum(refined_) : parts_to_sum({&light, 1});
+    progress_.phase("certify");
+    CertificateOptions look{.error = options_.error_target(),
+                            .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
+    if (sums_) look.points /= 2;  // without noise
+    if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
+    certify_solution(look, options_.error_demand(), elements);
+    statistics().seconds["certify"] += watch.restart();
+    reach(Step::decide);
+}
+
+void Solver::find_light() {
+    const Stopwatch watch;
+    if (fresh_) {
+        light_ = entry_of(options_.method)
+                     .solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points(), has_light()});
+        record_work(*light_, statistics());
+        if (!gives_up()) share_ = direct_share();
+        light_in_ = light_by_room(stage_, *light_);
+    }
+    statistics().seconds["solve"] += watch.seconds();
+}
+
+std::vector<ElementGather> Solver::parts_to_sum(std::span<const ElementFunction> functions) const {
+    std::vector<ElementGather> out;
+    if (gathers() && sums_)
+        for (const ElementFunction& f : functions) out.emplace_back(stage_, f);
+    return out;
+}
+
+std::vector<ElementFunction> Solver::refine() const {
+    return refined_light(stage_, *light_, solution_.indirect, direct_, share_, knobs_.solve_rays,
+                         knobs_.gather_element_share, options_.seed);
+}
+
+bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunction& b, bool fresh) {
+    gathered_ = {};
+    ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
+    if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
+    if (stop_.requested()) {
+        // Half a local pass is worth less than the last whole one, or than what the method has found.
+        if (step_ != Step::refine) {
+            if (has_light()) return false;
+            solution_.indirect = constant_on_leaves(*light_);
+            solution_.direct_in_elements = light_->holds_direct;
+            record_method(stage_, *light_, has_links_, statistics());
+        }
+        certify_solution({.error = calibrated::interrupted_error});
+        return false;
+    }
+    solution_.indirect = std::move(indirect);
+    solution_.cells = light_->cells;
+    solution_.cells.delivered = !gathers() && !solution_.cells.cells.empty();
+    solution_.direct_share = share_;
+    solution_.direct_in_elements = light_->holds_direct;
+    record_method(stage_, *light_, has_links_, statistics());
+    return true;
+}
+
+bool Solver::keeps_flux() const {
+    return options_.bounces < 0 && (!light_->kept.empty() || keeps_reflected_light(stage_, *light_, options_.seed));
+}
+
+ElementFunction Solver::on_leaves() const {
+    const std::string& basis = solution_.statistics.basis;
+    const bool constant = light_->indirect_corners.empty() || basis == name_in(basis_names, BasisKind::haar) ||
+                          basis == name_in(basis_names, BasisKind::galerkin1);
+    if (!constant) return polynomials_on_leaves(*light_);
+    return options_.smoothing.value_or(false) ? smoothed_on_leaves(*light_, stage_.scene.regions().size())
+                                              : constant_on_leaves(*light_);
+}
+
+Spectrum Solver::direct_share() const {
+    if (!gathers() || options_.bounces >= 0) return {};
+    const ElementLocator locator(light_->tree, stage_.scene.regions().size());
+    return find_direct_share(stage_, *light_, locator, options_.seed);
+}
+
+ElementFunction Solver::gather(const ReflectedLight& b, std::span<const ElementGather> elements, bool fresh) {
+    progress_.phase("gather");
+    const double scale = light_->mean_reflected(stage_.area);
+    if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
+    ElementFunction out = local_pass_->gather(b, fresh,
+                                              {.rays = knobs_.gather_rays,
+                                               .noise = knobs_.gather_noise * scale,
+                                               .tolerance = knobs_.gather_tolerance * scale,
+                                               .curved = knobs_.gather_curved,
+                                               .relative_tolerance = knobs_.gather_relative_tolerance,
+                                               .elements = elements,
+                                               .element_share = knobs_.gather_element_share,
+                                               .light_in = light_in_},
+                                              gathered_, progress_, stop_, safe_points());
+    statistics().rays += gathered_.rays;
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,89 @@
+#include "exitance/methods/solver/solver.hpp"
+
+#include <cmath>
+
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/methods/importance.hpp"
+#include "exitance/methods/solve_report.hpp"
+#include "exitance/reconstruct/energy.hpp"
+#include "exitance/reconstruct/error/clustering_error.hpp"
+
+namespace exitance {
+
+double Solver::margin(std::size_t points) {
+    const double first = static_cast<double>(CertificateOptions().points);
+    return 1 - calibrated::estimate_margin * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
+}
+
+void Solver::certify_solution(CertificateOptions options, std::optional<double> demand,
+                              std::span<const ElementGather> gathered) {
+    options.seed = options_.seed;
+    options.direct_in_elements = light_->holds_direct;
+    options.light_in = light_in_;
+    if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
+    // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
+    std::optional<ElementFunction> older;
+    if (options_.bounces > 0) older = constant_on_leaves(*light_);
+    const ElementFunction& indirect = older ? *older : solution_.indirect;
+    const Spectrum c = solution_.direct_share;
+    const Spectrum direct_weight = light_->holds_direct ? Spectrum() : Spectrum(1.0) - c;
+    const DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
+    SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
+    if (sums_) {
+        for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
+            summed.delivered.emplace_back(stage_, part);
+        options.summed = &summed;
+    }
+    Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
+    certificate_ = certifier.look();
+    // Few points tell an estimate to a tenth or so, or to a third where a few of them hold most of it. One that is
+    // not surely too large is looked at again, which is cheaper than another attempt for nothing.
+    constexpr std::size_t most_looks = 4;
+    for (std::size_t looks = 1; demand && looks < most_looks && !stop_.requested(); ++looks) {
+        const double limit = margin(certificate_.points) * *demand;
+        const double estimate = certificate_.largest();
+        if (estimate <= limit || estimate - 2 * certificate_.uncertainty > limit) break;
+        certificate_ = certifier.look();
+    }
+    add_clustering_error();
+    record_certificate(certificate_, *light_, solution_.indirect, statistics());
+    statistics().rooms = certifier.rooms(), statistics().surface_errors = certifier.surface_errors();
+    if (certificate_.points == 0 && !stop_.requested()) tell_exact();
+    progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
+}
+
+void Solver::add_clustering_error() {
+    if (certificate_.points == 0 || light_->holds_direct) return;
+    const double more =
+        clustering_error(stage_, direct_, point_accuracy(certificate_.estimate)) / certificate_.mean_reflected;
+    if (!(more > 0)) return;
+    certificate_.estimate = std::hypot(certificate_.estimate, more);
+    certificate_.bound = std::hypot(certificate_.bound, more);
+    certificate_.worst_room = std::hypot(certificate_.worst_room, more);
+}
+
+void Solver::tell_clustering_error() {
+    const double error = clustering_error(stage_, direct_, point_accuracy(1));
+    if (error > 0)
+        statistics().relative_error_estimate = statistics().relative_error_bound =
+            error / mean_direct_light(stage_, direct_);
+}
+
+ErrorParts Solver::error_parts() const {
+    if (!gathers()) return {.method = certificate_.largest()};
+    // Of the worst room, as if its parts were made like those of all.
+    const bool has_rooms = stage_.rooms.count() > 0 && certificate_.of_rooms > 0;
+    const double worse = has_rooms ? certificate_.worst_room / certificate_.of_rooms : 1;
+    const ErrorParts parts = mean_error_parts();
+    return {worse * parts.method, worse * parts.noise, worse * parts.interpolation};
+}
+
+ErrorParts Solver::mean_error_parts() const {
+    const double noise = gathered_.noise / certificate_.mean_reflected;
+    const double misfit = std::sqrt(std::max(0.0, certificate_.local * certificate_.local - noise * noise));
+    return {.method = certificate_.method,
+            .noise = noise,
+            .interpolation = std::max(misfit, gathered_.interpolation / certificate_.mean_reflected)};
+}
+
+}  // namespace exitance

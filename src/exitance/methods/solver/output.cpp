@@ -1,0 +1,72 @@
+#include "exitance/methods/solver/solver.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/reconstruct/energy.hpp"
+#include "exitance/reconstruct/interpolant.hpp"
+
+namespace exitance {
+
+bool Solver::makes_discontinuity_mesh() const {
+    return options_.method == Method::discontinuity && !solution_.direct_in_elements;
+}
+
+bool Solver::make_discontinuity() {
+    progress_.phase("discontinuities");
+    reach(Step::output);
+    // Under a limit, coarse elements come first, so that there is light whenever time runs out.
+    const bool has_none = direct_.tree.size() == 0;
+    if (has_none && std::isfinite(stop_.seconds_left())) {
+        project_coarsely();
+        progress_.phase("discontinuities");
+    }
+    SafePoints points = safe_points();
+    const DiscontinuityReport report =
+        add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
+    statistics().seconds["mesh"] += report.mesh_seconds, statistics().seconds["direct"] += report.direct_seconds;
+    mesh_seconds_ = report.mesh_seconds + report.direct_seconds;
+    if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+    const bool follows_shadows = !solution_.discontinuity.empty();
+    // What is told of the mesh is not to depend on whether there was a limit.
+    if (follows_shadows && options_.bounces == 0 && !solution_.scene.has_light_from_outside()) direct_ = {};
+    if (!follows_shadows && direct_.tree.size() == 0) project_coarsely();
+    return follows_shadows;
+}
+
+void Solver::make_output_mesh() {
+    const Stopwatch watch;
+    progress_.phase("reconstruct");
+    const bool follows_shadows = makes_discontinuity_mesh() && make_discontinuity();
+    if (follows_shadows) {
+        // The mesh is what is exported.
+    } else if (solution_.direct_in_elements) {
+        solution_.interpolant = solution_.indirect;
+        statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
+    } else {
+        // Where nothing reflects, E itself is what errors are relative to.
+        const double scale =
+            certificate_.mean_reflected > 0 ? certificate_.mean_reflected : mean_direct_light(stage_, direct_);
+        InterpolantReport report;
+        solution_.interpolant = make_interpolant(
+            stage_, direct_, solution_.indirect, solution_.direct_share,
+            {.tolerance =
+                 options_.error_interpolant.value_or(calibrated::interpolant_error * options_.error_target()) * scale,
+             .light_in = light_in_},
+            report, stop_);
+        const double own = scale > 0 ? report.error / scale : 0;
+        if (statistics().relative_error_estimate && !report.interrupted)
+            statistics().relative_error_estimate_interpolant = std::hypot(own, *statistics().relative_error_estimate);
+        progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
+                                   solution_.interpolant.tree.leaves().size(), 100 * own));
+    }
+    const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_, stage_);
+    if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
+        warn("no light reaches the front of any face: they may be turned inside out");
+    statistics().seconds["reconstruct"] += watch.seconds() - mesh_seconds_;
+}
+
+}  // namespace exitance

@@ -1,0 +1,136 @@
+#include "exitance/methods/solver/solver.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/core/memory.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/methods/methods.hpp"
+#include "exitance/methods/plan/memory_plan.hpp"
+#include "exitance/methods/solve_archive.hpp"
+#include "exitance/transport/distributed.hpp"
+
+namespace exitance {
+
+Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
+               CheckpointStore* checkpoints)
+    : progress_(progress),
+      stop_(stop),
+      checkpoints_(checkpoints),
+      solution_{.scene = std::move(scene)},
+      stage_(solution_.scene) {
+    release_freed_memory();
+    share_on_node(solution_.scene.surfaces().span());
+    share_on_node(stage_.occluders), share_on_node(stage_.contacts), share_on_node(std::span(stage_.pieces));
+    survey(stage_, asked, stop);
+    release_freed_memory();
+    // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
+    // another run may go on: its light is not to depend on how long this one had.
+    plan_ = make_plan(stage_, asked, seconds_left(stop) < calibrated::near_deadline && !checkpoints_);
+    for (const std::string& notice : plan_.notices) warn(notice);
+    if (!plan_.why.empty())
+        progress.note(fmt::format("method {}: {}", name_in(method_names, options_.method), plan_.why));
+    record_plan();
+    solution_.indirect = dark(stage_);
+    share_on_node(solution_.indirect.tree);
+}
+
+Result<Solution> Solver::run() {
+    if (options_.memory_limit_bytes) {
+        const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
+        if (!fits) return fits.error();
+        if (!*fits) stop_early("memory limit");
+    }
+    if (options_.bounces != 0 && stage_.has_indirect_light()) {
+        resume();
+        if (step_ != Step::output) solve_indirect_light();
+    } else if (resume(); step_ != Step::output) {
+        if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
+        statistics().elements = direct_.tree.size();
+        statistics().leaf_elements = direct_.tree.leaves().size();
+        tell_exact();
+        tell_clustering_error();
+    }
+    if (light_ && !light_->kept_links.empty())
+        solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
+    // What only attempts need makes room for the mesh that is written.
+    light_.reset();
+    local_pass_.reset();
+    gathered_ = {};
+    release_freed_memory();
+    make_output_mesh();
+    return std::move(solution_);
+}
+
+void Solver::record_plan() {
+    const MethodEntry& method = entry_of(options_.method);
+    solution_.bounces = options_.bounces;
+    statistics().method = name_in(method_names, method.id);
+    const bool chosen =
+        options_.basis && (method.id == Method::wavelet || (method.id == Method::matrix && options_.bounces < 0));
+    statistics().basis = chosen ? name_in(basis_names, *options_.basis) : method.basis;
+    statistics().threads = threads();
+    statistics().schedule = name_in(schedule_names, schedule());
+    statistics().surfaces = solution_.scene.surfaces().size();
+    statistics().converged = true;
+}
+
+template <class Archive>
+void Solver::archive_state(Archive& a, std::string& phase) {
+    a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase,
+      becomes_linear_);
+    a(light_in_, solution_.indirect, solution_.links, solution_.cells, solution_.direct_share,
+      solution_.direct_in_elements, solution_.statistics);
+    bool has_local_pass = local_pass_.has_value();
+    a(has_local_pass);
+    if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
+    if (has_local_pass) local_pass_->archive_state(a);
+}
+
+void Solver::resume() {
+    const std::string state = checkpoints_ ? checkpoints_->resumed() : std::string();
+    if (state.empty()) return;
+    const SolveStatistics own = solution_.statistics;
+    ArchiveReader reader(state);
+    archive_state(reader, resumed_phase_);
+    EXI_CHECK(reader.good() && reader.left() == 0);  // the store has checked every byte
+    statistics().threads = own.threads, statistics().schedule = own.schedule;
+    if (becomes_linear_) options_.basis = BasisKind::linear;
+}
+
+void Solver::keep(std::string phase) {
+    ArchiveWriter writer;
+    archive_state(writer, phase);
+    checkpoints_->keep(writer.take());
+}
+
+void Solver::reach(Step step) {
+    step_ = step;
+    if (checkpoints_ && !stop_.requested() && checkpoints_->is_due()) keep({});
+}
+
+SafePoints Solver::safe_points() {
+    return {checkpoints_, stop_, [this](std::string phase) { keep(std::move(phase)); },
+            std::exchange(resumed_phase_, {})};
+}
+
+void Solver::warn(std::string message) {
+    progress_.warn(message);
+    statistics().warnings.push_back(std::move(message));
+}
+
+void Solver::tell_exact() {
+    statistics().relative_error_estimate = statistics().relative_error_bound = 0;
+    statistics().relative_error_estimate_worst_room = 0;
+    statistics().error_p99 = 0;
+    statistics().rooms = {{stage_.area, 0, 0}};
+}
+
+void Solver::stop_early(const char* why) {
+    statistics().stopped_by = why;
+    statistics().converged = false;
+}
+
+}  // namespace exitance

@@ -1,0 +1,124 @@
+#pragma once
+
+#include "exitance/methods/light/light_functions.hpp"
+#include "exitance/methods/plan/plan.hpp"
+#include "exitance/methods/solve_scene.hpp"
+#include "exitance/reconstruct/element_gather.hpp"
+#include "exitance/reconstruct/error/certificate.hpp"
+#include "exitance/reconstruct/local_pass.hpp"
+#include "exitance/reconstruct/quick_function.hpp"
+
+namespace exitance {
+
+/// One run of `solve_scene`: the state that its steps share and that checkpoints keep. `solver.cpp` takes the steps and
+/// keeps the state, `attempts.cpp` finds and delivers light, `estimate.cpp` says how wrong it is, `output.cpp` makes
+/// what is exported.
+class Solver {
+  public:
+    Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
+           CheckpointStore* checkpoints);
+    Result<Solution> run();
+
+  private:
+    /// What comes next within an attempt.
+    enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide, output };
+
+    // The state, and what is told of it.
+    SolveStatistics& statistics() { return solution_.statistics; }
+    void record_plan();
+    /// All that the steps to come depend on; `phase` is the state within a step, or empty.
+    template <class Archive>
+    void archive_state(Archive& a, std::string& phase);
+    void resume();
+    void keep(std::string phase);
+    /// Everything before this step is done.
+    void reach(Step step);
+    /// For the step that is running.
+    SafePoints safe_points();
+    void warn(std::string message);
+    /// Nothing reflects any light, and direct light is exact.
+    void tell_exact();
+    void stop_early(const char* why);
+
+    // Attempts: method, local pass, certificate, until the certificate is content.
+    void solve_indirect_light();
+    /// One attempt: what the last one found is kept as far as it is good enough.
+    void attempt();
+    void project_direct();
+    /// Plain elements for when no time is left for a mesh that follows shadows.
+    void project_coarsely();
+    void find_light();
+    /// Finer constants need a number of elements and rays that grows with the square of the precision; linear functions
+    /// on the elements there are have a third of their error for three times the rays. So constants are for one
+    /// attempt.
+    bool may_become_linear() const { return plan_.may_become_linear && !becomes_linear_; }
+    void become_linear(const Knobs& before);
+    /// Of an attempt, with its estimate.
+    bool has_light() const { return certificate_.points > 0; }
+    /// Once a stop is asked for, what another attempt has found stands.
+    bool gives_up() const { return stop_.requested() && has_light(); }
+
+    // The function that is delivered.
+    /// Light everywhere, from what the method found: `b`, as elements where those are summed. `fresh`: it is not what
+    /// was gathered last. False when a request to stop cut that short.
+    bool deliver(std::span<const ElementGather> elements, const QuickFunction& b, bool fresh);
+    ElementFunction gather(const ReflectedLight& b, std::span<const ElementGather> elements, bool fresh);
+    ElementFunction on_leaves() const;
+    /// Functions as elements to be summed over; none where light is found by rays.
+    std::vector<ElementGather> parts_to_sum(std::span<const ElementFunction> functions) const;
+    /// One step on from what is delivered.
+    std::vector<ElementFunction> refine() const;
+    Spectrum direct_share() const;
+    /// Is the method's light gathered once more, or are its elements what is delivered?
+    bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
+    bool refines() const { return gathers() && sums_ && knobs_.refined; }
+    /// Is it known how much light is to arrive? As the method tells, or because the scene is closed.
+    bool keeps_flux() const;
+
+    // How wrong it is.
+    /// The estimate by so many points is itself uncertain, by a fifth where they are as few as at first: it has to be
+    /// below this share of the demand.
+    static double margin(std::size_t points);
+    void certify_solution(CertificateOptions options, std::optional<double> demand = {},
+                          std::span<const ElementGather> gathered = {});
+    /// Direct light at points is exact, or within this where emitters are many.
+    void add_clustering_error();
+    /// Where direct light is all there is.
+    void tell_clustering_error();
+    /// What the estimate is made of, relative to the mean reflected light.
+    ErrorParts error_parts() const;
+    ErrorParts mean_error_parts() const;
+
+    // What is exported.
+    bool makes_discontinuity_mesh() const;
+    /// Direct light on triangles that follow its shadows, with what is reflected on top of it. False where a request to
+    /// stop left no time for any: then plain elements are made.
+    bool make_discontinuity();
+    void make_output_mesh();
+
+    Plan plan_;
+    SolveOptions& options_ = plan_.options;  ///< As asked for, with the method that was chosen.
+    Knobs& knobs_ = plan_.knobs;             ///< Of this attempt.
+    const bool &has_links_ = plan_.has_links, &sums_ = plan_.sums;
+    Progress& progress_;
+    const StopRequest& stop_;
+    CheckpointStore* checkpoints_;
+    Solution solution_;
+    Stage stage_;
+    DirectProjection direct_;
+    std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
+    std::optional<LocalPass> local_pass_;
+    std::vector<ElementFunction> refined_;  ///< What is gathered in the end where light is summed, in parts.
+    LocalPassReport gathered_;
+    Certificate certificate_;
+    int attempt_ = 1;
+    Step step_ = Step::project;
+    bool fresh_ = true;             ///< Does the method find new light in this attempt?
+    bool becomes_linear_ = false;   ///< What the method `matrix` takes for granted.
+    Spectrum share_;                ///< c of that light, see find_direct_share.
+    std::vector<double> light_in_;  ///< Of every room by the mean light; empty where all is one room.
+    std::string resumed_phase_;
+    double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.
+};
+
+}  // namespace exitance
