@@ -13,6 +13,7 @@ constexpr double dominating = 0.03;         ///< An entry above it makes its row
 constexpr double dominating_share = 0.25;   ///< Of the tolerance, for such an entry.
 constexpr double dark_corner = 0.05;        ///< Of a dark cell's share of light, where it may be lit.
 constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may be seen where no point saw anything.
+constexpr double surely_ignored = 0.3;      ///< Of what needs no digits: a first look that finds less may be far off.
 constexpr double near_share = 0.5;  ///< Of the difference of two rules that the better one may leave, at an edge.
 
 double cross_area(std::span<const Vec2> corners) {
@@ -319,7 +320,8 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     ignored_ = 0.1 * demand.ignored;
     matters_ = estimate > demand.large;
     dominates_ = estimate > dominating * norm(area_vector(pair.receiver));
-    const double allowed = std::max((dominates_ ? dominating_share : 1) * demand.relative * estimate, demand.absolute);
+    const double never_matters = estimate < surely_ignored * demand.ignored ? ignored_ : demand.absolute;
+    const double allowed = std::max((dominates_ ? dominating_share : 1) * demand.relative * estimate, never_matters);
     source_area_ = norm(area_vector(pair.source));
     const double share = allowed / std::sqrt(static_cast<double>(cells_.size()));
     double total = 0;

@@ -177,7 +177,7 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
 
 double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means means) {
     bool cut = false;
-    if (i == j || !pairs_.face_each_other(i, j, cut)) return 0;
+    if (i == j || pairs_.is_hidden(i, j) || !pairs_.face_each_other(i, j, cut)) return 0;
     const double usual = std::exchange(tolerance_, tolerance);
     is_alone_ = true;
     most_evaluations_ = means == Means::patient ? patient_evaluations : usual_evaluations;
@@ -197,7 +197,7 @@ void RowWorker::compute(std::size_t i, std::span<double> row) {
     for (std::size_t j = 0; j < pairs_.faces().size(); ++j) {
         bool cut = false;
         if (stop_.requested()) return;
-        if (j == i || !pairs_.face_each_other(i, j, cut)) continue;
+        if (j == i || pairs_.is_hidden(i, j) || !pairs_.face_each_other(i, j, cut)) continue;
         pairs_.find_blockers(i, j, of_row_, of_pair_);
         is_cluttered_ = of_pair_.size() > few_blockers;
         bool unoccluded = of_pair_.empty();

@@ -69,9 +69,21 @@ void find_defects(ViewFactors& table) {
 /// One run: rows first, then those entries again where rows disagree.
 class TableMaker {
   public:
-    TableMaker(const ViewPairs& pairs, ViewFactors& table, double tolerance, Progress& progress,
-               const StopRequest& stop)
+    TableMaker(ViewPairs& pairs, ViewFactors& table, double tolerance, Progress& progress, const StopRequest& stop)
         : pairs_(pairs), table_(table), tolerance_(tolerance), progress_(progress), stop_(stop) {}
+
+    /// Most pairs of faces of a town are hidden by several houses: proved once, that holds for both of their rows.
+    Result<void> find_hidden() {
+        const std::size_t n = table_.size();
+        progress_.phase("hidden pairs");
+        for (std::size_t first = 0; first < n; first += rows_a_step) {
+            const std::size_t last = std::min(first + rows_a_step, n);
+            pairs_.find_hidden(first, last, stop_);
+            if (stop_.requested()) return stopped("before the first row of view factors");
+            progress_.advance(static_cast<double>(last) / static_cast<double>(n));
+        }
+        return {};
+    }
 
     Result<void> compute_rows() {
         const std::size_t n = table_.size();
@@ -133,7 +145,7 @@ class TableMaker {
         if (disagreement(table_, i, j) > before) at(i, j) = there, at(j, i) = back;
     }
 
-    const ViewPairs& pairs_;
+    ViewPairs& pairs_;
     ViewFactors& table_;
     double tolerance_;
     Progress& progress_;
@@ -145,7 +157,7 @@ class TableMaker {
 Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
                                          const StopRequest& stop) {
     tolerance = std::clamp(tolerance, 1e-12, 0.1);
-    const ViewPairs pairs(scene, stop);
+    ViewPairs pairs(scene, stop);
     if (stop.requested()) return stopped("before the first row of view factors");
     const std::size_t n = scene.surfaces().size();
     ViewFactors table;
@@ -155,6 +167,7 @@ Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, P
     }
     table.factors.assign(n * n, 0);
     TableMaker maker(pairs, table, tolerance, progress, stop);
+    if (const Result<void> done = maker.find_hidden(); !done) return done.error();
     if (const Result<void> done = maker.compute_rows(); !done) return done.error();
     if (const Result<void> done = maker.mend(); !done) return done.error();
     add_row_sums(table);

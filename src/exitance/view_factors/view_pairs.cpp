@@ -82,6 +82,8 @@ ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
         for (const Point& p : b.points) box.add(p);
         boxes_.push_back(box);
     }
+    for (const ConvexBlocker& b : blockers_) planes_.add(b, 0.1 * slack_);
+    hidden_.resize(faces_.size() * faces_.size());
     sides_.resize(faces_.size() * blockers_.size());
     standing_.resize(sides_.size());
     parallel_for(faces_.size(), 16, [&](std::size_t i) {
@@ -135,6 +137,32 @@ void ViewPairs::find_blockers(std::size_t i, std::size_t j, std::span<const std:
     if (found.empty()) return;
     const Shaft shaft(faces_[i].box, faces_[j].box);
     std::erase_if(found, [&](std::uint32_t b) { return shaft.misses(boxes_[b]); });
+}
+
+void ViewPairs::find_hidden(std::size_t first, std::size_t last, const StopRequest& stop) {
+    parallel_ranges(last - first, 4, [&](std::size_t from, std::size_t to) {
+        JointShadow shadow;
+        std::vector<std::uint32_t> of_face, of_pair;
+        std::vector<Point> part_i, part_j;
+        for (std::size_t i = first + from; i < first + to; ++i) {
+            find_blockers(i, of_face);
+            for (std::size_t j = 0; j < i && !stop.requested(); ++j) {
+                bool cut = false;
+                if (!face_each_other(i, j, cut)) continue;
+                find_blockers(i, j, of_face, of_pair);
+                if (of_pair.empty()) continue;
+                bool hidden = true;
+                for (const std::vector<Point>& piece_i : faces_[i].pieces)
+                    for (const std::vector<Point>& piece_j : faces_[j].pieces) {
+                        if (!hidden) continue;
+                        clip(piece_i, faces_[j].plane, part_i);
+                        clip(piece_j, faces_[i].plane, part_j);
+                        hidden = part_i.empty() || part_j.empty() || shadow.hides(part_i, part_j, planes_, of_pair);
+                    }
+                hidden_[i * faces_.size() + j] = hidden_[j * faces_.size() + i] = hidden;
+            }
+        }
+    });
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 
 #include "exitance/core/progress.hpp"
 #include "exitance/visibility/convex_blockers.hpp"
+#include "exitance/visibility/joint_shadow.hpp"
 #include "exitance/visibility/occluders.hpp"
 
 namespace exitance {
@@ -29,6 +30,12 @@ class ViewPairs {
 
     /// O(faces x blockers) time, five bytes a pair of them. Of no use when a stop is requested meanwhile.
     ViewPairs(const Scene& scene, const StopRequest& stop);
+
+    /// Finds pairs of faces that blockers hide from each other for certain, one alone or several together. A byte a
+    /// pair of faces. Of no use when a stop is requested meanwhile.
+    void find_hidden(std::size_t first, std::size_t last, const StopRequest& stop);
+    /// Is it certain that two faces do not see each other? Known after find_hidden of the larger number.
+    bool is_hidden(std::size_t i, std::size_t j) const { return hidden_[i * faces_.size() + j] != 0; }
 
     const std::vector<ViewFace>& faces() const { return faces_; }
     const std::vector<ConvexBlocker>& blockers() const { return blockers_; }
@@ -57,6 +64,8 @@ class ViewPairs {
     std::vector<Box> boxes_;
     std::vector<std::uint32_t> sides_;    ///< A row a face, a column a blocker.
     std::vector<std::uint8_t> standing_;  ///< Likewise.
+    BlockerPlanes planes_;
+    std::vector<std::uint8_t> hidden_;  ///< A row and a column a face.
 };
 
 }  // namespace exitance
