@@ -23,13 +23,13 @@ double CrowdedLight::unblocked(const Receiver& at, const ReceiverLight::Source& 
     return visible_form_factor(direct_->occluders(), at, source.piece, {}, scratch, emitter.radiance);
 }
 
-std::vector<ReceiverLight::Source> CrowdedLight::take_crowded(ReceiverLight& light, const Point& middle, double allowed,
-                                                              DirectLight::Workspace& scratch, unsigned& rays) const {
-    // Not of the sky, whose light varies over a source, nor through panes.
+std::vector<CrowdedLight::Source> CrowdedLight::take_crowded(ReceiverLight& light, const Point& middle, double allowed,
+                                                             DirectLight::Workspace& scratch, unsigned& rays) const {
+    // Not through panes.
     const auto is_crowded = [&](const ReceiverLight::Source& s) {
-        return s.count > least_crowd && !direct_->is_distant(s.emitter);
+        return s.count > least_crowd && (!direct_->is_distant(s.emitter) || direct_->looks_far(s.emitter));
     };
-    std::vector<ReceiverLight::Source> out;
+    std::vector<Source> out;
     if (!direct_->occluders().scene().panes().empty()) return out;
     if (allowed <= 0 || !light.behind.empty() || std::none_of(light.sources.begin(), light.sources.end(), is_crowded))
         return out;
@@ -38,35 +38,37 @@ std::vector<ReceiverLight::Source> CrowdedLight::take_crowded(ReceiverLight& lig
     double power = 0;
     for (const ReceiverLight::Source& s : light.sources) {
         if (!is_crowded(s)) continue;
-        const double E = unblocked(at, s, scratch) * mean(direct_->emitters()[s.emitter].exitance);
+        out.push_back({s, unblocked(at, s, scratch)});
+        const double E = out.back().factor * mean(direct_->emitters()[s.emitter].exitance);
         power += 0.25 * E * E;
     }
     const double wanted = std::clamp(power / allowed, static_cast<double>(least_rays), 1e9);
-    if (wanted > most_rays) return out;
+    if (wanted > most_rays) return {};
     rays = std::bit_ceil(static_cast<unsigned>(wanted));
-    std::erase_if(light.sources, [&](const ReceiverLight::Source& s) {
-        if (!is_crowded(s) || s.count * rays_a_blocker <= rays) return false;
-        out.push_back(s);
-        return true;
-    });
+    const auto pays = [&](const ReceiverLight::Source& s) { return is_crowded(s) && s.count * rays_a_blocker > rays; };
+    std::erase_if(light.sources, pays);
+    std::erase_if(out, [&](const Source& s) { return !pays(s.source); });
     return out;
 }
 
-CrowdedLight::Estimate CrowdedLight::at(const ReceiverLight& light, std::span<const ReceiverLight::Source> sources,
-                                        const Point& x, unsigned rays, DirectLight::Workspace& scratch) const {
+CrowdedLight::Estimate CrowdedLight::at(const ReceiverLight& light, std::span<const Source> sources, const Point& x,
+                                        unsigned rays, DirectLight::Workspace& scratch, Spectrum* parallel) const {
     EXI_CHECK(rays <= most_rays);
     const Receiver at = direct_->receiver(x, light.n, light.own);
     std::array<SurfacePoint, most_rays> from, to;
     std::array<double, most_rays> kernel;
     std::array<bool, most_rays> blocked;
+    const Box& box = direct_->occluders().scene().box();
+    const double reach = 2 * norm(box.hi - box.lo) + norm(x - box.lo);
     const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c); };
     Estimate out;
-    for (const ReceiverLight::Source& source : sources) {
+    for (const auto& [source, factor] : sources) {
         const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
         const std::span<const Point> corners = direct_->occluders().corners(source.piece);
         const double area = norm(area_vector(corners));
         const ScrambledSobol points(
             hash(static_cast<std::uint64_t>(Stream::direct), bits(x.x), bits(x.y), bits(x.z), source.piece.value));
+        const bool is_far = direct_->looks_far(source.emitter);
         std::size_t count = 0;
         double all = 0, arrived = 0;
         for (std::uint32_t i = 0; i < rays; ++i) {
@@ -76,15 +78,18 @@ CrowdedLight::Estimate CrowdedLight::at(const ReceiverLight& light, std::span<co
             if (above <= 0 || below <= 0) continue;
             kernel[count] = emitter.radiance.towards(at.x, y) * above * below / (squared * squared);
             all += kernel[count];
-            from[count] = {x, light.own}, to[count] = {y, emitter.region};
+            // Of the sky a ray needs the direction alone, and to leave the scene.
+            const double part = is_far ? std::min(1.0, reach / std::sqrt(squared)) : 1;
+            from[count] = {x, light.own}, to[count] = {at.x + part * d, emitter.region};
             ++count;
         }
         if (all <= 0) continue;
         tracer_->occluded(std::span(from).first(count), std::span(to).first(count), std::span(blocked).first(count));
         for (std::size_t i = 0; i < count; ++i)
             if (!blocked[i]) arrived += kernel[i];
-        const double share = arrived / all, E = unblocked(at, source, scratch);
+        const double share = arrived / all, E = is_far ? factor : unblocked(at, source, scratch);
         out.irradiance += share * E * emitter.exitance;
+        if (parallel && is_far) *parallel += share * E * emitter.exitance;
         const double level = E * mean(emitter.exitance);
         out.variance += share * (1 - share) * level * level / static_cast<double>(count);
     }

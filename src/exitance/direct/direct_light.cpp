@@ -173,14 +173,14 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
     const Emitter& emitter = emitters_[e];
     if (occluders_->has_nothing_inside() && !is_distant(e)) {
         if (face_each_other({light.n, dot(light.n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
-            add_open(e, piece, light);
+            add_open(source, receiver[0], light, scratch);
         return;
     }
     scratch.shaft.set(*occluders_, {receiver, light.n, light.own},
                       {occluders_->corners(piece), emitter.plane.n, emitter.region, looks_far(e)});
     PieceId& likely = scratch.last_blocker(*occluders_, piece);
     if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) return;
-    add_source(e, piece, scratch.shaft.classify(scratch.candidates), light, scratch);
+    add_source(source, scratch.shaft.classify(scratch.candidates), receiver[0], light, scratch);
     if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
 }
 
@@ -189,8 +189,12 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
     light.n = whole.n, light.own = whole.own;
     light.clear();
     for (const ReceiverLight::Source& source : whole.sources) {
+        const SourceName name{source.emitter, source.piece};
         if (source.count == 0) {
-            add_open(source.emitter, source.piece, light);
+            if (source.far_factor >= 0)
+                light.sources.push_back(source);
+            else
+                add_open(name, receiver[0], light, scratch);
             continue;
         }
         const Emitter& emitter = emitters_[source.emitter];
@@ -198,7 +202,7 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
             *occluders_, {receiver, whole.n, whole.own},
             {occluders_->corners(source.piece), emitter.plane.n, emitter.region, looks_far(source.emitter)});
         const auto from = std::span(whole.candidates).subspan(source.first, source.count);
-        add_source(source.emitter, source.piece, scratch.shaft.classify(from, scratch.candidates), light, scratch);
+        add_source(name, scratch.shaft.classify(from, scratch.candidates), receiver[0], light, scratch);
     }
     if (!whole.beams.empty())
         beams_.prepare(receiver, whole.n, whole.own, whole.beams, whole.candidates, light.beams, light.candidates);
@@ -217,23 +221,27 @@ bool DirectLight::face_each_other(const Plane& receiver_plane, std::span<const P
     return rises_over(receiver, source_plane) && rises_over(source, receiver_plane);
 }
 
-void DirectLight::add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light,
+void DirectLight::add_source(const SourceName& source, View view, const Point& x, ReceiverLight& light,
                              Workspace& scratch) const {
     if (view == View::none) return;
-    if (view == View::open) return add_open(emitter, piece, light);
-    light.sources.push_back({emitter, piece, static_cast<std::uint32_t>(light.candidates.size()),
+    if (view == View::open) return add_open(source, x, light, scratch);
+    light.sources.push_back({source.emitter, source.piece, static_cast<std::uint32_t>(light.candidates.size()),
                              static_cast<std::uint32_t>(scratch.candidates.size())});
     light.candidates.insert(light.candidates.end(), scratch.candidates.begin(), scratch.candidates.end());
 }
 
-void DirectLight::add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const {
+void DirectLight::add_open(const SourceName& source, const Point& x, ReceiverLight& light, Workspace& scratch) const {
+    const auto& [e, piece] = source;
     const std::span<const Point> corners = occluders_->corners(piece);
-    const bool in_batch = corners.size() <= 4 && !emitters_[emitter].radiance.is_directed() && !is_distant(emitter) &&
-                          occluders_->scene().panes().empty();
-    light.sources.push_back({emitter, piece, 0, 0, in_batch});
+    const bool no_panes = occluders_->scene().panes().empty();
+    const bool in_batch = corners.size() <= 4 && !emitters_[e].radiance.is_directed() && !is_distant(e) && no_panes;
+    light.sources.push_back({e, piece, 0, 0, in_batch});
+    if (looks_far(e) && no_panes)
+        light.sources.back().far_factor = visible_form_factor(*occluders_, receiver(x, light.n, light.own), piece, {},
+                                                              scratch, emitters_[e].radiance);
     if (!in_batch) return;
     light.open.add({corners[0], corners[1], corners[2], corners[corners.size() - 1]});
-    light.open_light.push_back(emitters_[emitter].exitance);
+    light.open_light.push_back(emitters_[e].exitance);
 }
 
 Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Workspace& scratch,
@@ -261,6 +269,8 @@ Spectrum DirectLight::on_side(const ReceiverLight& light, const Point& x, Worksp
             emitter.exitance *
             (is_glazed(emitter)
                  ? glazed_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)
+             : source.far_factor >= 0
+                 ? Spectrum(source.far_factor)
                  : Spectrum(visible_form_factor(*occluders_, at, source.piece, candidates, scratch, emitter.radiance)));
         sum += light_there;
         if (parallel && is_distant(source.emitter)) *parallel += light_there;

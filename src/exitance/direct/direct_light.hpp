@@ -21,6 +21,7 @@ struct ReceiverLight {
         PieceId piece;
         std::uint32_t first = 0, count = 0;  ///< Of `candidates`; none: all of the piece is visible.
         bool in_batch = false;               ///< One of `open`.
+        double far_factor = -1;              ///< Of a part of the sky that is all visible: F, alike everywhere.
     };
     Normal n;
     RegionId own;
@@ -107,6 +108,10 @@ class DirectLight {
     }
     /// Those of the sky come last; they are no regions.
     bool is_distant(std::size_t emitter) const { return emitter >= first_distant_; }
+    /// Is it a part of the sky that no pane bounds, and as far away?
+    bool looks_far(std::size_t emitter) const {
+        return is_distant(emitter) && emitters_[emitter].sky != Emitter::Sky::window;
+    }
     static bool is_own(const Emitter& emitter, RegionId own) { return !own.is_none() && emitter.region == own; }
     const Occluders& occluders() const { return *occluders_; }
 
@@ -124,9 +129,6 @@ class DirectLight {
     bool is_glazed(const Emitter& emitter) const {
         return !occluders_->scene().panes().empty() && emitter.sky != Emitter::Sky::window;
     }
-    bool looks_far(std::size_t emitter) const {
-        return is_distant(emitter) && emitters_[emitter].sky != Emitter::Sky::window;
-    }
     Spectrum light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const;
     Spectrum on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
     Spectrum on_side(const ReceiverLight& light, const Point& x, Workspace& scratch, Spectrum* parallel) const;
@@ -134,8 +136,10 @@ class DirectLight {
                       Workspace& scratch) const;
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
                  Workspace& scratch) const;
-    void add_source(std::uint32_t emitter, PieceId piece, View view, ReceiverLight& light, Workspace& scratch) const;
-    void add_open(std::uint32_t emitter, PieceId piece, ReceiverLight& light) const;
+    /// x: any point of the receiver.
+    void add_source(const SourceName& source, View view, const Point& x, ReceiverLight& light,
+                    Workspace& scratch) const;
+    void add_open(const SourceName& source, const Point& x, ReceiverLight& light, Workspace& scratch) const;
     /// Does any of either polygon rise over the plane of the other?
     bool face_each_other(const Plane& receiver_plane, std::span<const Point> receiver, const Plane& source_plane,
                          std::span<const Point> source) const;

@@ -134,4 +134,38 @@ TEST(DistantLight, ALowSunIsCutByTheHorizon) {
     EXPECT_NEAR(light_at(stage, {10, 0, 3}, {1, 0, 0}, RegionId()), E, 1e-9 * E);
 }
 
+/// Before the whole sky, with more in between than anybody cuts out: rays bring the same, and all of it from outside.
+TEST(DistantLight, BehindACrowdRaysFindWhatExactLightDoes) {
+    std::vector<Corners> faces = {ground};
+    for (int i = 0; i < 40; ++i) {
+        const double x = -4 + 0.2 * i, z = 1 + 0.02 * (i % 7);
+        faces.push_back({{{x, -4, z}, {x + 0.1, -4, z + 0.05}, {x + 0.1, 4, z + 0.05}, {x, 4, z}}});
+    }
+    const SkyModel sky = perez_sky({90, 700, 100}, sky_direction(35, 200));
+    const Scene scene = under({{{sky, Spectrum(100.0)}}, {}}, faces);
+    const Stage stage(scene);
+    const RegionId own = first;
+    const Normal n = scene.regions()[own].plane.n;
+    DirectLight::Workspace room;
+    ReceiverLight light;
+    stage.direct.prepare(scene.regions()[own].loops[0], n, own, light, room);
+    ReceiverLight rest = light;
+    unsigned rays = 0;
+    const auto crowded = stage.crowded.take_crowded(rest, {0, 0, 0}, 20, room, rays);
+    ASSERT_FALSE(crowded.empty());
+    double sum = 0, squares = 0, variance = 0;
+    for (double x = -2; x < 2; x += 0.23)
+        for (double y = -2; y < 2; y += 0.31) {
+            Spectrum from_outside;
+            const CrowdedLight::Estimate more = stage.crowded.at(rest, crowded, {x, y, 0}, rays, room, &from_outside);
+            EXPECT_EQ(more.irradiance, from_outside);
+            const Spectrum by_rays = more.irradiance + stage.direct.irradiance(rest, {x, y, 0}, room);
+            const Spectrum exact = stage.direct.irradiance(light, {x, y, 0}, room);
+            const double error = mean(by_rays) - mean(exact);
+            sum += error, squares += error * error, variance += more.variance;
+        }
+    EXPECT_LT(squares, 1.3 * variance);
+    EXPECT_LT(std::abs(sum), 3 * std::sqrt(variance));
+}
+
 }  // namespace exitance

@@ -47,13 +47,13 @@ DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, d
     if (light.is_dark()) return {};
     const double w = mean(light_weight(stage.scene.material(tree.region(e))));
     unsigned rays = 0;
-    const std::vector<ReceiverLight::Source> crowded =
+    const std::vector<CrowdedLight::Source> crowded =
         stage.crowded.take_crowded(light, tree.patch(e).at(tree.centre(e)), allowed / (w * w), workspace, rays);
     double noise = 0, places = 0;
     DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
         Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
         if (!crowded.empty()) {
-            const CrowdedLight::Estimate more = stage.crowded.at(light, crowded, x, rays, workspace);
+            const CrowdedLight::Estimate more = stage.crowded.at(light, crowded, x, rays, workspace, &parallel);
             E += more.irradiance, noise += more.variance, ++places;
         }
         return E;
@@ -183,7 +183,10 @@ DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, 
     constexpr double anything = 1e300;
     const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
     const SampledLight::Estimate& of = sampled(tree, e, w, anything, rays_an_element);
-    return {{of.weak, of.weak, of.weak, of.weak}, of.weak, {}, of.misfit_squared};
+    const auto& emitters = stage.direct.emitters();
+    const bool all_outside = !emitters.empty() && stage.direct.is_distant(0);  // those of the sky come last
+    const Spectrum parallel = all_outside ? of.weak : Spectrum();
+    return {{of.weak, of.weak, of.weak, of.weak}, of.weak, parallel, of.misfit_squared};
 }
 
 /// Sum of w E_dir over leaves, W.
@@ -211,6 +214,24 @@ double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<con
         flux += steps / samples * mean(w * sampled(tree, e, w, HUGE_VAL, rays_an_element).weak);
     }
     return flux * stage.area;
+}
+
+/// The same where light comes from outside, too, and parallel: by some elements that rays do for wherever many things
+/// stand before a source.
+double estimated_flux_apart(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
+                            const StopRequest& stop) {
+    constexpr std::size_t samples = 512;
+    constexpr double anything = 1e300;
+    DirectFitRoom room;
+    double flux = 0, area = 0;
+    const std::size_t step = std::max<std::size_t>(1, leaves.size() / samples);
+    for (std::size_t i = step / 2; i < leaves.size() && !stop.requested(); i += step) {
+        const ElementId e = leaves[i];
+        const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
+        flux += tree.area(e) * mean(w * fit_direct_light(stage, tree, e, anything, room).mean);
+        area += tree.area(e);
+    }
+    return area > 0 ? flux * stage.area / area : 0;
 }
 
 }  // namespace
@@ -269,8 +290,10 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
             std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
     };
     // Where elements are many, the first of them are to know what they may leave, too.
-    const bool estimates = active.size() > few && !stage.scene.has_light_apart();
-    double share = estimates ? share_of(estimated_flux(stage, out.tree, active, options.seed, stop)) : 0;
+    double share = 0;
+    if (active.size() > few)
+        share = share_of(stage.scene.has_light_apart() ? estimated_flux_apart(stage, out.tree, active, stop)
+                                                       : estimated_flux(stage, out.tree, active, options.seed, stop));
     std::vector<double> share_in;               // of the rooms, where there are several
     const auto allowed_on = [&](ElementId e) {  // (W/m^2)^2 m^2
         if (share_in.empty()) return share;
