@@ -21,7 +21,8 @@ void read_obj_bytes(const std::string& bytes) {
 void read_mtl_bytes(const std::string& bytes) {
     std::vector<Material> materials;
     std::vector<Finding> findings;
-    parse_mtl(bytes, "m.mtl", materials, findings);
+    MtlExtras extras;
+    parse_mtl(bytes, "m.mtl", materials, findings, extras);
 }
 
 void read_glb_bytes(const std::string& bytes) {

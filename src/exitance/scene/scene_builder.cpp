@@ -7,11 +7,9 @@
 #include <limits>
 
 #include "exitance/core/random.hpp"
-#include "exitance/geometry/triangulation.hpp"
 #include "exitance/joining/hash_chains.hpp"
 #include "exitance/joining/outline.hpp"
 #include "exitance/joining/weld.hpp"
-#include "exitance/scene/outline_repair.hpp"
 #include "exitance/scene/overlaps.hpp"
 
 namespace exitance {
@@ -178,91 +176,6 @@ void SceneBuilder::add_face(std::uint32_t f, std::span<const std::uint32_t> outl
     origin_.push_back(f);
 }
 
-void SceneBuilder::add_triangles(std::uint32_t f, std::span<const std::uint32_t> outline,
-                                 std::span<const Point> corners, const Normal& n) {
-    for (const auto& [a, b, c] : triangulate(corners, n)) {
-        const Vec3 area = 0.5 * cross(corners[b] - corners[a], corners[c] - corners[a]);
-        const double longest =
-            std::max({norm(corners[b] - corners[a]), norm(corners[c] - corners[b]), norm(corners[a] - corners[c])});
-        if (norm(area) > tol_.place * longest) add_face(f, std::array{outline[a], outline[b], outline[c]}, area);
-    }
-}
-
-namespace {
-
-/// The outline's own figures.
-struct Shape {
-    std::vector<Point> corners;
-    Vec3 area;
-    double extent = 0;  ///< Diagonal of its box, metres.
-
-    Shape(std::span<const Point> points, std::span<const std::uint32_t> outline) {
-        Box box;
-        for (std::uint32_t c : outline) corners.push_back(points[c]), box.add(points[c]);
-        area = area_vector(corners);
-        extent = box.diagonal();
-    }
-};
-
-}  // namespace
-
-void SceneBuilder::check_shape(std::uint32_t f, std::vector<std::uint32_t> outline) {
-    const SceneDescription::Face& face = in_.faces[f];
-    Shape shape(in_.points, outline);
-    // Narrower beside its length than single precision resolves: no ray meets it.
-    const double narrowest = std::max(tol_.place, std::numeric_limits<float>::epsilon() * shape.extent);
-    if (norm(shape.area) <= narrowest * shape.extent) {
-        if (!is_collinear(shape.corners, std::max(2 * narrowest, std::min(tol_.plane, 1e-3 * shape.extent))))
-            return error(face, "face crosses itself: its parts cancel out", "order its corners counter-clockwise");
-        return repair(
-            face, fmt::format("face of {} corners has no area, they are in line: it is left out", face.corners.size()),
-            "faces without area");
-    }
-    if (const std::size_t turned = turn_holes(in_.points, normalized(shape.area), outline); turned > 0) {
-        shape = Shape(in_.points, outline);
-        repair(face,
-               fmt::format("{} of the face turn{} like its rim: it is cut out all the same",
-                           turned == 1 ? "a hole" : "holes", turned == 1 ? "s" : ""),
-               "faces with such holes", "let holes turn the other way");
-    }
-    const Normal n = normalized(shape.area);
-    EdgePair where{};
-    if (crosses_itself(shape.corners, n, tol_.place, where)) {
-        std::size_t dropped = 0;
-        if (!drop_crossing_corners(in_.points, n, tol_.place, std::min(tol_.plane, 1e-3 * shape.extent), outline,
-                                   dropped)) {
-            const std::size_t m = shape.corners.size();
-            return error(
-                face,
-                fmt::format("face crosses itself: the edge from corner {} to {} meets the edge from corner {} to {}",
-                            where.first + 1, (where.first + 1) % m + 1, where.second + 1, (where.second + 1) % m + 1),
-                "order its corners counter-clockwise, or split it");
-        }
-        repair(face, fmt::format("face crosses itself by rounding: {} of its corners are left out", dropped),
-               "faces that do so");
-        if (outline.size() < 3) return;
-        shape = Shape(in_.points, outline);
-        if (norm(shape.area) <= narrowest * shape.extent) return;
-    }
-    if (!is_one_polygon(in_.points, outline, shape.area, tol_.place))
-        return error(face, "face crosses itself in a corner: a part of it is turned over", "split it there");
-    const double off = out_of_plane(shape.corners, normalized(shape.area));
-    // A face may be bent by as much as its neighbours may be tilted.
-    if (off > std::max(tol_.place, std::min(tol_.plane, tol_.tilt * shape.extent))) {
-        repair(face,
-               fmt::format("face of {} corners is {:.3g} m out of plane: it is split into triangles, each a "
-                           "surface of its own",
-                           shape.corners.size(), off),
-               "faces out of plane");
-        return add_triangles(f, outline, shape.corners, normalized(shape.area));
-    }
-    if (off > tol_.place) {
-        if (flattened_.count++ == 0) flattened_.first_line = face.line;
-        flattened_.farthest = std::max(flattened_.farthest, off);
-    }
-    add_face(f, outline, shape.area);
-}
-
 void SceneBuilder::report_flattened() {
     if (flattened_.count > 0)
         find(Finding::Kind::repair, flattened_.first_line,
@@ -320,7 +233,8 @@ void SceneBuilder::check_light() {
                     [&](std::uint32_t f) { return in_.materials[in_.faces[f].material].emits(); });
     if (!lit)
         find(Finding::Kind::warning, in_.faces.empty() ? 0 : in_.faces[0].line,
-             "nothing emits light: all results are 0", "give a material an emission (in MTL: Ke r g b)");
+             "nothing emits light: all results are 0",
+             "give a material an emission (in MTL: Ke r g b), or the scene a sky (solve --sky)");
 }
 
 /// Of faces that cover each other the later one is on top: regions learn how many lie under them, users that it is so.

@@ -25,8 +25,14 @@ class SceneBuilder {
     void check_face(std::uint32_t f);
     void check_shape(std::uint32_t f, std::vector<std::uint32_t> outline);
     void add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area);
-    void add_triangles(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners,
-                       const Normal& n);
+    /// A face may be bent by as much as its neighbours may be tilted.
+    bool is_bent(std::span<const Point> corners, const Normal& n, double extent) const;
+    /// Four corners whose outline crosses itself because it is bent: two triangles, along the diagonal that leaves the
+    /// larger ones.
+    bool split_folded(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners);
+    /// Three corners of an outline, where they have an area.
+    void add_triangle(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners,
+                      const std::array<std::size_t, 3>& t);
     void report_flattened();
     void drop_duplicates();
     void check_light();

@@ -251,6 +251,14 @@ TEST(Checks, ABowTieIsAnErrorWhetherItsPartsCancelOrNot) {
     }
 }
 
+TEST(Checks, AFaceFoldedUntilItCrossesItselfIsTwoTriangles) {
+    const auto s = Sketch().add({{0, 0, 0}, {1, 1, 0.5}, {1, 0, 0}, {0, 1.5, 0.6}}).light().make();
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 3u);
+    EXPECT_EQ(count(s, Finding::Kind::repair), 1);
+    EXPECT_NE(s.findings[0].message.find("folded"), std::string::npos);
+}
+
 TEST(Checks, BentFacesAreSplitIntoTrianglesAndSaidOnce) {
     Sketch sketch;
     sketch.add({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).add({{5, 0, 0}, {6, 0, 0}, {6, 1, 0.04}, {5, 1, 0}});

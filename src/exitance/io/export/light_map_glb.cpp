@@ -326,11 +326,15 @@ Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, Light
     for (std::size_t p = 0; p < own->pictures.size(); ++p)
         out.add_file({own->pictures[p].file.begin(), own->pictures[p].file.end()}, fmt::format("picture_{}", p),
                      own->pictures[p].kind, first_view);
+    std::map<std::array<int, 3>, std::size_t> numbers;  // of textures, by picture and wraps
     for (MaterialId id : scene.materials().ids()) {
         const SceneTextures::Coat& coat = own->coats[id];
         if (coat.picture < 0 || own->places[coat.set].empty()) continue;
-        const std::size_t number =
-            out.add_texture(shown.maps.size() + static_cast<std::size_t>(coat.picture), coat.wrap_s, coat.wrap_t);
+        const auto [number_of, is_new] = numbers.try_emplace({coat.picture, coat.wrap_s, coat.wrap_t});
+        if (is_new)
+            number_of->second =
+                out.add_texture(shown.maps.size() + static_cast<std::size_t>(coat.picture), coat.wrap_s, coat.wrap_t);
+        const std::size_t number = number_of->second;
         out.base[id] = fmt::format(",\"baseColorTexture\":{{\"index\":{},\"texCoord\":{}}}", number, coat.set);
     }
     return out;

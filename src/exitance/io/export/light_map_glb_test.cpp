@@ -76,20 +76,25 @@ TEST(LightMapModel, ReflectedLightFollowsTheTextureAndKeepsItsMean) {
     EXPECT_EQ(textures->coats[MaterialId(0)].wrap_s, 33071);
     const LightMaps light = baked(s), reflected = reflected_maps(s.scene, light, &*textures);
     const SurfaceId floor(0);
-    ASSERT_NEAR(s.scene.material(floor).reflectance[0], 0.5, 1e-12);
-    const Chart& chart = light.charts[s.scene.surfaces()[floor].region.value];
-    const LightMap& map = reflected.maps[chart.map];
-    const auto at = [&](const Point& p) {
+    ASSERT_NEAR(s.scene.materials()[MaterialId(0)].reflectance[0], 0.5, 1e-12);
+    ASSERT_NEAR(s.scene.material(floor).reflectance[0], 0.75, 0.02)
+        << "the triangle's own part is white by three quarters";
+    // Its two triangles have colours, regions and charts of their own.
+    const auto read = [&](const LightMaps& maps, const Point& p) {
+        const SurfaceId triangle(p.y > -0.5 * p.x ? 1 : 0);
+        const Chart& chart = light.charts[s.scene.surfaces()[triangle].region.value];
+        const LightMap& map = maps.maps[chart.map];
         const Vec2 place = chart.place(p);
         return map.at(map.index(chart.x + static_cast<int>(std::floor(place.x)),
                                 chart.y + static_cast<int>(std::floor(place.y))))[0];
     };
+    const auto at = [&](const Point& p) { return read(reflected, p); };
     EXPECT_NEAR(at({0.25, -0.5, 0}), 0.95 * 4, 1e-6);  // 1 is too much for a reflectance
     EXPECT_NEAR(at({1.75, -0.5, 0}), 0, 1e-6);
-    EXPECT_NEAR(at({1.05, -0.5, 0}), 0.45 * 4, 0.05);   // between the middles of both pixels it goes over
+    EXPECT_NEAR(at({1.05, -0.3, 0}), 0.45 * 4, 0.05);   // between the middles of both pixels it goes over
     EXPECT_NEAR(at({-0.05, -0.5, 0}), 0.95 * 4, 1e-6);  // beyond the border
     const LightMaps plain = reflected_maps(s.scene, light, nullptr);
-    EXPECT_NEAR(plain.maps[chart.map].at(plain.maps[chart.map].index(chart.x, chart.y))[0], 0.5 * 4, 1e-6);
+    EXPECT_NEAR(read(plain, {0.25, -0.5, 0}), 4 * s.scene.material(floor).reflectance[0], 1e-6);
 }
 
 TEST(LightMapModel, KeepsPicturesAndBothSetsOfCoordinates) {

@@ -1,89 +1,16 @@
 #include "exitance/io/export/reflected_maps.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/scenes/texture_area.hpp"
 #include "exitance/reconstruct/light_maps/texel_cover.hpp"
 
 namespace exitance {
 namespace {
-
-using Rgb = std::array<float, 3>;
-
-/// A picture in linear light at its own size and at halves of it, down to one pixel.
-class Pyramid {
-  public:
-    explicit Pyramid(const TexturePixels& picture) {
-        Level first{picture.width, picture.height, std::vector<Rgb>(picture.width * picture.height)};
-        const ByteCurve& curve = srgb_curve();
-        for (std::size_t i = 0; i < first.pixels.size(); ++i)
-            for (std::size_t c = 0; c < 3; ++c)
-                first.pixels[i][c] = static_cast<float>(curve.value[picture.rgb[3 * i + c]]);
-        levels_.push_back(std::move(first));
-        while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back()));
-    }
-
-    std::array<double, 3> mean() const { return bilinear(levels_.back(), {0.5, 0.5}, 10497, 10497); }
-
-    /// The colour at a place, smoothed over `size` pixels of the picture.
-    std::array<double, 3> at(Vec2 place, double size, const SceneTextures::Coat& coat) const {
-        const double level = std::clamp(std::log2(std::max(size, 1.0)), 0.0, static_cast<double>(levels_.size() - 1));
-        return bilinear(levels_[static_cast<std::size_t>(std::lround(level))], place, coat.wrap_s, coat.wrap_t);
-    }
-    double width() const { return static_cast<double>(levels_.front().width); }
-    double height() const { return static_cast<double>(levels_.front().height); }
-
-  private:
-    struct Level {
-        std::size_t width, height;
-        std::vector<Rgb> pixels;
-    };
-
-    static Level half(const Level& in) {
-        Level out{(in.width + 1) / 2, (in.height + 1) / 2, {}};
-        for (std::size_t y = 0; y < out.height; ++y)
-            for (std::size_t x = 0; x < out.width; ++x) {
-                Rgb sum{};
-                for (const std::size_t v : {2 * y, std::min(2 * y + 1, in.height - 1)})
-                    for (const std::size_t u : {2 * x, std::min(2 * x + 1, in.width - 1)})
-                        for (std::size_t c = 0; c < 3; ++c) sum[c] += 0.25f * in.pixels[v * in.width + u][c];
-                out.pixels.push_back(sum);
-            }
-        return out;
-    }
-
-    /// Which pixel a number beyond the borders means; `way` is glTF's number: clamp, mirror or else repeat.
-    static std::size_t wrapped(double i, std::size_t count, int way) {
-        constexpr int clamp = 33071, mirror = 33648;
-        const auto n = static_cast<double>(count);
-        if (!std::isfinite(i)) return 0;
-        if (way == clamp) return static_cast<std::size_t>(std::clamp(i, 0.0, n - 1));
-        double at = std::fmod(i, 2 * n);
-        if (at < 0) at += 2 * n;
-        if (at >= n) at = way == mirror ? 2 * n - 1 - at : at - n;
-        return static_cast<std::size_t>(std::clamp(at, 0.0, n - 1));
-    }
-
-    static std::array<double, 3> bilinear(const Level& level, Vec2 place, int wrap_s, int wrap_t) {
-        const double u = place.x * static_cast<double>(level.width) - 0.5, i = std::floor(u);
-        const double v = place.y * static_cast<double>(level.height) - 0.5, j = std::floor(v);
-        std::array<double, 3> sum{};
-        for (int b = 0; b < 2; ++b)
-            for (int a = 0; a < 2; ++a) {
-                const double weight = (a == 0 ? i + 1 - u : u - i) * (b == 0 ? j + 1 - v : v - j);
-                const Rgb& pixel = level.pixels[wrapped(j + b, level.height, wrap_t) * level.width +
-                                                wrapped(i + a, level.width, wrap_s)];
-                for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * static_cast<double>(pixel[c]);
-            }
-        return sum;
-    }
-
-    std::vector<Level> levels_;
-};
 
 /// What red, green and blue of a picture mean for each band.
 Spectrum spread(const std::array<double, 3>& rgb) {
@@ -100,7 +27,7 @@ class ReflectanceMap {
 
     /// One triangle of a face: `corner` of it, and the places of these in the picture.
     void add(const Chart& chart, const std::array<Point, 3>& corner, const std::array<Vec2, 3>& place,
-             const SceneTextures::Coat& coat, const Pyramid& picture, const Spectrum& reflectance) {
+             const SceneTextures::Coat& coat, const TextureArea& picture, const Spectrum& reflectance) {
         const Patch patch{corner[0], corner[1] - corner[0], corner[2] - corner[0], Patch::Shape::triangle};
         if (!(patch.area() > 0)) return;
         const TexelOutline outline(chart, patch);
@@ -119,10 +46,12 @@ class ReflectanceMap {
         const double size = 0.25 * std::max(std::hypot(right.x * picture.width(), right.y * picture.height()),
                                             std::hypot(down.x * picture.width(), down.y * picture.height()));
         const std::array<double, 3> mean = picture.mean();
+        const auto wrap_s = TextureArea::wrap_of(coat.wrap_s), wrap_t = TextureArea::wrap_of(coat.wrap_t);
         for (const TexelCover& cover : covers_) {
             std::array<double, 3> colour{};
             for (std::size_t k = 0; k < texel_points; ++k) {
-                const std::array<double, 3> at = picture.at(in_picture(places_[cover.first + k]), size, coat);
+                const std::array<double, 3> at =
+                    picture.smoothed(in_picture(places_[cover.first + k]), size, wrap_s, wrap_t);
                 for (std::size_t c = 0; c < 3; ++c) colour[c] += at[c] / texel_points;
             }
             for (std::size_t c = 0; c < 3; ++c) colour[c] /= std::max(mean[c], 1e-6);
@@ -149,8 +78,9 @@ class ReflectanceMap {
 
 void add_textures(const Scene& scene, const LightMaps& light, const SceneTextures& textures,
                   std::vector<ReflectanceMap>& maps) {
-    std::vector<Pyramid> pyramids;
-    for (const SceneTextures::Picture& picture : textures.pictures) pyramids.emplace_back(picture.pixels);
+    std::vector<TextureArea> pictures;
+    for (const SceneTextures::Picture& picture : textures.pictures)
+        pictures.push_back(TextureArea::of(picture.pixels, srgb_curve()));
     for (SurfaceId s : scene.surfaces().ids()) {
         const Surface& face = scene.surfaces()[s];
         const SceneTextures::Coat& coat = textures.coats[face.material];
@@ -162,7 +92,7 @@ void add_textures(const Scene& scene, const LightMaps& light, const SceneTexture
             maps[chart.map].add(
                 chart, {outline[i], outline[j], outline[k]},
                 {places[face.first_corner + i], places[face.first_corner + j], places[face.first_corner + k]}, coat,
-                pyramids[static_cast<std::size_t>(coat.picture)], scene.material(s).reflectance);
+                pictures[static_cast<std::size_t>(coat.picture)], scene.materials()[coat.whole].reflectance);
         }
     }
 }

@@ -38,6 +38,31 @@ std::string beside(const std::string& path, std::string_view name) {
     return (std::filesystem::path(path).parent_path() / std::filesystem::path(name)).string();
 }
 
+std::string found_beside(const std::string& path, std::string_view name) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const std::string as_said = beside(path, name);
+    if (fs::is_regular_file(as_said, ignored)) return as_said;
+    // Written elsewhere: with its slashes, in its folders, by a system that takes capitals for small letters.
+    std::string slashed(name);
+    std::replace(slashed.begin(), slashed.end(), '\\', '/');
+    const auto small = [](std::string text) {
+        for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return text;
+    };
+    const fs::path last = fs::path(slashed).filename();
+    for (const std::string& folder : {fs::path(beside(path, slashed)).parent_path().string(), beside(path, "")}) {
+        std::string best;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+            const std::string here = entry.path().filename().string();
+            if (small(here) == small(last.string()) && (best.empty() || entry.path().string() < best))
+                best = entry.path().string();
+        }
+        if (!best.empty()) return best;
+    }
+    return as_said;
+}
+
 std::string ending(const std::string& path) {
     std::string out = std::filesystem::path(path).extension().string();
     std::transform(out.begin(), out.end(), out.begin(),

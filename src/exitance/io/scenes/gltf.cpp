@@ -80,7 +80,7 @@ class GltfReader {
     GltfAccessor accessor_of(const tinygltf::Accessor& in) const;
     void read_views_and_lamps();
     void read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out);
-    void read_base_texture(const tinygltf::TextureInfo& in, GltfModel::Material& out);
+    GltfModel::TextureUse texture_use(int index, int place_set, const tinygltf::ExtensionMap& extensions) const;
     void read_pictures();
     bool read_nodes();
     bool read_node(const tinygltf::Node& in, std::size_t number);
@@ -146,6 +146,9 @@ std::optional<Error> GltfReader::parse(const std::string& bytes) {
     } catch (const std::exception& e) {
         done = false, problem = e.what();
     }
+    // Compressed meshes have accessors without data, over which the reader falls first.
+    if (!done && bytes.find("KHR_draco_mesh_compression") != bytes.npos)
+        return bad("has meshes that are compressed (Draco), which is not read", "export it again without compression");
     if (!done) {
         const std::string first = problem.substr(0, problem.find('\n'));
         return bad(first.empty() ? "is no glTF" : fmt::format("cannot be read as glTF: {}", shown(first)),
@@ -262,17 +265,19 @@ void GltfReader::read_places(const tinygltf::Primitive& in, GltfModel::Primitive
     }
 }
 
-void GltfReader::read_base_texture(const tinygltf::TextureInfo& in, GltfModel::Material& out) {
-    if (!names_one(in.index, in_.textures) || (in.texCoord != 0 && in.texCoord != 1)) return;
-    const tinygltf::Texture& texture = in_.textures[static_cast<std::size_t>(in.index)];
-    if (!names_one(texture.source, in_.images)) return;
-    out.picture = texture.source, out.place_set = in.texCoord;
+GltfModel::TextureUse GltfReader::texture_use(int index, int place_set,
+                                              const tinygltf::ExtensionMap& extensions) const {
+    GltfModel::TextureUse out;
+    if (!names_one(index, in_.textures) || (place_set != 0 && place_set != 1)) return out;
+    const tinygltf::Texture& texture = in_.textures[static_cast<std::size_t>(index)];
+    if (!names_one(texture.source, in_.images)) return out;
+    out.picture = texture.source, out.place_set = place_set;
     if (names_one(texture.sampler, in_.samplers)) {
         const tinygltf::Sampler& sampler = in_.samplers[static_cast<std::size_t>(texture.sampler)];
         out.wrap_s = sampler.wrapS, out.wrap_t = sampler.wrapT;
     }
-    const auto found = in.extensions.find("KHR_texture_transform");
-    if (found == in.extensions.end() || !found->second.IsObject()) return;
+    const auto found = extensions.find("KHR_texture_transform");
+    if (found == extensions.end() || !found->second.IsObject()) return out;
     const auto pair = [&](const char* key, double otherwise) {
         std::array<double, 2> value{otherwise, otherwise};
         if (!found->second.Has(key) || found->second.Get(key).ArrayLen() != 2) return value;
@@ -283,11 +288,12 @@ void GltfReader::read_base_texture(const tinygltf::TextureInfo& in, GltfModel::M
         return value;
     };
     const auto offset = pair("offset", 0), scale = pair("scale", 1);
-    const double turn = number_in(in.extensions, "KHR_texture_transform", "rotation", 0);
+    const double turn = number_in(extensions, "KHR_texture_transform", "rotation", 0);
     const double c = std::cos(turn), s = std::sin(turn);
     out.transform = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
-    const double set = number_in(in.extensions, "KHR_texture_transform", "texCoord", out.place_set);
+    const double set = number_in(extensions, "KHR_texture_transform", "texCoord", out.place_set);
     if (set == 0 || set == 1) out.place_set = static_cast<int>(set);
+    return out;
 }
 
 /// Pictures stay where they are in buffers; those beside the file move to the model.
@@ -361,7 +367,11 @@ void GltfReader::read_materials() {
         if (m.emission.r != 0 || m.emission.g != 0 || m.emission.b != 0)
             m.emission = times(m.emission, texture_mean(in.emissiveTexture.index, srgb_curve(), m.name));
         m.double_sided = in.doubleSided;
-        if (with_textures_) read_base_texture(pbr.baseColorTexture, m);
+        if (with_textures_) {
+            const tinygltf::TextureInfo &base = pbr.baseColorTexture, &glow = in.emissiveTexture;
+            m.base_texture = texture_use(base.index, base.texCoord, base.extensions);
+            m.emission_texture = texture_use(glow.index, glow.texCoord, glow.extensions);
+        }
         m.transmission = number_in(in.extensions, "KHR_materials_transmission", "transmissionFactor", 0);
         m.diffuse_transmission =
             number_in(in.extensions, "KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0);

@@ -70,6 +70,16 @@ struct GltfModel {
     struct Colour {
         double r = 0, g = 0, b = 0;
     };
+    /// A picture, which set of places, how places go beyond its borders (glTF's numbers), and KHR_texture_transform.
+    struct TextureUse {
+        int picture = -1, place_set = 0, wrap_s = 10497, wrap_t = 10497;
+        std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};  ///< s' = t0 s + t1 t + t2, t' = t3 s + t4 t + t5
+
+        Vec2 moved(const Vec2& p) const {
+            const auto& t = transform;
+            return {t[0] * p.x + t[1] * p.y + t[2], t[3] * p.x + t[4] * p.y + t[5]};
+        }
+    };
     struct Material {
         std::string name;
         Colour base, emission;  ///< Factors times the means of their textures; emission in W/(m^2 sr).
@@ -77,10 +87,7 @@ struct GltfModel {
         double diffuse_transmission = 0;  ///< Of KHR_materials_diffuse_transmission: of what leaves diffusely.
         double transmission = 0;  ///< Of KHR_materials_transmission: share of the light that goes straight through.
         bool double_sided = false, transparent = false;
-        /// The texture of its base colour where textures were asked for: a picture, which set of places, how places go
-        /// beyond its borders (glTF's numbers), and KHR_texture_transform.
-        int picture = -1, place_set = 0, wrap_s = 10497, wrap_t = 10497;
-        std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};  ///< s' = t0 s + t1 t + t2, t' = t3 s + t4 t + t5
+        TextureUse base_texture, emission_texture;  ///< Where textures were asked for.
     };
     struct View {
         std::string name;

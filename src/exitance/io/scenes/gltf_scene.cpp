@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/scenes/gltf.hpp"
 #include "exitance/io/scenes/gltf_model.hpp"
+#include "exitance/io/scenes/textured_faces.hpp"
 
 namespace exitance {
 namespace {
@@ -39,7 +42,11 @@ class SceneMaker {
     bool add_mesh(const GltfModel::Node& node, const Affine& to_world);
     bool add_primitive(const GltfModel::Primitive& p, const GltfModel::Mesh& mesh, const Affine& to_world);
     bool add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t material);
-    void add_triangle(std::array<std::uint32_t, 3> corners, bool double_sided, std::uint32_t material);
+    void add_triangle(std::array<std::uint32_t, 3> corners, bool double_sided, std::uint32_t material,
+                      const ShownColour& colour);
+    ShownColour colour_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices);
+    Spectrum shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
+                   const std::array<std::uint32_t, 3>& vertices);
     std::uint32_t corner(const GltfModel::Primitive& p, const Affine& to_world, std::uint32_t index);
     void add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world);
     void add_view(const GltfModel::View& view, const Affine& to_world);
@@ -65,6 +72,8 @@ class SceneMaker {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> used_;
     std::uint32_t round_ = 0;
     int accessor_ = -1;
+    TexturedFaces textured_{out_, most_reflectance};
+    std::map<int, std::optional<TextureArea>> pictures_;  ///< Those that are shown; none: cannot be read.
 };
 
 void SceneMaker::make_materials() {
@@ -135,12 +144,44 @@ bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t m
     return true;
 }
 
-void SceneMaker::add_triangle(std::array<std::uint32_t, 3> c, bool double_sided, std::uint32_t material) {
+/// What a triangle shows of a texture, by the mean of that.
+Spectrum SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
+                           const std::array<std::uint32_t, 3>& vertices) {
+    if (texture.picture < 0 || static_cast<std::size_t>(texture.picture) >= in_.pictures.size()) return Spectrum(1.0);
+    const GltfRows& places = p.places[static_cast<std::size_t>(texture.place_set)];
+    if (places.size() == 0) return Spectrum(1.0);
+    const auto [picture, is_new] = pictures_.try_emplace(texture.picture);
+    if (is_new) {
+        Result<TextureArea> area =
+            TextureArea::of(in_.pictures[static_cast<std::size_t>(texture.picture)], srgb_curve());
+        if (area) picture->second = std::move(*area);  // else that was told with the material
+    }
+    if (!picture->second) return Spectrum(1.0);
+    std::array<Vec2, 3> outline;
+    for (std::size_t k = 0; k < 3; ++k)
+        outline[k] = texture.moved({places.at(vertices[k], 0), places.at(vertices[k], 1)});
+    return relative(*picture->second, outline, TextureArea::wrap_of(texture.wrap_s),
+                    TextureArea::wrap_of(texture.wrap_t));
+}
+
+ShownColour SceneMaker::colour_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices) {
+    if (p.material < 0) return {};
+    const GltfModel::Material& m = in_.materials[static_cast<std::size_t>(p.material)];
+    ShownColour out{shown(m.base_texture, p, vertices), Spectrum(1.0)};
+    if (out_.materials[static_cast<std::size_t>(p.material)].emits())
+        out.exitance = shown(m.emission_texture, p, vertices);
+    return out;
+}
+
+void SceneMaker::add_triangle(std::array<std::uint32_t, 3> c, bool double_sided, std::uint32_t material,
+                              const ShownColour& colour) {
     if (add_pane(c, material)) return;
     const auto group = static_cast<std::uint32_t>(out_.groups.size() - 1);
-    out_.faces.push_back({{c.begin(), c.end()}, material, group, 0});
-    std::swap(c[1], c[2]);
-    if (double_sided) out_.faces.push_back({{c.begin(), c.end()}, material, group, 0});
+    for (int side = 0; side < (double_sided ? 2 : 1); ++side) {
+        out_.faces.push_back({{c.begin(), c.end()}, material, group, 0});
+        textured_.show(out_.faces.size() - 1, colour);
+        std::swap(c[1], c[2]);
+    }
     ++triangles_;
 }
 
@@ -173,9 +214,10 @@ bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::M
         }
         if (restart || (p.mode != GltfModel::Mode::triangles && (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])))
             continue;  // strips turn corners by triangles without area
+        const ShownColour colour = colour_of(p, c);
         for (std::uint32_t& i : c) i = corner(p, to_world, i);
         if (mirrored) std::swap(c[1], c[2]);
-        add_triangle(c, double_sided, material);
+        add_triangle(c, double_sided, material, colour);
     }
     return true;
 }
@@ -276,6 +318,7 @@ void SceneMaker::make() {
     make_materials();
     report_materials();
     if (!visit_nodes()) return out_.faces.clear();
+    textured_.finish();
     if (deformed_ > 0)
         warn(fmt::format("{} {} deformed by skins or morph targets: {} in the rest pose", deformed_,
                          deformed_ == 1 ? "node is" : "nodes are", deformed_ == 1 ? "it stays" : "they stay"));
@@ -286,7 +329,7 @@ void SceneMaker::make() {
 ReadScene read_gltf(const std::string& path) {
     ReadScene out;
     out.description.file = path;
-    Result<GltfModel> model = load_gltf_model(path, out.findings);
+    Result<GltfModel> model = load_gltf_model(path, out.findings, true);
     if (!model) {
         const Error& e = model.error();
         out.findings.push_back({Finding::Kind::error, path, 0, e.message, e.hint});

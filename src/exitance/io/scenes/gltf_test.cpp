@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -152,6 +153,26 @@ TEST_F(GltfFiles, ATextureCountsByItsMeanLight) {
     const CheckedScene absent = load(text);
     ASSERT_TRUE(absent.scene);
     EXPECT_EQ(warnings(absent, "absent.png"), 1u);
+}
+
+TEST_F(GltfFiles, ATriangleTakesItsPartOfAnAtlas) {
+    Image atlas(8, 8);  // the upper half white, the lower one black
+    std::fill_n(atlas.rgb.begin(), 3 * 32, std::uint8_t(255));
+    ASSERT_TRUE(write_png(folder_ / "atlas.png", atlas, {}));
+    GltfText text = triangle(
+        R"({"name":"card","pbrMetallicRoughness":{"baseColorTexture":{"index":0},"baseColorFactor":[0.6,0.6,0.6,1],)"
+        R"("metallicFactor":0}})");
+    const std::array<float, 6> corners = {0, 0, 1, 0, 0, 0.45F};
+    const int places = text.add(corners.data(), sizeof corners, 5126, "VEC2", 3);
+    text.meshes = R"({"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":)" + std::to_string(places) +
+                  R"(},"indices":1,"material":0}]})";
+    text.textures = R"({"source":0})";
+    text.images = R"({"uri":"atlas.png"})";
+    text.nodes = R"({"mesh":0})";
+    const Scene made = scene(text);
+    EXPECT_NEAR(made.material(SurfaceId(0)).reflectance[0], 0.6, 1e-9);
+    EXPECT_EQ(made.material(SurfaceId(0)).name, "card #cbcbcb");
+    EXPECT_NEAR(made.materials()[MaterialId(0)].reflectance[0], 0.3, 1e-9);
 }
 
 TEST_F(GltfFiles, LightsArePlacedByTheirNodes) {

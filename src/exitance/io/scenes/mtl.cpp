@@ -8,7 +8,6 @@
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
-#include "exitance/io/scenes/texture_mean.hpp"
 
 namespace exitance {
 namespace {
@@ -30,8 +29,8 @@ Spectrum spread(const std::vector<double>& values) {
 class MtlReader {
   public:
     MtlReader(std::string_view text, const std::string& file, std::vector<Material>& materials,
-              std::vector<Finding>& findings, std::map<std::string, Spectrum>* glass)
-        : lines_(text), file_(file), materials_(materials), findings_(findings), glass_(glass) {}
+              std::vector<Finding>& findings, MtlExtras& extras)
+        : lines_(text), file_(file), materials_(materials), findings_(findings), extras_(extras) {}
     void read();
 
   private:
@@ -39,9 +38,10 @@ class MtlReader {
     void read_values(const std::string& key, Spectrum Material::*value);
     bool read_number(const std::string& key, std::string_view word, std::vector<double>& out);
     void read_filter(std::string_view key);
-    void read_texture();
+    void read_texture(std::string& name);
     void end_material();
-    void take_texture();
+    void take_textures();
+    std::shared_ptr<const TextureArea> picture(const std::string& name, const char* otherwise);
     void take_glass();
     void warn_all();
     void find(Finding::Kind kind, int line, std::string message, std::string hint) {
@@ -61,11 +61,11 @@ class MtlReader {
     std::size_t white_materials_ = 0;
     int white_line_ = 0;  ///< Of the first of these,
     std::string white_name_;
-    std::map<std::string, Spectrum>* glass_;
+    MtlExtras& extras_;
     double opacity_ = 1;              ///< d
     std::optional<Spectrum> filter_;  ///< Tf
     long long illum_ = 0;
-    std::string texture_;  ///< map_Kd
+    std::string texture_, glow_;  ///< map_Kd, map_Ke
     struct Told {
         std::size_t count = 0;
         int line = 0;
@@ -89,8 +89,8 @@ void MtlReader::read() {
             read_values(std::string(key), key == "Kd" ? &Material::reflectance : &Material::exitance);
         else if (key == "d" || key == "Tf" || key == "illum")
             read_filter(key);
-        else if (key == "map_Kd")
-            read_texture();
+        else if (key == "map_Kd" || key == "map_Ke")
+            read_texture(key == "map_Kd" ? texture_ : glow_);
     }
     end_material();
     warn_all();
@@ -108,7 +108,7 @@ void MtlReader::start_material() {
     material_.name = std::string(lines_.rest());
     if (material_.name.empty()) error("'newmtl' without a name");
     open_ = true, has_reflectance_ = false;
-    opacity_ = 1, filter_.reset(), illum_ = 0, texture_.clear();
+    opacity_ = 1, filter_.reset(), illum_ = 0, texture_.clear(), glow_.clear();
     line_ = lines_.number();
 }
 
@@ -133,31 +133,48 @@ void MtlReader::read_filter(std::string_view key) {
 }
 
 /// The name follows options of one or more words each; a name may hold blanks where there are none.
-void MtlReader::read_texture() {
+void MtlReader::read_texture(std::string& name) {
     if (!open_) return;
     if (!lines_.rest().starts_with('-')) {
-        texture_ = std::string(lines_.rest());
+        name = std::string(lines_.rest());
         return;
     }
-    while (!lines_.rest().empty()) texture_ = std::string(lines_.word());
+    while (!lines_.rest().empty()) name = std::string(lines_.word());
 }
 
-void MtlReader::take_texture() {
-    if (texture_.empty()) return;
-    const Result<std::string> bytes = read_whole_file(beside(file_, texture_));
-    const auto as_bytes = [](const std::string& s) {
-        return std::span(reinterpret_cast<const std::uint8_t*>(s.data()), s.size());
+std::shared_ptr<const TextureArea> MtlReader::picture(const std::string& name, const char* otherwise) {
+    const std::string file = found_beside(file_, name);
+    std::shared_ptr<const TextureArea>& out = extras_.read[file];
+    if (out) return out;
+    const Result<std::string> bytes = read_whole_file(file);
+    Result<TextureArea> area =
+        bytes ? TextureArea::of(std::span(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()),
+                                srgb_curve())
+              : Result<TextureArea>(bytes.error());
+    if (area) return out = std::make_shared<const TextureArea>(std::move(*area));
+    find(Finding::Kind::warning, line_,
+         fmt::format("the texture '{}' of material '{}' {}: {} stands by itself", shown(name), shown(material_.name),
+                     area.error().message, otherwise),
+         "put it beside the material file, as PNG or JPEG");
+    return nullptr;
+}
+
+void MtlReader::take_textures() {
+    MtlPictures pictures;
+    const auto mean_of = [](const TextureArea& picture) {
+        const TextureArea::Colour c = picture.mean();
+        return spread({c[0], c[1], c[2]});
     };
-    Result<std::array<double, 3>> colour =
-        bytes ? mean_colour(as_bytes(*bytes), srgb_curve()) : Result<std::array<double, 3>>(bytes.error());
-    if (!colour)
-        return find(Finding::Kind::warning, line_,
-                    fmt::format("the texture '{}' of material '{}' {}: Kd stands by itself", shown(texture_),
-                                shown(material_.name), colour.error().message),
-                    "put it beside the material file, as PNG or JPEG");
-    if (!has_reflectance_) material_.reflectance = Spectrum(1.0), has_reflectance_ = true;
-    material_.reflectance *= spread({(*colour)[0], (*colour)[1], (*colour)[2]});
-    mend_reflectance(material_.reflectance);
+    if (!texture_.empty()) pictures.reflectance = picture(texture_, "Kd");
+    if (pictures.reflectance) {
+        if (!has_reflectance_) material_.reflectance = Spectrum(1.0), has_reflectance_ = true;
+        material_.reflectance *= mean_of(*pictures.reflectance);
+        mend_reflectance(material_.reflectance);
+    }
+    if (!glow_.empty() && material_.emits()) pictures.exitance = picture(glow_, "Ke");
+    if (pictures.exitance) material_.exitance *= mean_of(*pictures.exitance);
+    if (!pictures.reflectance && !pictures.exitance) return;
+    extras_.pictures.emplace(material_.name, std::move(pictures));
     textured_.add(line_, material_.name);
 }
 
@@ -167,15 +184,17 @@ void MtlReader::take_glass() {
     const Spectrum passes = (opacity_ < 1 ? 1 - opacity_ : 1) * filter_.value_or(Spectrum(1.0));
     // Leaves, curtains and faded surfaces are no glass.
     constexpr double least = 0.5;
-    if (!glass_ || !(mean(passes) > least)) return opaque_.add(line_, material_.name);
-    glass_->emplace(material_.name, transmissivity_of(passes));
+    if (!(mean(passes) > least)) return opaque_.add(line_, material_.name);
+    extras_.glass.emplace(material_.name, transmissivity_of(passes));
     glazed_.add(line_, material_.name);
 }
 
 void MtlReader::warn_all() {
     if (textured_.count > 0)
         find(Finding::Kind::warning, textured_.line,
-             fmt::format("{} has a texture: all of it reflects like the texture's mean", textured_.names()), "");
+             fmt::format("{} has a texture: a face is of one colour, the mean of its own part of that",
+                         textured_.names()),
+             "");
     if (opaque_.count > 0)
         find(Finding::Kind::warning, opaque_.line,
              fmt::format("{} lets light through, but no more than half of it: here it is opaque", opaque_.names()), "");
@@ -195,7 +214,7 @@ void MtlReader::end_material() {
              "give it another name");
         return;
     }
-    take_texture();
+    take_textures();
     take_glass();
     if (!has_reflectance_)
         find(Finding::Kind::warning, line_,
@@ -247,8 +266,8 @@ bool MtlReader::read_number(const std::string& key, std::string_view word, std::
 }  // namespace
 
 void parse_mtl(std::string_view text, const std::string& file, std::vector<Material>& materials,
-               std::vector<Finding>& findings, std::map<std::string, Spectrum>* glass) {
-    MtlReader(text, file, materials, findings, glass).read();
+               std::vector<Finding>& findings, MtlExtras& extras) {
+    MtlReader(text, file, materials, findings, extras).read();
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/pictures/png.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/scene/findings.hpp"
 
@@ -87,9 +88,30 @@ TEST_F(ObjFiles, EveryErrorNamesItsFileAndLine) {
               "s.obj:7: face names '99999999999999999999', which is not a vertex number");
     EXPECT_EQ(first_error(head + "usemtl red\nf 1 2 3\n"), "s.obj:7: material 'red' is in no material file");
     EXPECT_EQ(first_error(""), "s.obj:1: there are no polygons");
+}
+
+TEST_F(ObjFiles, WithoutAMaterialFileEverythingIsGreyAndThatIsTold) {
+    const auto s = load("usemtl grey\n" + points + "f 1 2 3\nusemtl red\nf 1 3 4\n");
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->material(SurfaceId(0)).reflectance[0], 0.5);
+    EXPECT_EQ(std::count_if(s.findings.begin(), s.findings.end(),
+                            [](const Finding& f) { return f.kind == Finding::Kind::repair; }),
+              1);
     EXPECT_NE(
         first_error("mtllib none.mtl\nusemtl grey\n" + points + "f 1 2 3\n").find("s.obj:1: material file 'none.mtl'"),
         std::string::npos);
+}
+
+TEST_F(ObjFiles, PicturesAreFoundWhateverSystemNamedThem) {
+    Image grey(1, 1);
+    grey.rgb = {188, 188, 188};
+    ASSERT_TRUE(write_png(folder_ + "/Brick.PNG", grey, {}));
+    for (const std::string name : {"brick.png", "C:\\Users\\me\\textures\\brick.png", ".\\Brick.png"}) {
+        write("w.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd " + name + "\n");
+        const auto s = load("mtllib w.mtl\nusemtl wall\n" + points + "f 1 2 3 4\n");
+        ASSERT_TRUE(s.scene);
+        EXPECT_NEAR(s.scene->material(SurfaceId(0)).reflectance[0], bands == 1 ? 0.48 : 0.475, 0.03) << name;
+    }
 }
 
 TEST_F(ObjFiles, EveryErrorOfAMaterialNamesItBandValueAndLine) {
@@ -174,6 +196,27 @@ TEST_F(ObjFiles, GlassBecomesPanesAndTexturesTheirMean) {
     EXPECT_EQ(said("'no.png'"), 1);
     EXPECT_EQ(said("panes of clear glass"), 1);
     EXPECT_EQ(said("no more than half"), 1);
+}
+
+TEST_F(ObjFiles, FacesTakeTheirPartOfAnAtlas) {
+    Image atlas(64, 64);  // left half white, right half black
+    for (int y = 0; y < 64; ++y) std::fill_n(atlas.at(0, y), 3 * 32, std::uint8_t(255));
+    ASSERT_TRUE(write_png(folder_ + "/a.png", atlas, {}));
+    write("t.mtl", "newmtl atlas\nKd 0.8 0.8 0.8\nmap_Kd a.png\nnewmtl lamp\nKd 0\nKe 2 2 2\nmap_Ke a.png\n");
+    const auto s = load("mtllib t.mtl\n" + points +
+                        "v 2 0 0\nv 2 1 0\nv 3 0 0\nv 3 1 0\nvt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nvt 1 0\nvt 1 1\n"
+                        "usemtl atlas\nf 1/1 2/2 3/3 4/4\nf 2/2 5/5 6/6 3/3\nf 5 7 8 6\n"
+                        "usemtl lamp\nf 4/4 3/3 2/2 1/1\n");
+    ASSERT_TRUE(s.scene);
+    ASSERT_EQ(s.scene->surfaces().size(), 4u);
+    EXPECT_NEAR(s.scene->material(SurfaceId(0)).reflectance[0], 0.8, 1e-9);
+    EXPECT_EQ(s.scene->material(SurfaceId(0)).name, "atlas #e7e7e7");
+    EXPECT_EQ(s.scene->material(SurfaceId(1)).reflectance[0], 0);
+    EXPECT_NEAR(s.scene->material(SurfaceId(2)).reflectance[0], 0.4, 1e-9) << "without places: the mean";
+    EXPECT_NEAR(s.scene->material(SurfaceId(3)).exitance[0], 2 * pi, 1e-9);
+    EXPECT_EQ(std::count_if(s.findings.begin(), s.findings.end(),
+                            [](const Finding& f) { return f.message.find("texture") != f.message.npos; }),
+              1);
 }
 
 }  // namespace

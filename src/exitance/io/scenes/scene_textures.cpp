@@ -6,6 +6,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf_model.hpp"
 #include "exitance/scene/locator.hpp"
+#include "exitance/scene/material_name.hpp"
 
 namespace exitance {
 namespace {
@@ -81,15 +82,13 @@ class TextureFinder {
             if (p.places[set].size() == 0) continue;
             found_[set] = true;
             const GltfModel::Material* m = p.material >= 0 ? &model_.materials[material] : nullptr;
-            const bool moved = m && m->picture >= 0 && m->place_set == static_cast<int>(set);
+            const bool moved = m && m->base_texture.picture >= 0 && m->base_texture.place_set == static_cast<int>(set);
             for (std::size_t k = 0; k < scene_.outline(s).size(); ++k) {
                 const std::array<double, 3> weight = patch.weights(scene_.outline(s)[k]);
                 Vec2 place;
                 for (std::size_t c = 0; c < 3; ++c)
                     place = place + weight[c] * Vec2{p.places[set].at(v[c], 0), p.places[set].at(v[c], 1)};
-                if (moved)
-                    place = {m->transform[0] * place.x + m->transform[1] * place.y + m->transform[2],
-                             m->transform[3] * place.x + m->transform[4] * place.y + m->transform[5]};
+                if (moved) place = m->base_texture.moved(place);
                 out_.places[set][first + k] = place;
             }
         }
@@ -113,10 +112,13 @@ class TextureFinder {
         out_.coats.resize(scene_.materials().size());
         std::vector<int> number(model_.pictures.size(), -1);
         for (MaterialId id : scene_.materials().ids()) {
-            if (id.value >= model_.materials.size()) continue;
-            const GltfModel::Material& m = model_.materials[id.value];
-            if (m.picture < 0 || m.name != scene_.materials()[id].name) continue;
-            const auto source = static_cast<std::size_t>(m.picture);
+            const std::string_view name = name_in_file(scene_.materials()[id].name);
+            const auto material = std::find_if(model_.materials.begin(), model_.materials.end(),
+                                               [&](const GltfModel::Material& m) { return m.name == name; });
+            if (material == model_.materials.end() || material->base_texture.picture < 0) continue;
+            if (material - model_.materials.begin() >= static_cast<std::ptrdiff_t>(scene_.materials().size())) continue;
+            const GltfModel::TextureUse& texture = material->base_texture;
+            const auto source = static_cast<std::size_t>(texture.picture);
             if (number[source] < 0) {
                 const std::span<const std::uint8_t> file = model_.pictures[source];
                 Result<TexturePixels> pixels = decode_texture(file);
@@ -125,7 +127,8 @@ class TextureFinder {
                 out_.pictures.push_back(
                     {{file.begin(), file.end()}, file[0] == 0xff ? "image/jpeg" : "image/png", std::move(*pixels)});
             }
-            out_.coats[id] = {number[source], m.place_set, m.wrap_s, m.wrap_t};
+            const auto whole = static_cast<std::uint32_t>(material - model_.materials.begin());
+            out_.coats[id] = {number[source], texture.place_set, texture.wrap_s, texture.wrap_t, MaterialId(whole)};
         }
     }
 

@@ -21,6 +21,7 @@ struct SceneTextures {
         int picture = -1;                    ///< Index into `pictures`; -1: none.
         int set = 0;                         ///< Which of the places.
         int wrap_s = 10497, wrap_t = 10497;  ///< How places go beyond the picture's borders: glTF's numbers.
+        MaterialId whole;                    ///< The material that reflects like the mean of all of the picture.
     };
     std::vector<Picture> pictures;
     Field<MaterialId, Coat> coats;

@@ -10,6 +10,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/light_groups/light_groups.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/scene/material_name.hpp"
 
 namespace exitance {
 namespace {
@@ -27,7 +28,10 @@ Error unknown(const std::string& what, const std::string& name, std::vector<std:
 Result<void> check(const Scene& scene, const LightGroups& groups, const LightChange& change) {
     std::vector<std::string> names, materials;
     for (const LightGroup& g : groups.groups) names.push_back(g.emitters.name);
-    for (const Material& m : scene.materials()) materials.push_back(m.name);
+    for (const Material& m : scene.materials()) {
+        materials.push_back(m.name);
+        if (name_in_file(m.name) != m.name) materials.emplace_back(name_in_file(m.name));
+    }
     for (const auto& [name, factor] : change.dim) {
         if (std::find(names.begin(), names.end(), name) == names.end()) return unknown("light group", name, names);
         if (!(factor >= 0) || !std::isfinite(factor))
@@ -233,7 +237,8 @@ Result<void> change_light(Solution& solution, LightGroups& groups, const LightCh
     for (const Material& m : solution.scene.materials()) reflectance.push_back(m.reflectance);
     for (const auto& [name, rho] : change.reflectance)
         for (const MaterialId m : solution.scene.materials().ids())
-            if (solution.scene.materials()[m].name == name) reflectance[m.value] = rho;
+            if (solution.scene.materials()[m].name == name || name_in_file(solution.scene.materials()[m].name) == name)
+                reflectance[m.value] = rho;
     for (std::size_t m = 0; m < reflectance.size(); ++m)
         repainted |= reflectance[m].value != groups.reflectance[m].value;
     add_up(groups.groups, &LightGroup::indirect, solution.indirect.values);

@@ -1,0 +1,117 @@
+// What SceneBuilder asks of the shape of a face: an area, no holes that turn, no crossings, one plane.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "exitance/geometry/triangulation.hpp"
+#include "exitance/joining/outline.hpp"
+#include "exitance/scene/outline_repair.hpp"
+#include "exitance/scene/scene_builder.hpp"
+
+namespace exitance {
+
+bool SceneBuilder::is_bent(std::span<const Point> corners, const Normal& n, double extent) const {
+    return out_of_plane(corners, n) > std::max(tol_.place, std::min(tol_.plane, tol_.tilt * extent));
+}
+
+void SceneBuilder::add_triangle(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners,
+                                const std::array<std::size_t, 3>& t) {
+    const Vec3 a = corners[t[1]] - corners[t[0]], b = corners[t[2]] - corners[t[0]], area = 0.5 * cross(a, b);
+    if (norm(area) > tol_.place * std::max({norm(a), norm(b), norm(b - a)}))
+        add_face(f, std::array{outline[t[0]], outline[t[1]], outline[t[2]]}, area);
+}
+
+bool SceneBuilder::split_folded(std::uint32_t f, std::span<const std::uint32_t> outline,
+                                std::span<const Point> corners) {
+    const auto twice_area = [&](std::size_t a, std::size_t b, std::size_t c) {
+        return norm(cross(corners[b] - corners[a], corners[c] - corners[a]));
+    };
+    if (corners.size() != 4) return false;
+    const bool is_first =
+        std::min(twice_area(0, 1, 2), twice_area(0, 2, 3)) >= std::min(twice_area(1, 2, 3), twice_area(1, 3, 0));
+    const std::size_t start = is_first ? 0 : 1;
+    repair(in_.faces[f], "face of 4 corners is folded so far that it crosses itself: it is split into triangles",
+           "faces that are folded so");
+    for (const std::size_t k : {1, 2}) add_triangle(f, outline, corners, {start, (start + k) % 4, (start + k + 1) % 4});
+    return true;
+}
+
+namespace {
+
+/// The outline's own figures.
+struct Shape {
+    std::vector<Point> corners;
+    Vec3 area;
+    double extent = 0;  ///< Diagonal of its box, metres.
+
+    Shape(std::span<const Point> points, std::span<const std::uint32_t> outline) {
+        Box box;
+        for (std::uint32_t c : outline) corners.push_back(points[c]), box.add(points[c]);
+        area = area_vector(corners);
+        extent = box.diagonal();
+    }
+};
+
+}  // namespace
+
+void SceneBuilder::check_shape(std::uint32_t f, std::vector<std::uint32_t> outline) {
+    const SceneDescription::Face& face = in_.faces[f];
+    Shape shape(in_.points, outline);
+    // Narrower beside its length than single precision resolves: no ray meets it.
+    const double narrowest = std::max(tol_.place, std::numeric_limits<float>::epsilon() * shape.extent);
+    if (norm(shape.area) <= narrowest * shape.extent) {
+        if (!is_collinear(shape.corners, std::max(2 * narrowest, std::min(tol_.plane, 1e-3 * shape.extent))))
+            return error(face, "face crosses itself: its parts cancel out", "order its corners counter-clockwise");
+        return repair(
+            face, fmt::format("face of {} corners has no area, they are in line: it is left out", face.corners.size()),
+            "faces without area");
+    }
+    if (const std::size_t turned = turn_holes(in_.points, normalized(shape.area), outline); turned > 0) {
+        shape = Shape(in_.points, outline);
+        repair(face,
+               fmt::format("{} of the face turn{} like its rim: it is cut out all the same",
+                           turned == 1 ? "a hole" : "holes", turned == 1 ? "s" : ""),
+               "faces with such holes", "let holes turn the other way");
+    }
+    const Normal n = normalized(shape.area);
+    EdgePair where{};
+    if (crosses_itself(shape.corners, n, tol_.place, where)) {
+        if (is_bent(shape.corners, n, shape.extent) && split_folded(f, outline, shape.corners)) return;
+        std::size_t dropped = 0;
+        if (!drop_crossing_corners(in_.points, n, tol_.place, std::min(tol_.plane, 1e-3 * shape.extent), outline,
+                                   dropped)) {
+            const std::size_t m = shape.corners.size();
+            return error(
+                face,
+                fmt::format("face crosses itself: the edge from corner {} to {} meets the edge from corner {} to {}",
+                            where.first + 1, (where.first + 1) % m + 1, where.second + 1, (where.second + 1) % m + 1),
+                "order its corners counter-clockwise, or split it");
+        }
+        repair(face, fmt::format("face crosses itself by rounding: {} of its corners are left out", dropped),
+               "faces that do so");
+        if (outline.size() < 3) return;
+        shape = Shape(in_.points, outline);
+        if (norm(shape.area) <= narrowest * shape.extent) return;
+    }
+    if (!is_one_polygon(in_.points, outline, shape.area, tol_.place))
+        return error(face, "face crosses itself in a corner: a part of it is turned over", "split it there");
+    const double off = out_of_plane(shape.corners, normalized(shape.area));
+    if (is_bent(shape.corners, normalized(shape.area), shape.extent)) {
+        repair(face,
+               fmt::format("face of {} corners is {:.3g} m out of plane: it is split into triangles, each a "
+                           "surface of its own",
+                           shape.corners.size(), off),
+               "faces out of plane");
+        for (const auto& [a, b, c] : triangulate(shape.corners, normalized(shape.area)))
+            add_triangle(f, outline, shape.corners, {a, b, c});
+        return;
+    }
+    if (off > tol_.place) {
+        if (flattened_.count++ == 0) flattened_.first_line = face.line;
+        flattened_.farthest = std::max(flattened_.farthest, off);
+    }
+    add_face(f, outline, shape.area);
+}
+
+}  // namespace exitance
