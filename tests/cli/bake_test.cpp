@@ -35,6 +35,21 @@ TEST(ProgramBake, WritesMapsAManifestAndAModel) {
     EXPECT_NE(read_text(out + "/scene.glb").find("\"MOZ_lightmap\":{\"index\":0"), std::string::npos);
 }
 
+TEST(ProgramBake, LightGroupsHaveMapsOfTheirOwn) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder), solution = folder / "room.h5", out = folder / "maps";
+    ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const Finished none = run_program({"bake", solution, "-o", out, "--density", "6", "--light-groups"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("--light-groups"), std::string::npos) << none.err;
+    ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--error", "0.1", "--light-groups", "-q"}).status, 0);
+    const Finished run = run_program({"bake", solution, "-o", out, "--density", "6", "--light-groups"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(read_text(out + "/lightmaps.json").find("\"files\": [\"lightmap_0_0.exr\"]"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(out + "/lightmap_0_0.exr"));
+    EXPECT_TRUE(std::filesystem::exists(out + "/lightmap_0_0.png"));
+}
+
 TEST(ProgramBake, RefusesWhatCannotBeDone) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";

@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <ostream>
 
-#include "exitance/core/parallel.hpp"
 #include "fuzz/mutator.hpp"
 #include "fuzz/target.hpp"
 
@@ -15,10 +14,16 @@ void PrintTo(const Target& target, std::ostream* out) {
 
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr std::uint64_t usual_rounds = 100;  // each ten times as slow
+#else
+constexpr std::uint64_t usual_rounds = 400;
+#endif
+
 /// How many damaged files every reader is given; EXITANCE_FUZZ_ROUNDS in the environment asks for more.
 std::uint64_t rounds() {
     const char* asked = std::getenv("EXITANCE_FUZZ_ROUNDS");
-    return asked ? std::strtoull(asked, nullptr, 10) : 400;
+    return asked ? std::strtoull(asked, nullptr, 10) : usual_rounds;
 }
 
 class Readers : public testing::TestWithParam<Target> {};

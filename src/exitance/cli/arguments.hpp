@@ -123,6 +123,7 @@ struct BakeArguments : CommonArguments {
     double density = 0;       ///< Texels per metre; 0: what suits the scene.
     std::size_t padding = 4;  ///< Texels.
     LightMapFormat format;
+    bool light_groups = false;  ///< Maps of every light group by itself, too.
     int threads = 0;
 };
 

@@ -278,6 +278,7 @@ std::string view_factors_json(const ViewFactorFacts& facts) {
         {"check",
          {{"entries", check.entries},
           {"rays", check.rays},
+          {"wrong", check.wrong},
           {"largest_deviation_in_standard_errors", check.largest_deviation},
           {"largest_relative_deviation", check.largest_relative},
           {"relative_standard_error_there", check.relative_error_there},

@@ -57,4 +57,9 @@ Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution&
     return groups;
 }
 
+Error no_light_groups(const std::string& solution_file) {
+    return {ErrorCode::usage, "keeps no light groups", solution_file,
+            "exitance solve SCENE --light-groups -o S.h5 does"};
+}
+
 }  // namespace exitance

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/kept_groups.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
@@ -23,9 +24,7 @@ ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     LightGroups groups;
     Result<Solution> solution = load_solution(arguments.solution, Rehearsed::not_yet, &groups);
     if (!solution) return terminal.fail(solution.error());
-    if (groups.empty())
-        return terminal.fail({ErrorCode::usage, "keeps no light groups", arguments.solution,
-                              "exitance solve SCENE --light-groups -o S.h5 does"});
+    if (groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
     if (const Result<void> changed = change_light(*solution, groups, change); !changed)
         return terminal.fail(changed.error());
     solution->statistics.seconds["mix"] = watch.seconds();

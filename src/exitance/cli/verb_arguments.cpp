@@ -269,6 +269,8 @@ void declare(CLI::App& app, BakeArguments& arguments) {
            "--moz-lightmap", [&format] { format.material = LightMapMaterial::moz_lightmap; },
            "The .glb has base colours, and its light in the extension MOZ_lightmap")
         ->excludes(unlit);
+    app.add_flag("--light-groups", arguments.light_groups,
+                 "Maps of every light group by itself too, undimmed, on the same charts (solve --light-groups)");
     declare_work(app, arguments, arguments.threads);
 }
 

@@ -16,6 +16,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t batches = 64;  ///< Means of so many are near enough to normal.
+constexpr double beyond_doubt = 4;   ///< Standard errors: of ten thousand right entries one is off by so many.
 constexpr double near_sizes = 0.2;   ///< Of the larger face's size: what is nearer has kernels without a bound.
 
 /// Draws points of a polygon, evenly.
@@ -181,6 +182,7 @@ RayCheck check_by_rays(const Scene& scene, const ViewFactors& table, const RayCh
         ++check.entries, check.rays += found[k].rays;
         relative_errors.push_back(relative_error);
         check.largest_deviation = std::max(check.largest_deviation, off / found[k].standard_error);
+        check.wrong += off > options.tolerance * F + beyond_doubt * found[k].standard_error;
         if (off / F <= check.largest_relative) continue;
         check.largest_relative = off / F, check.relative_error_there = relative_error;
     }

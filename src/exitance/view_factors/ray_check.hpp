@@ -13,6 +13,7 @@ struct RayCheckOptions {
     std::size_t entries = 100;    ///< Drawn from those above 1e-6, none twice.
     std::size_t rays = 1u << 14;  ///< An entry; rounded up to whole batches of 64 x 16.
     std::uint64_t seed = 1;
+    double tolerance = 0;  ///< Relative: by which the table's entries may be off.
 };
 
 /// What rays say about entries of a table that were drawn by lot. They share nothing with how the table was made but
@@ -20,6 +21,7 @@ struct RayCheckOptions {
 struct RayCheck {
     std::size_t entries = 0, rays = 0;  ///< Rays in all.
     double largest_deviation = 0;       ///< Standard errors of the rays' mean, of the entry farthest off in them.
+    std::size_t wrong = 0;              ///< Entries off by more than the tolerance and four standard errors.
     double largest_relative = 0;        ///< Of the entry, where that is largest.
     double relative_error_there = 0;    ///< Standard error of the rays there, relative to the entry.
     double usual_relative_error = 0;    ///< Its median: what rays can tell.

@@ -49,6 +49,7 @@ TEST(RayCheck, ATableThatIsRightLiesWithinAFewStandardErrors) {
     EXPECT_EQ(check.entries, 2u + 1u * 2u);  // each square and the other, the board's front and the upper one
     EXPECT_GE(check.rays, check.entries << 14);
     EXPECT_LT(check.largest_deviation, 4);
+    EXPECT_EQ(check.wrong, 0u);
     EXPECT_LT(check.usual_relative_error, 0.01);
     EXPECT_TRUE(check.is_complete);
 }
@@ -60,6 +61,8 @@ TEST(RayCheck, AWrongEntryIsFound) {
     const RayCheck check = check_by_rays(scene, table, {}, StopRequest());
     EXPECT_GT(check.largest_deviation, 10);
     EXPECT_NEAR(check.largest_relative, 1 - 1 / 1.2, 0.02);
+    EXPECT_EQ(check.wrong, 1u);
+    EXPECT_EQ(check_by_rays(scene, table, {.tolerance = 0.2}, StopRequest()).wrong, 0u) << "so much it may be off";
 }
 
 TEST(RayCheck, AStopEndsIt) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
@@ -13,8 +14,9 @@
 namespace exitance {
 namespace {
 
-std::string map_name(std::size_t map, const char* ending) {
-    return fmt::format("lightmap_{}{}", map, ending);
+/// lightmap_0, or lightmap_0_2 for the light of group 2 alone.
+std::string map_stem(std::size_t map, std::optional<std::size_t> group = {}) {
+    return group ? fmt::format("lightmap_{}_{}", map, *group) : fmt::format("lightmap_{}", map);
 }
 
 const char* name_of(LightMapQuantity quantity) {
@@ -85,22 +87,50 @@ std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart) {
         triple(chart.du), triple(chart.dv), triple(scene.surfaces()[s].normal));
 }
 
-std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantity quantity, const ToneMap& tones) {
+std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantity quantity, const ToneMap& tones,
+                     std::span<const std::string> groups) {
     std::string text = fmt::format(
         "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"W/m^2\",\n"
         "  \"texels_per_metre\": {},\n  \"padding\": {},\n  \"model\": \"scene.glb\",\n  \"exposure\": {},\n  "
         "\"maps\": [",
         EXITANCE_VERSION, name_of(quantity), light.density, light.padding, tones.scale);
     for (std::size_t m = 0; m < light.maps.size(); ++m)
-        text += fmt::format("{}\n    {{\"file\": \"{}\", \"preview\": \"{}\", \"width\": {}, \"height\": {}}}",
-                            m > 0 ? "," : "", map_name(m, ".exr"), map_name(m, ".png"), light.maps[m].size.width,
+        text += fmt::format("{}\n    {{\"file\": \"{}.exr\", \"preview\": \"{}.png\", \"width\": {}, \"height\": {}}}",
+                            m > 0 ? "," : "", map_stem(m), map_stem(m), light.maps[m].size.width,
                             light.maps[m].size.height);
+    if (!groups.empty()) text += "\n  ],\n  \"groups\": [";
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        text += fmt::format("{}\n    {{\"name\": {}, \"files\": [", g > 0 ? "," : "", json_text(groups[g]));
+        for (std::size_t m = 0; m < light.maps.size(); ++m)
+            text += fmt::format("{}\"{}.exr\"", m > 0 ? ", " : "", map_stem(m, g));
+        text += "]}";
+    }
     text += "\n  ],\n  \"charts\": [";
     for (SurfaceId s : scene.surfaces().ids()) {
         const RegionId region = scene.surfaces()[s].region;
         text += (s.value > 0 ? ",\n" : "\n") + chart_json(scene, s, light.charts[region.value]);
     }
     return text + "\n  ]\n}\n";
+}
+
+/// Every map as numbers and as a picture.
+Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::optional<std::size_t> group,
+                            const LightMapFormat& format, const std::string& folder) {
+    const ToneMap tones = preview_tones(scene, light, format.quantity);
+    const std::string unit = fmt::format("R, G, B: {} in W/m^2", name_of(format.quantity));
+    for (std::size_t m = 0; m < light.maps.size(); ++m) {
+        const std::string stem = folder + "/" + map_stem(m, group);
+        const LinearImage image = numbers(scene, light, m, format.quantity);
+        const ImageFacts facts{{"software", "exitance"}, {"units", unit}};
+        if (const Result<void> written = write_exr(stem + ".exr", image, facts, format.precision); !written)
+            return written;
+        const std::string exposure =
+            fmt::format("{} in W/m^2 times {:.6g}, then a filmic curve", name_of(format.quantity), tones.scale);
+        const ImageTexts texts{{"Software", "exitance"}, {"Exposure", exposure}};
+        const Result<void> written = write_png(stem + ".png", preview(scene, light, m, format.quantity, tones), texts);
+        if (!written) return written;
+    }
+    return {};
 }
 
 Result<void> make_folder(const std::string& folder) {
@@ -122,31 +152,22 @@ Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart
     return material.exitance + material.reflectance * irradiance;
 }
 
+Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& light, std::size_t group,
+                                    const LightMapFormat& format, const std::string& folder) {
+    if (const Result<void> made = make_folder(folder); !made) return made;
+    return write_pictures(lit_by_group, light, group, format, folder);
+}
+
 Result<void> write_light_maps(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
-                              const std::string& folder) {
+                              std::span<const std::string> groups, const std::string& folder) {
     if (const Result<void> made = make_folder(folder); !made) return made;
     const Scene& scene = solution.scene;
-    const ToneMap tones = preview_tones(scene, light, format.quantity);
-    const std::string unit = fmt::format("R, G, B: {} in W/m^2", name_of(format.quantity));
-    for (std::size_t m = 0; m < light.maps.size(); ++m) {
-        const std::string stem = folder + "/";
-        const LinearImage image = numbers(scene, light, m, format.quantity);
-        const ImageFacts facts{{"software", "exitance"}, {"units", unit}};
-        if (const Result<void> written = write_exr(stem + map_name(m, ".exr"), image, facts, format.precision);
-            !written)
-            return written;
-        const std::string exposure =
-            fmt::format("{} in W/m^2 times {:.6g}, then a filmic curve", name_of(format.quantity), tones.scale);
-        const ImageTexts texts{{"Software", "exitance"}, {"Exposure", exposure}};
-        const Result<void> written =
-            write_png(stem + map_name(m, ".png"), preview(scene, light, m, format.quantity, tones), texts);
-        if (!written) return written;
-    }
+    if (const Result<void> written = write_pictures(scene, light, {}, format, folder); !written) return written;
     ToneMap tone = make_tone_map(solution);
     tone.curve = ToneCurve::filmic;
     const Result<void> written = write_light_map_glb(solution, light, format, tone, folder + "/scene.glb");
     if (!written) return written;
-    return write_file(folder + "/lightmaps.json", manifest(scene, light, format.quantity, tone));
+    return write_file(folder + "/lightmaps.json", manifest(scene, light, format.quantity, tone, groups));
 }
 
 }  // namespace exitance

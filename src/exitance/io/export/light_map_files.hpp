@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -30,14 +31,19 @@ struct LightMapFormat {
     std::string scene_file;  ///< Where the scene's own textures are, if it is glTF; empty: nowhere.
 };
 
+/// Writes the maps of one light group alone, number `group`, which lie on the charts that all light has:
+/// lightmap_N_G.exr and .png, its own exposure. Makes the folder where there is none.
+Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& light, std::size_t group,
+                                    const LightMapFormat& format, const std::string& folder);
+
 /// Writes what a folder of light maps holds, and makes the folder where there is none:
 /// lightmap_N.exr   the numbers: R, G, B in W/m^2; `coverage`: the share of a texel that lies on its surface
 /// lightmap_N.png   the same for people, toned
 /// scene.glb        the scene with second texture coordinates
-/// lightmaps.json   which texels belong to which face; written last
+/// lightmaps.json   which texels belong to which face, and the `groups` that were written; written last
 /// Each file appears whole or not at all.
 Result<void> write_light_maps(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
-                              const std::string& folder);
+                              std::span<const std::string> groups, const std::string& folder);
 
 /// The value of a texel of a chart in a quantity, W/m^2.
 Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart, std::size_t index,

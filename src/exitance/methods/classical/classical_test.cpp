@@ -129,7 +129,7 @@ TEST(Classical, LinksGrowAsOneOverTheirThreshold) {
 
 TEST(Classical, NoElementIsCutBelowTheLeastArea) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
-    const double least = 0.01;
+    const double least = 0.04;
     ClassicalOptions c = by_power(1e-3);
     const Solution solution =
         solve(scene, {.method = Method::hierarchical, .min_area = least, .oracle = LinkOracle::form_factor}, c)
