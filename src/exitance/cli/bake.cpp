@@ -38,7 +38,7 @@ Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, con
 
 /// exitance bake SOLUTION -o FOLDER
 ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
-    const StopRequest stop;  // signals end the program at once: nothing is written before all is there
+    const StopRequest stop;  // signals end the program at once: files are whole, and lightmaps.json is the last
     set_threads(arguments.threads);
     LightGroups groups;
     const Result<Solution> solution =

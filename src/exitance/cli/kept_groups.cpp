@@ -59,7 +59,7 @@ Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution&
 
 Error no_light_groups(const std::string& solution_file) {
     return {ErrorCode::usage, "keeps no light groups", solution_file,
-            "exitance solve SCENE --light-groups -o S.h5 does"};
+            "exitance solve SCENE --light-groups -o S.h5 keeps those of a scene that has lamps"};
 }
 
 }  // namespace exitance

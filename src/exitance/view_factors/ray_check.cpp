@@ -16,8 +16,10 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t batches = 64;  ///< Means of so many are near enough to normal.
-constexpr double beyond_doubt = 4;   ///< Standard errors: of ten thousand right entries one is off by so many.
-constexpr double near_sizes = 0.2;   ///< Of the larger face's size: what is nearer has kernels without a bound.
+/// Standard errors that no right entry is off by: of 64 batches one in ten million is. Of 3,200 entries of four scenes,
+/// checked with as many rays as by default, none was further off than 4.1 (`viewfactors --seed 1` to 8).
+constexpr double beyond_doubt = 6;
+constexpr double near_sizes = 0.2;  ///< Of the larger face's size: what is nearer has kernels without a bound.
 
 /// Draws points of a polygon, evenly.
 class FaceSampler {

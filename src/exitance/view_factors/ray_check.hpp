@@ -21,7 +21,7 @@ struct RayCheckOptions {
 struct RayCheck {
     std::size_t entries = 0, rays = 0;  ///< Rays in all.
     double largest_deviation = 0;       ///< Standard errors of the rays' mean, of the entry farthest off in them.
-    std::size_t wrong = 0;              ///< Entries off by more than the tolerance and four standard errors.
+    std::size_t wrong = 0;              ///< Entries off by more than the tolerance and six standard errors.
     double largest_relative = 0;        ///< Of the entry, where that is largest.
     double relative_error_there = 0;    ///< Standard error of the rays there, relative to the entry.
     double usual_relative_error = 0;    ///< Its median: what rays can tell.
