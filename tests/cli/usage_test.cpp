@@ -103,6 +103,8 @@ TEST(ProgramUsage, OptionsOfDiscontinuityMeshingElsewhereAreNamed) {
         {"--triangulation", "shortest", "--method", "matrix"},
         {"--dm-sources", "3", "--method", "discontinuity", "--bounces", "0"},
         {"--premesh", "coarse", "--method", "discontinuity"},
+        {"--dm-quality", "delaunay", "--method", "matrix"},
+        {"--dm-quality", "delaunay", "--triangulation", "shortest", "--method", "discontinuity"},
         {"--dm-sources", "much", "--method", "discontinuity"},
         {"--dm-sources", "-1W", "--method", "discontinuity"},
     };

@@ -40,6 +40,11 @@ void declare_discontinuity(CLI::App& app, SolveOptions& options) {
     add_choice(app, "--premesh", premesh_names, o.premesh,
                "With longest, shortest, heuristic: curves that bound half-shadows or a coarse grid before others")
         ->group(group);
+    add_choice(
+        app, "--dm-quality", mesh_quality_names, o.quality,
+        "Shape of triangles: as bisection leaves it (rivara, default), or by points added until angles are above "
+        "20.7 degrees (delaunay)")
+        ->group(group);
 }
 
 Result<void> check_discontinuity(const SolveOptions& options) {
@@ -48,7 +53,8 @@ Result<void> check_discontinuity(const SolveOptions& options) {
     const char* const name = o.sources         ? "--dm-sources"
                              : o.three_edges   ? "--eee"
                              : o.triangulation ? "--triangulation"
-                                               : "--premesh";
+                             : o.premesh       ? "--premesh"
+                                               : "--dm-quality";
     if (options.method != Method::discontinuity)
         return Error{ErrorCode::usage, "is obeyed by --method discontinuity alone", name,
                      "exitance solve SCENE -o S.h5 --method discontinuity"};
@@ -59,6 +65,9 @@ Result<void> check_discontinuity(const SolveOptions& options) {
     if (o.premesh && *o.premesh != Premesh::off && !by_tree)
         return Error{ErrorCode::usage, "orders what a tree of lines takes; Delaunay's triangulation takes all at once",
                      "--premesh", "choose --triangulation longest, shortest or heuristic, too"};
+    if (o.quality == MeshQuality::delaunay && by_tree)
+        return Error{ErrorCode::usage, "refines Delaunay's triangulation, not that of a tree", "--dm-quality",
+                     "leave --triangulation or --dm-quality out"};
     return {};
 }
 

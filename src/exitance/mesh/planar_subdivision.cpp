@@ -7,7 +7,9 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
+#include <unordered_map>
 
 namespace exitance {
 namespace {
@@ -121,7 +123,8 @@ void label_edges(Lines& t, const std::vector<std::pair<Lines::Constraint_id, std
     }
 }
 
-LabelledTriangles take_inside(Lines& t) {
+template <class AnyTriangulation>
+LabelledTriangles take_inside(AnyTriangulation& t) {
     LabelledTriangles out;
     std::uint32_t triangles = 0;
     for (const auto face : t.finite_face_handles())
@@ -166,6 +169,200 @@ LabelledTriangles labelled_triangles(std::span<const std::vector<Vec2>> loops,
     } catch (const std::exception&) {
         return {};  // CGAL's assertions
     }
+}
+
+namespace {
+
+using Faces =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, NotedFace>,
+                                               CGAL::Exact_predicates_tag>;
+
+double area_of(const LabelledTriangles& t) {
+    double twice = 0;
+    for (const auto& c : t.corners) twice += cross(t.points[c[1]] - t.points[c[0]], t.points[c[2]] - t.points[c[0]]);
+    return 0.5 * twice;
+}
+
+class DelaunayRefinement {
+  public:
+    explicit DelaunayRefinement(const LabelledTriangles& coarse) {
+        std::vector<Faces::Vertex_handle> vertices;
+        for (const Vec2& p : coarse.points) vertices.push_back(add(faces_.insert({p.x, p.y})));
+        for (std::size_t i = 0; i < coarse.corners.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto a = vertices[coarse.corners[i][k]], b = vertices[coarse.corners[i][(k + 1) % 3]];
+                std::uint8_t label = coarse.labels[i][k];
+                if (coarse.neighbors[i][k] == LabelledTriangles::none) label = LabelledTriangles::border;
+                if (label == LabelledTriangles::unlabelled || a == b) continue;
+                const auto [known, is_new] = labels_.try_emplace(key(a, b), label);
+                known->second = std::min(known->second, label);
+                if (is_new) faces_.insert_constraint(a, b);
+            }
+        given_ = count_;
+        const double mean_edge = std::sqrt(2 * area_of(coarse) / static_cast<double>(coarse.corners.size()));
+        constexpr double nearest_share = 0.25;  // more triangles than shape is worth come of less
+        nearest_ = nearest_share * mean_edge;
+    }
+
+    LabelledTriangles run() {
+        constexpr int most_passes = 100;
+        for (int pass = 0; pass < most_passes && improve_all(); ++pass) {
+        }
+        find_inside();
+        for (const auto face : faces_.finite_face_handles())
+            for (int i = 0; i < 3; ++i) {
+                const auto known = labels_.find(key(face->vertex(Faces::ccw(i)), face->vertex(Faces::cw(i))));
+                if (known != labels_.end()) face->info().labels[static_cast<std::size_t>(i)] = known->second;
+            }
+        for (const auto v : faces_.finite_vertex_handles()) v->info().value = unnumbered;
+        return take_inside(faces_);
+    }
+
+  private:
+    using Handle = Faces::Face_handle;
+    using Vertex = Faces::Vertex_handle;
+
+    Vertex add(Vertex v) {
+        if (v->info().value == unnumbered) v->info().value = count_++;
+        return v;
+    }
+    static std::uint64_t key(Vertex a, Vertex b) {
+        const auto [least, most] = std::minmax(a->info().value, b->info().value);
+        return static_cast<std::uint64_t>(least) << 32 | most;
+    }
+    static Vec2 place(Vertex v) { return {v->point().x(), v->point().y()}; }
+
+    void find_inside() {
+        for (const auto face : faces_.all_face_handles()) face->info() = {};
+        count_loops_around(faces_, [&](const auto& face, int i) {
+            if (!faces_.is_constrained({face, i})) return false;
+            const auto known = labels_.find(key(face->vertex(Faces::ccw(i)), face->vertex(Faces::cw(i))));
+            return known != labels_.end() && known->second == LabelledTriangles::border;
+        });
+    }
+
+    /// Goes once through the triangles that are too sharp. False when nothing could be done for any.
+    bool improve_all() {
+        find_inside();
+        std::vector<std::array<Vertex, 3>> sharp;
+        for (const auto face : faces_.finite_face_handles())
+            if (face->info().value % 2 != 0 && is_sharp(face))
+                sharp.push_back({face->vertex(0), face->vertex(1), face->vertex(2)});
+        bool is_better = false;
+        for (const auto& [a, b, c] : sharp) {
+            Handle face;
+            if (faces_.is_face(a, b, c, face)) is_better |= improve(face);
+        }
+        return is_better;
+    }
+
+    /// Is an angle too small that is not one between labelled edges?
+    bool is_sharp(Handle face) const {
+        constexpr double sine = 0.3535;  // of 20.7 degrees: the shortest edge over twice the circle's radius
+        double length[3];
+        for (int i = 0; i < 3; ++i) {
+            const Vec2 d = place(face->vertex(Faces::ccw(i))) - place(face->vertex(Faces::cw(i)));
+            length[i] = std::sqrt(dot(d, d));
+        }
+        const int least = static_cast<int>(std::min_element(length, length + 3) - length);
+        const double twice =
+            cross(place(face->vertex(1)) - place(face->vertex(0)), place(face->vertex(2)) - place(face->vertex(0)));
+        if (!(twice > 0)) return false;
+        if (twice >= sine * length[(least + 1) % 3] * length[(least + 2) % 3]) return false;
+        return !faces_.is_constrained({face, (least + 1) % 3}) || !faces_.is_constrained({face, (least + 2) % 3});
+    }
+
+    bool improve(Handle face) {
+        const Kernel::Point_2 middle = faces_.circumcenter(face);
+        const Vec2 m{middle.x(), middle.y()}, way = m - place(face->vertex(0));
+        if (!(dot(way, way) >= nearest_ * nearest_) || !std::isfinite(dot(way, way))) return false;
+        constexpr int most_steps = 1'000;
+        for (int step = 0; step < most_steps; ++step) {
+            int beyond = -1;
+            for (int i = 0; i < 3 && beyond < 0; ++i)
+                if (CGAL::orientation(face->vertex(Faces::ccw(i))->point(), face->vertex(Faces::cw(i))->point(),
+                                      middle) == CGAL::RIGHT_TURN)
+                    beyond = i;
+            if (beyond < 0) return insert(middle, face);
+            if (faces_.is_constrained({face, beyond})) return halve({face, beyond});
+            face = face->neighbor(beyond);
+            if (faces_.is_infinite(face)) return false;
+        }
+        return false;
+    }
+
+    /// Inserts a circle's middle, or halves an edge in whose circle it lies.
+    bool insert(const Kernel::Point_2& p, Handle face) {
+        std::vector<Handle> conflicts;
+        std::vector<Faces::Edge> rim;
+        faces_.get_conflicts_and_boundary(p, std::back_inserter(conflicts), std::back_inserter(rim), face);
+        bool is_near = false;
+        for (const Faces::Edge& e : rim) {
+            if (!faces_.is_constrained(e)) continue;
+            const Vec2 at{p.x(), p.y()}, a = place(e.first->vertex(Faces::ccw(e.second))),
+                                         b = place(e.first->vertex(Faces::cw(e.second)));
+            if (dot(a - at, b - at) > 0) continue;
+            is_near = true;
+            if (halve(e)) return true;
+        }
+        if (is_near) return false;
+        add(faces_.insert(p, face));
+        return true;
+    }
+
+    /// Cuts a labelled edge in two: in the middle, or, where it begins at a corner of others, at a power of two from
+    /// there, so that the edges of a sharp corner are cut at the same distances.
+    bool halve(const Faces::Edge& edge) {
+        const auto [face, i] = edge;
+        const Vertex a = face->vertex(Faces::ccw(i)), b = face->vertex(Faces::cw(i));
+        const Vec2 pa = place(a), pb = place(b), way = pb - pa;
+        const double length = std::sqrt(dot(way, way));
+        if (!(length >= 2 * nearest_)) return false;
+        double share = 0.5;
+        if (const bool first = is_given(a); first != is_given(b)) {
+            const double shell = std::exp2(std::round(std::log2(0.5 * length / nearest_))) * nearest_;
+            constexpr double least = 0.3;
+            share = std::clamp(shell / length, least, 1 - least);
+            if (!first) share = 1 - share;
+        }
+        const Vec2 m = pa + share * way;
+        const Kernel::Point_2 at(m.x, m.y);
+        const auto is_between = [&](const Faces::Edge& e) {
+            if (faces_.is_infinite(e.first)) return true;
+            const auto& top = e.first->vertex(e.second)->point();
+            const auto &p = e.first->vertex(Faces::ccw(e.second))->point(),
+                       &q = e.first->vertex(Faces::cw(e.second))->point();
+            return CGAL::orientation(top, p, at) == CGAL::LEFT_TURN && CGAL::orientation(top, at, q) == CGAL::LEFT_TURN;
+        };
+        if (!is_between(edge) || !is_between(faces_.mirror_edge(edge))) return false;
+        const auto known = labels_.find(key(a, b));
+        if (known == labels_.end()) return false;
+        const std::uint8_t label = known->second;
+        labels_.erase(known);
+        const Vertex v = add(faces_.insert(at, Faces::EDGE, face, i));
+        labels_[key(a, v)] = labels_[key(v, b)] = label;
+        return true;
+    }
+    bool is_given(Vertex v) const { return v->info().value < given_; }
+
+    Faces faces_;
+    std::unordered_map<std::uint64_t, std::uint8_t> labels_;  ///< Of constrained edges, by their ends.
+    std::uint32_t count_ = 0, given_ = 0;                     ///< Vertices so far, and those of the coarse triangles.
+    double nearest_ = 0;                                      ///< How near added points may come to others.
+};
+
+}  // namespace
+
+LabelledTriangles refined_triangles(const LabelledTriangles& coarse) {
+    if (coarse.corners.empty()) return coarse;
+    try {
+        LabelledTriangles out = DelaunayRefinement(coarse).run();
+        constexpr double lost = 1e-10;
+        if (std::abs(area_of(out) - area_of(coarse)) <= lost * area_of(coarse)) return out;
+    } catch (const std::exception&) {
+        // CGAL's assertions: the triangles stay as they are
+    }
+    return coarse;
 }
 
 }  // namespace exitance

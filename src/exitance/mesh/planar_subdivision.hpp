@@ -38,4 +38,10 @@ struct LabelledTriangles {
 LabelledTriangles labelled_triangles(std::span<const std::vector<Vec2>> loops,
                                      std::span<const LabelledSegment> segments);
 
+/// The same triangles with points added until no angle is below 20.7 degrees, but for those between two labelled edges
+/// and where what is to be added stood too near to what there is: Delaunay refinement. Labelled edges are halved where
+/// a circle's middle lies behind them or in the circle over them. Source: [Ruppert95].
+/// At most about 20 triangles for one of `coarse`, which come back as they are where CGAL gives up.
+LabelledTriangles refined_triangles(const LabelledTriangles& coarse);
+
 }  // namespace exitance

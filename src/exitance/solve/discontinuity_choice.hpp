@@ -14,6 +14,8 @@ namespace exitance {
 enum class ThreeEdgeEvents { automatic, on, off };
 /// In which order a face is cut: all curves at once, those that bound half-shadows first, or a coarse grid before all.
 enum class Premesh { off, penumbra_first, coarse };
+/// How triangles get their shape: by points that are added for it before light is looked at, or as bisection leaves it.
+enum class MeshQuality { delaunay, rivara };
 
 inline constexpr std::array<std::pair<ThreeEdgeEvents, std::string_view>, 3> three_edge_names{{
     {ThreeEdgeEvents::automatic, "auto"},
@@ -24,6 +26,10 @@ inline constexpr std::array<std::pair<Premesh, std::string_view>, 3> premesh_nam
     {Premesh::off, "off"},
     {Premesh::penumbra_first, "penumbra-first"},
     {Premesh::coarse, "coarse"},
+}};
+inline constexpr std::array<std::pair<MeshQuality, std::string_view>, 2> mesh_quality_names{{
+    {MeshQuality::delaunay, "delaunay"},
+    {MeshQuality::rivara, "rivara"},
 }};
 inline constexpr std::array<std::pair<TriangulationScheme, std::string_view>, 4> triangulation_choices{{
     {TriangulationScheme::longest, "longest"},
@@ -45,8 +51,9 @@ struct DiscontinuityChoice {
     std::optional<ThreeEdgeEvents> three_edges = {};
     std::optional<TriangulationScheme> triangulation = {};
     std::optional<Premesh> premesh = {};
+    std::optional<MeshQuality> quality = {};
 
-    bool any() const { return sources || three_edges || triangulation || premesh; }
+    bool any() const { return sources || three_edges || triangulation || premesh || quality; }
 };
 
 }  // namespace exitance

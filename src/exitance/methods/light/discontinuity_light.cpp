@@ -72,6 +72,7 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     ask.triangulation = choice.triangulation.value_or(TriangulationScheme::delaunay);
     ask.penumbra_first = choice.premesh == Premesh::penumbra_first;
     ask.premesh = choice.premesh == Premesh::coarse;
+    ask.refined = choice.quality == MeshQuality::delaunay;
     if (choice.sources && options.bounces != 0)
         ask.secondary = secondary_sources(stage, solution, locator, *choice.sources);
     DiscontinuityReport report;

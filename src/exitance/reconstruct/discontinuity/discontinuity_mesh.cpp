@@ -163,7 +163,7 @@ class Builder {
         const std::size_t regions = stage_.scene.regions().size();
         std::vector<std::optional<ReceiverCurves>> receivers(regions);
         std::vector<ReceiverTriangles> triangles(regions);
-        const TriangleOptions cut{options_.triangulation, options_.premesh, options_.penumbra_first,
+        const TriangleOptions cut{options_.triangulation, options_.premesh, options_.penumbra_first, options_.refined,
                                   1e-7 * stage_.scene.size()};
         // Where the state is kept from time to time, some receivers have to be ready together.
         const std::size_t batch = options_.safe_points ? 256 : regions;

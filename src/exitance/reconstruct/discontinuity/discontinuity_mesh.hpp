@@ -25,6 +25,7 @@ struct DiscontinuityOptions {
     TriangulationScheme triangulation = TriangulationScheme::delaunay;
     bool penumbra_first = false;  ///< Longest curves of half-shadows first; not with Delaunay's triangulation.
     bool premesh = false;         ///< A coarse grid before all curves, likewise.
+    bool refined = false;         ///< Delaunay refinement before light is looked at, with Delaunay's alone.
     std::size_t max_triangles = 2'000'000;
     std::uint64_t seed = 1;             ///< Of the places at which the mesh is tried.
     SafePoints* safe_points = nullptr;  ///< Where curves and values at nodes are kept on the way.

@@ -154,6 +154,22 @@ TEST(DiscontinuityMesh, TheThesissTriangulationsHoldTheErrorAndLoseNoArea) {
     }
 }
 
+TEST(DiscontinuityMesh, RefinedTrianglesHaveABetterShapeAndHoldTheErrorToo) {
+    const Scene scene = built_scene("table");
+    double all = 0;
+    for (const Region& region : scene.regions()) all += region.area;
+    SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
+    const Solution plain = solved(scene, options);
+    options.discontinuity.quality = MeshQuality::delaunay;
+    const Solution refined = solved(scene, options);
+    double area = 0;
+    for (std::uint32_t t = 0; t < refined.discontinuity.size(); ++t) area += refined.discontinuity.area(t);
+    EXPECT_NEAR(area, all, 1e-9 * all);
+    EXPECT_LE(*refined.statistics.relative_error_estimate_interpolant, 0.01);
+    constexpr double rounder = 1.2;
+    EXPECT_GT(refined.discontinuity.mean_radius_ratio(), rounder * plain.discontinuity.mean_radius_ratio());
+}
+
 TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightWhereItIsAskedTo) {
     // A mirror-bright wall beside the blocker throws its light onto the floor, past the blocker.
     const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},

@@ -10,6 +10,7 @@ struct TriangleOptions {
     TriangulationScheme scheme = TriangulationScheme::delaunay;
     bool grid = false;            ///< Trees begin with a coarse grid,
     bool penumbra_first = false;  ///< and take the curves that bound half-shadows first: kinks and long ones.
+    bool refined = false;         ///< Points are added for the triangles' shape.
     double tolerance = 1e-7;      ///< What is nearer is the same for trees, metres.
 };
 
