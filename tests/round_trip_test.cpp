@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "exitance/io/files/atomic_file.hpp"
-#include "exitance/io/scenes/obj_writer.hpp"
+#include "exitance/io/scenes/obj/obj_writer.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"

@@ -5,7 +5,7 @@
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
-#include "exitance/io/scenes/mtl.hpp"
+#include "exitance/io/scenes/obj/mtl.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "fuzz/solution_target.hpp"
 #include "fuzz/target.hpp"

@@ -5,15 +5,15 @@
 #include <limits>
 #include <utility>
 
-#include "exitance/cli/classical_solve.hpp"
 #include "exitance/cli/discontinuity_arguments.hpp"
 #include "exitance/cli/json_output.hpp"
-#include "exitance/cli/kept_groups.hpp"
-#include "exitance/cli/local_pass_check.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
+#include "exitance/cli/solve/classical_solve.hpp"
+#include "exitance/cli/solve/kept_groups.hpp"
+#include "exitance/cli/solve/local_pass_check.hpp"
+#include "exitance/cli/solve/task_engine_check.hpp"
 #include "exitance/cli/summary.hpp"
-#include "exitance/cli/task_engine_check.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"

@@ -9,7 +9,7 @@
 #include "exitance/io/files/child_process.hpp"
 #include "exitance/io/files/reference_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
-#include "exitance/io/scenes/obj_writer.hpp"
+#include "exitance/io/scenes/obj/obj_writer.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"

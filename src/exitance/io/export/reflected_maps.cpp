@@ -6,7 +6,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/io/export/light_map_files.hpp"
-#include "exitance/io/scenes/texture_area.hpp"
+#include "exitance/io/scenes/textures/texture_area.hpp"
 #include "exitance/reconstruct/light_maps/texel_cover.hpp"
 
 namespace exitance {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/io/scenes/scene_textures.hpp"
+#include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/reconstruct/light_maps/light_map.hpp"
 
 namespace exitance {

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "exitance/io/files/atomic_file.hpp"
-#include "exitance/io/scenes/texture_mean.hpp"
+#include "exitance/io/scenes/textures/texture_mean.hpp"
 
 namespace exitance {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/geometry/triangulation.hpp"
-#include "exitance/io/scenes/obj.hpp"
+#include "exitance/io/scenes/obj/obj.hpp"
 #include "exitance/scene/families/generate.hpp"
 
 namespace exitance {

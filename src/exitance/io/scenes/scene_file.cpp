@@ -8,9 +8,9 @@
 
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/photometry/placed_luminaire.hpp"
-#include "exitance/io/scenes/gltf.hpp"
-#include "exitance/io/scenes/obj.hpp"
-#include "exitance/io/scenes/radiance.hpp"
+#include "exitance/io/scenes/gltf/gltf.hpp"
+#include "exitance/io/scenes/obj/obj.hpp"
+#include "exitance/io/scenes/radiance/radiance.hpp"
 #include "exitance/io/scenes/stl.hpp"
 #include "exitance/io/scenes/view3d.hpp"
 #include "exitance/scene/findings.hpp"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/io/scenes/obj.hpp"
+#include "exitance/io/scenes/obj/obj.hpp"
 
 namespace exitance {
 

@@ -1,0 +1,39 @@
+#include "exitance/cli/solve/classical_solve.hpp"
+
+#include <fmt/format.h>
+
+#include "exitance/cli/json_output.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/methods/classical/classical.hpp"
+
+namespace exitance {
+
+Result<void> check_classical(const SolveArguments& arguments) {
+    if (!arguments.classical.any()) return {};
+    const auto refuse = [](const char* option) {
+        return Error{ErrorCode::usage, "is not there in classical forms", option, ""};
+    };
+    if (arguments.checkpoint_every) return refuse("--checkpoint-every");
+    if (arguments.resume) return refuse("--resume");
+    if (arguments.dry_run) return refuse("--dry-run");
+    const Result<Method> method = classical_method(arguments.options, arguments.classical);
+    return method ? Result<void>() : Result<void>(method.error());
+}
+
+Result<Solution> run_classical(const SolveArguments& arguments, const Scene& scene, Progress& progress,
+                               const StopRequest& stop) {
+    const std::string& output = arguments.output;
+    const std::string stem = output.ends_with(".h5") ? output.substr(0, output.size() - 3) : output;
+    ClassicalFacts facts;
+    const auto write = [&](const Solution& on_the_way, std::size_t number) {
+        Solution snapshot = on_the_way;
+        snapshot.options = options_json(arguments.options, arguments.classical, {});
+        return write_solution(fmt::format("{}.{:04}.h5", stem, number), snapshot);
+    };
+    Result<Solution> solution =
+        solve_classical(scene, arguments.options, arguments.classical, progress, stop, facts, write);
+    if (solution) solution->options = options_json(arguments.options, arguments.classical, facts);
+    return solution;
+}
+
+}  // namespace exitance

@@ -1,0 +1,65 @@
+#include "exitance/cli/solve/kept_groups.hpp"
+
+#include <array>
+
+#include "exitance/transport/distributed.hpp"
+
+namespace exitance {
+
+Result<void> check_light_groups(const SolveArguments& arguments) {
+    if (!arguments.light_groups) return {};
+    const SolveOptions& o = arguments.options;
+    const std::array<std::pair<const char*, bool>, 8> disobeyed{{
+        {"--method discontinuity", o.method == Method::discontinuity},
+        {"--method growing-cells", o.method == Method::growing_cells},
+        {"--task-engine", o.task_engine},
+        {"--keep-links", o.keep_links},
+        {"--checkpoint-every", arguments.checkpoint_every.has_value()},
+        {"--resume", arguments.resume},
+        {"a classical form", arguments.classical.any()},
+        {"several processes", processes() > 1},
+    }};
+    for (const auto& [name, is_given] : disobeyed)
+        if (is_given)
+            return Error{ErrorCode::usage, "does not go together with --light-groups", name, "leave one of them out"};
+    return {};
+}
+
+Result<void> check_light_groups(const SolveArguments& arguments, const Scene& scene) {
+    const std::size_t count = arguments.light_groups ? find_emitter_groups(scene).size() : 0;
+    if (count <= most_light_groups) return {};
+    return Error{ErrorCode::usage,
+                 "there are " + std::to_string(count) + " groups that emit, at most " +
+                     std::to_string(most_light_groups) + " are solved one by one",
+                 "--light-groups", "name lamps that are switched together alike"};
+}
+
+Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution& solution, Progress& progress,
+                                      const StopRequest& stop) {
+    if (!arguments.light_groups || !solution.scene.has_light()) return LightGroups();
+    SolveStatistics& s = solution.statistics;
+    const auto not_kept = [&](const std::string& why) {
+        s.warnings.push_back("light groups are not kept: " + why), s.converged = false;
+        return LightGroups();
+    };
+    if (stop.requested()) return not_kept("there was no time for them");
+    const Stopwatch watch;
+    // A mesh along the shadows of all lamps together has no place for one of them.
+    solution.discontinuity = {}, solution.cells = {};
+    Result<LightGroups> groups = solve_light_groups(solution, arguments.options, progress, stop);
+    if (!groups && stop.requested()) return not_kept(groups.error().message);
+    if (!groups) return groups;
+    s.seconds["light_groups"] = watch.seconds();
+    s.figures["light_groups"] = static_cast<double>(groups->groups.size());
+    s.figures["light_group_bytes"] = static_cast<double>(groups->light_bytes());
+    s.figures["repaint_bytes"] = static_cast<double>(groups->repaint_bytes());
+    s.figures["repaint_rays"] = static_cast<double>(groups->met.size());
+    return groups;
+}
+
+Error no_light_groups(const std::string& solution_file) {
+    return {ErrorCode::usage, "keeps no light groups", solution_file,
+            "exitance solve SCENE --light-groups -o S.h5 keeps those of a scene that has lamps"};
+}
+
+}  // namespace exitance

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include "exitance/cli/solve/kept_groups.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/textures/scene_textures.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+
+namespace exitance {
+namespace {
+
+/// The names of the light groups of a solution, each of which has its own maps from now on.
+Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, const Solution& whole,
+                                             const LightGroups& groups, const BakeOptions& options,
+                                             Progress& progress) {
+    std::vector<std::string> names;
+    for (const LightGroup& group : groups.groups) {
+        Solution solution = whole;
+        LightGroups dimmed = groups;
+        LightChange change;
+        for (const LightGroup& other : groups.groups)
+            change.dim.emplace_back(other.emitters.name, &other == &group ? 1 : 0);
+        if (const Result<void> changed = change_light(solution, dimmed, change); !changed) return changed.error();
+        progress.phase("group " + group.emitters.name);
+        const Result<LightMaps> maps = bake_light_maps(RadiosityFunction(solution), options, progress, StopRequest());
+        if (!maps) return maps.error();
+        const Result<void> written =
+            write_group_light_maps(solution.scene, *maps, names.size(), arguments.format, arguments.output);
+        if (!written) return written.error();
+        names.push_back(group.emitters.name);
+    }
+    return names;
+}
+
+}  // namespace
+
+/// exitance bake SOLUTION -o FOLDER
+ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
+    const StopRequest stop;  // signals end the program at once: files are whole, and lightmaps.json is the last
+    set_threads(arguments.threads);
+    LightGroups groups;
+    const Result<Solution> solution =
+        load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr);
+    if (!solution) return terminal.fail(solution.error());
+    if (arguments.light_groups && groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
+    const RadiosityFunction light(*solution);
+    const Stopwatch watch;
+    BakeOptions options;
+    options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
+    const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
+    if (!maps) return terminal.fail(maps.error());
+    options.density = maps->density;  // all groups have the same charts
+    const Result<std::vector<std::string>> names =
+        bake_groups(arguments, *solution, groups, options, terminal.progress());
+    terminal.progress().finish();
+    if (!names) return terminal.fail(names.error());
+    LightMapFormat format = arguments.format;
+    const std::string scene_file = solution->scene.file();
+    format.scene_file = find_scene_file(solution->scene, arguments.solution);
+    if (format.scene_file.empty() && (ending(scene_file) == ".glb" || ending(scene_file) == ".gltf"))
+        terminal.note(fmt::format("{} is not there: scene.glb goes without its textures", scene_file));
+    const Result<void> written = write_light_maps(*solution, *maps, format, *names, arguments.output);
+    if (!written) return terminal.fail(written.error());
+    std::string sizes;
+    for (const LightMap& map : maps->maps)
+        sizes += fmt::format("{}{} x {}", sizes.empty() ? "" : ", ", map.size.width, map.size.height);
+    terminal.note(fmt::format("{} texels on surfaces at {} per metre, in {} {} ({}); {:.1f} s", maps->texels,
+                              maps->density, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps", sizes,
+                              watch.seconds()));
+    return ExitCode::done;
+}
+
+}  // namespace exitance

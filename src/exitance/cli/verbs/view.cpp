@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <future>
+#include <thread>
+
+#include "exitance/cli/json_output.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/cli/view/view_changes.hpp"
+#include "exitance/cli/view/view_events.hpp"
+#include "exitance/cli/view/view_frames.hpp"
+#include "exitance/cli/view/view_words.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/export/viewer_data.hpp"
+#include "exitance/io/export/viewer_part.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/methods/solve_scene.hpp"
+#include "exitance/reconstruct/pictures/automatic_camera.hpp"
+
+namespace exitance {
+namespace {
+
+using Parameters = ViewServer::Parameters;
+
+/// A solution that the page looks at, and what is made of it once. What points, lines and exact pictures need is made
+/// while the first elements are on their way.
+class Viewed {
+  public:
+    explicit Viewed(Solution found)
+        : solution(std::move(found)),
+          light_(begun()),
+          camera(automatic_camera(solution, RayTracer(solution.scene), Projection::perspective, {})) {}
+    /// Seen as another one is.
+    Viewed(Solution found, const Camera& as_before) : solution(std::move(found)), light_(begun()), camera(as_before) {}
+    Viewed(const Viewed&) = delete;
+    Viewed& operator=(const Viewed&) = delete;
+
+    const RadiosityFunction& light() const { return *light_.get(); }
+
+    const Solution solution;
+
+  private:
+    std::shared_future<std::unique_ptr<const RadiosityFunction>> begun() const {
+        return std::async(std::launch::async, [this] { return std::make_unique<const RadiosityFunction>(solution); });
+    }
+    std::shared_future<std::unique_ptr<const RadiosityFunction>> light_;
+
+  public:
+    const Camera camera;
+};
+
+/// All solutions that were there, the newest last: requests under way go on with theirs.
+class Gallery {
+  public:
+    std::size_t add(Solution solution) {
+        auto fresh = std::make_unique<Viewed>(std::move(solution));
+        const std::lock_guard lock(mutex_);
+        all_.push_back(std::move(fresh));
+        return all_.size();
+    }
+    const Viewed* newest() const {
+        const std::lock_guard lock(mutex_);
+        return all_.empty() ? nullptr : all_.back().get();
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::deque<std::unique_ptr<Viewed>> all_;
+};
+
+/// Requests that read the newest solution, dimmed and repainted as they say.
+void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames, ViewChanges<Viewed>& changes) {
+    const auto with_light = [&gallery, &changes](auto answer) {
+        return [&gallery, &changes, answer](const Parameters& parameters) -> ViewAnswer {
+            const Viewed* viewed = gallery.newest();
+            if (!viewed) return view_absent;
+            if (!changes.are_asked_for(parameters)) return answer(*viewed, parameters);
+            const auto changed = changes.find(*viewed, parameters);
+            return changed ? answer(**changed, parameters)
+                           : ViewAnswer{400, "text/plain", changed.error().message + " " + changed.error().hint};
+        };
+    };
+    server.get("/groups", with_light([&changes](const Viewed& v, const Parameters&) {
+                   return ViewAnswer{200, "application/json", light_groups_json(changes.groups(), v.solution.scene)};
+               }));
+    server.get("/data/scene", with_light([](const Viewed& v, const Parameters&) {
+                   return ViewAnswer{200, "application/json", viewer_scene_json(v.solution, v.camera)};
+               }));
+    server.get("/data/part", with_light([](const Viewed& v, const Parameters& parameters) {
+                   const std::string name = view_text(parameters, "layer");
+                   const auto part = view_numbers(parameters, "part", 1);
+                   ViewerLayer layer{};
+                   if (!find_viewer_layer(name, layer) || !part || (*part)[0] < 0 ||
+                       (*part)[0] >= static_cast<double>(viewer_part_count(v.solution, layer)))
+                       return view_misunderstood;
+                   const auto number = static_cast<std::size_t>((*part)[0]);
+                   const RadiosityFunction* light = layer == ViewerLayer::raw ? &v.light() : nullptr;
+                   return ViewAnswer{200, "application/octet-stream",
+                                     view_text(parameters, "only") == "light"
+                                         ? viewer_part_light(v.solution, layer, number, light)
+                                         : viewer_part(v.solution, layer, number, light)};
+               }));
+    server.get("/data/frame", with_light([&frames](const Viewed& v, const Parameters& parameters) {
+                   return frames.take(v.light(), parameters);
+               }));
+    server.get("/data/point", with_light([](const Viewed& v, const Parameters& parameters) {
+                   const auto at = view_numbers(parameters, "at", 6);
+                   if (!at) return view_misunderstood;
+                   const std::vector<double>& n = *at;
+                   const Vec3 normal{n[3], n[4], n[5]};
+                   if (!(norm(normal) > 0)) return view_misunderstood;
+                   return ViewAnswer{200, "application/json",
+                                     viewer_point_json(v.light(), {{n[0], n[1], n[2]}, normalized(normal)})};
+               }));
+    server.get("/data/line", with_light([](const Viewed& v, const Parameters& parameters) {
+                   constexpr std::size_t points = 129;
+                   const auto at = view_numbers(parameters, "at", 9);
+                   if (!at) return view_misunderstood;
+                   const std::vector<double>& n = *at;
+                   const Vec3 normal{n[6], n[7], n[8]};
+                   if (!(norm(normal) > 0)) return view_misunderstood;
+                   return ViewAnswer{
+                       200, "application/json",
+                       viewer_line_json(v.light(), {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, normalized(normal), points)};
+               }));
+}
+
+/// A solve that shows its light as it converges: rounds of falling error, each a solution that can be looked at.
+class RunningSolve {
+  public:
+    RunningSolve(const ViewArguments& arguments, Scene scene, Gallery& gallery, Terminal& terminal)
+        : arguments_(arguments), scene_(std::move(scene)), gallery_(gallery), progress_(events_, terminal.progress()) {}
+
+    void serve(ViewServer& server) {
+        server.events("/data/events",
+                      [this](std::size_t& next, std::string& text) { return events_.wait(next, text); });
+        server.post("/data/stop", [this](const Parameters&) {
+            stop_.interrupt();
+            return ViewAnswer{200, "text/plain", "stopping"};
+        });
+        server.post("/data/save", [this](const Parameters&) { return save(); });
+    }
+
+    void run() {
+        constexpr double coarse = 0.32, ratio = 0.4;  // a round takes several times as long as the one before
+        std::string message = "done";
+        for (double error = std::max(coarse, arguments_.error); !stop_.requested(); error *= ratio) {
+            SolveOptions options = arguments_.options;
+            options.error = std::max(error, arguments_.error);
+            progress_.set_round(fmt::format("to {:.3g}%: ", 100 * *options.error));
+            Result<Solution> solution = solve_scene(scene_, options, progress_, stop_);
+            if (!solution) {
+                message = solution.error().message;
+                break;
+            }
+            if (stop_.requested() && !solution->statistics.relative_error_estimate && gallery_.newest()) break;
+            solution->options = options_json(options);
+            const std::size_t count = gallery_.add(std::move(*solution));
+            events_.tell("light", fmt::format(R"({{"count": {}}})", count));
+            if (*options.error <= arguments_.error) break;
+        }
+        std::replace_if(
+            message.begin(), message.end(), [](char c) { return c == '"' || c == '\\' || (c >= 0 && c < ' '); }, '\'');
+        events_.end(fmt::format(R"({{"message": "{}"}})", stop_.requested() ? "stopped" : message));
+    }
+
+  private:
+    ViewAnswer save() {
+        const Viewed* viewed = gallery_.newest();
+        if (!viewed) return view_absent;
+        const Result<void> written = write_solution(arguments_.save, viewed->solution);
+        if (!written) return {500, "text/plain", written.error().message};
+        return {200, "text/plain", "saved as " + arguments_.save};
+    }
+
+    const ViewArguments& arguments_;
+    Scene scene_;
+    Gallery& gallery_;
+    ViewEvents events_;
+    ViewProgress progress_;
+    StopRequest stop_;
+};
+
+/// Listens, tells where, and answers until a signal ends the program.
+ExitCode serve(ViewServer& server, const ViewArguments& arguments, RunningSolve* running, Terminal& terminal) {
+    const Result<int> port = server.bind(arguments.port);
+    if (!port) return terminal.fail(port.error());
+    terminal.print(fmt::format("http://127.0.0.1:{}/", *port));
+    std::fflush(stdout);
+    terminal.note(fmt::format("open http://127.0.0.1:{}/ in a browser; Ctrl+C ends the viewer", *port));
+    std::jthread solver;
+    if (running) solver = std::jthread([running] { running->run(); });
+    server.listen();
+    return ExitCode::done;
+}
+
+}  // namespace
+
+/// exitance view SOLUTION, exitance view SCENE
+ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
+    const Result<std::string> page = find_viewer_page();
+    if (!page) return terminal.fail(page.error());
+    set_threads(arguments.options.threads);
+    Gallery gallery;
+    ViewFrames frames;
+    ViewServer server;
+    if (const Result<void> read = server.serve_page(*page); !read) return terminal.fail(read.error());
+    LightGroups groups;
+    const bool solves = arguments.scene.files.size() > 1 || !arguments.scene.files[0].ends_with(".h5");
+    server.get("/data/state", [solves](const Parameters&) {
+        return ViewAnswer{200, "application/json", solves ? R"({"solving": true})" : R"({"solving": false})"};
+    });
+    if (!solves) {
+        Result<Solution> solution = load_solution(arguments.scene.files[0], Rehearsed::not_yet, &groups);
+        if (!solution) return terminal.fail(solution.error());
+        gallery.add(std::move(*solution));
+        ViewChanges<Viewed> changes(std::move(groups));
+        serve_light(server, gallery, frames, changes);
+        return serve(server, arguments, nullptr, terminal);
+    }
+    ViewChanges<Viewed> changes(std::move(groups));
+    serve_light(server, gallery, frames, changes);
+    CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
+    terminal.show(checked.findings);
+    if (!checked.scene) return terminal.fail(checked);
+    RunningSolve running(arguments, std::move(*checked.scene), gallery, terminal);
+    running.serve(server);
+    return serve(server, arguments, &running, terminal);
+}
+
+}  // namespace exitance

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "exitance/cli/view/view_words.hpp"
+#include "exitance/methods/light_groups/light_groups.hpp"
+
+namespace exitance {
+
+/// Reads `dim=NAME:FACTOR,...` and `paint=MATERIAL:r/g/b,...` of a request. Error: usage.
+Result<LightChange> read_light_change(const ViewServer::Parameters& parameters);
+
+/// A solution under other light than it was solved with, as requests ask for it: the last few are kept, since a page
+/// asks for one part of its elements after the other.
+template <class Viewed>
+class ViewChanges {
+  public:
+    explicit ViewChanges(LightGroups groups) : groups_(std::move(groups)) {}
+
+    const LightGroups& groups() const { return groups_; }
+    bool are_asked_for(const ViewServer::Parameters& parameters) const {
+        return !view_text(parameters, "dim").empty() || !view_text(parameters, "paint").empty();
+    }
+
+    /// What `base` becomes. Requests that come at once wait for one another.
+    Result<std::shared_ptr<const Viewed>> find(const Viewed& base, const ViewServer::Parameters& parameters) {
+        const std::string words = view_text(parameters, "dim") + "\n" + view_text(parameters, "paint");
+        const std::lock_guard lock(mutex_);
+        for (const auto& [of, viewed] : kept_)
+            if (of == words) return viewed;
+        const Result<LightChange> change = read_light_change(parameters);
+        if (!change) return change.error();
+        LightGroups groups = groups_;
+        Solution solution = base.solution;
+        if (const Result<void> changed = change_light(solution, groups, *change); !changed) return changed.error();
+        if (groups_.node.empty()) groups_.node = std::move(groups.node), groups_.node_count = groups.node_count;
+        auto viewed = std::make_shared<const Viewed>(std::move(solution), base.camera);
+        kept_.emplace_back(words, viewed);
+        if (kept_.size() > most_kept) kept_.erase(kept_.begin());
+        return std::shared_ptr<const Viewed>(viewed);
+    }
+
+  private:
+    static constexpr std::size_t most_kept = 3;
+    LightGroups groups_;
+    std::mutex mutex_;
+    std::vector<std::pair<std::string, std::shared_ptr<const Viewed>>> kept_;
+};
+
+}  // namespace exitance

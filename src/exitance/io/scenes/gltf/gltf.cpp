@@ -1,0 +1,477 @@
+// The one door to tinygltf: it parses the JSON, base64 and the container; what it says about its data is believed only
+// after it has been checked here.
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "exitance/io/files/text_lines.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/gltf/gltf_accessor.hpp"
+#include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/io/scenes/gltf/json_shape.hpp"
+#include "exitance/io/scenes/textures/texture_mean.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::array known_extensions = {"KHR_lights_punctual",      "KHR_materials_emissive_strength",
+                                         "KHR_texture_transform",    "KHR_mesh_quantization",
+                                         "KHR_materials_unlit",      "KHR_materials_ior",
+                                         "KHR_materials_specular",   "KHR_materials_clearcoat",
+                                         "KHR_materials_sheen",      "KHR_materials_iridescence",
+                                         "KHR_materials_anisotropy", "KHR_materials_variants",
+                                         "KHR_materials_dispersion"};
+
+/// Files beside the scene, and how many bytes of them there may be in all.
+struct Folder {
+    std::string path;
+    std::uint64_t bytes_left = std::uint64_t(4) << 30;
+};
+
+/// tinygltf also looks into the current folder, where the file's neighbours are not.
+bool exists(const std::string& path, void* user) {
+    const auto& folder = *static_cast<Folder*>(user);
+    std::error_code ignored;
+    return path.starts_with(folder.path) && std::filesystem::is_regular_file(path, ignored);
+}
+std::string as_it_is(const std::string& path, void*) {
+    return path;
+}
+bool read_bytes(std::vector<unsigned char>* out, std::string* error, const std::string& path, void* user) {
+    auto& folder = *static_cast<Folder*>(user);
+    std::error_code ignored;
+    const auto size = std::filesystem::file_size(path, ignored);
+    if (ignored || size > folder.bytes_left) return error->append("is too large"), false;
+    folder.bytes_left -= size;
+    const Result<std::string> text = read_whole_file(path);
+    if (!text) return *error = text.error().message, false;
+    out->assign(text->begin(), text->end());
+    return true;
+}
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+    return false;
+}
+/// Pictures are decoded later, if at all. Those in buffers are left there: their place has not been checked yet.
+bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                  int size, void*) {
+    if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
+    return true;
+}
+
+class GltfReader {
+  public:
+    GltfReader(const std::string& path, std::vector<Finding>& findings, bool with_textures)
+        : path_(path), findings_(findings), with_textures_(with_textures) {}
+    Result<GltfModel> read();
+
+  private:
+    std::optional<Error> parse(const std::string& bytes);
+    bool check_extensions();
+    bool read_meshes();
+    bool read_primitive(const tinygltf::Primitive& in, const std::string& mesh, GltfModel::Mesh& out);
+    void read_materials();
+    GltfModel::Colour texture_mean(int texture, const ByteCurve& decode, const std::string& material);
+    std::optional<std::span<const std::uint8_t>> view_bytes(int view) const;
+    bool rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out);
+    GltfAccessor accessor_of(const tinygltf::Accessor& in) const;
+    void read_views_and_lamps();
+    void read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out);
+    GltfModel::TextureUse texture_use(int index, int place_set, const tinygltf::ExtensionMap& extensions) const;
+    void read_pictures();
+    bool read_nodes();
+    bool read_node(const tinygltf::Node& in, std::size_t number);
+
+    bool error(std::string message, std::string hint = "") {
+        findings_.push_back({Finding::Kind::error, path_, 0, std::move(message), std::move(hint)});
+        return false;
+    }
+    void warn(std::string message, std::string hint = "") {
+        findings_.push_back({Finding::Kind::warning, path_, 0, std::move(message), std::move(hint)});
+    }
+    static std::string name_or(const std::string& name, const char* kind, std::size_t number) {
+        return name.empty() ? fmt::format("{} {}", kind, number) : name;
+    }
+    template <class List>
+    static bool names_one(int index, const List& list) {
+        return index >= 0 && static_cast<std::size_t>(index) < list.size();
+    }
+
+    const std::string& path_;
+    std::vector<Finding>& findings_;
+    bool with_textures_;
+    tinygltf::Model in_;
+    GltfModel out_;
+    std::optional<GltfAccessorCheck> accessors_;
+};
+
+std::optional<Error> GltfReader::parse(const std::string& bytes) {
+    const auto bad = [&](std::string message, std::string hint = "") {
+        return Error{ErrorCode::bad_input, std::move(message), path_, std::move(hint)};
+    };
+    constexpr std::size_t header = 20;
+    const bool binary = bytes.starts_with("glTF");
+    std::string_view json = bytes;
+    if (bytes.size() >= (std::uint64_t(1) << 32)) return bad("is of 4 GiB or more, which glTF does not allow");
+    if (binary) {
+        std::uint32_t length = 0, version = 0;
+        if (bytes.size() < header) return bad("ends within its header");
+        std::memcpy(&version, bytes.data() + 4, 4), std::memcpy(&length, bytes.data() + 12, 4);
+        if (version != 2) return bad(fmt::format("is a binary glTF of version {}; version 2 is read", version));
+        if (length > bytes.size() - header)
+            return bad(fmt::format("has a JSON chunk of {} bytes, of {} left", length, bytes.size() - header));
+        json = json.substr(header, length);
+    }
+    const JsonShape shape = shape_of_json(json);
+    if (shape.depth > 100) return bad(fmt::format("has JSON nested {} deep", shape.depth));
+    if (binary && shape.buffers * (bytes.size() - header - json.size()) > 4 * bytes.size() + (std::size_t(32) << 20))
+        return bad(fmt::format("has {} buffers", shape.buffers));
+
+    Folder folder{std::filesystem::path(path_).parent_path().string()};
+    if (folder.path.empty()) folder.path.assign(1, '.');
+    std::string problem, remark;
+    bool done = false;
+    try {
+        tinygltf::TinyGLTF loader;
+        loader.SetFsCallbacks({exists, as_it_is, read_bytes, write_nothing, &folder});
+        loader.SetImageLoader(keep_picture, nullptr);
+        const auto size = static_cast<unsigned>(bytes.size());
+        done = binary ? loader.LoadBinaryFromMemory(&in_, &problem, &remark,
+                                                    reinterpret_cast<const unsigned char*>(bytes.data()), size,
+                                                    folder.path)
+                      : loader.LoadASCIIFromString(&in_, &problem, &remark, bytes.data(), size, folder.path);
+    } catch (const std::exception& e) {
+        done = false, problem = e.what();
+    }
+    // Compressed meshes have accessors without data, over which the reader falls first.
+    if (!done && bytes.find("KHR_draco_mesh_compression") != bytes.npos)
+        return bad("has meshes that are compressed (Draco), which is not read", "export it again without compression");
+    if (!done) {
+        const std::string first = problem.substr(0, problem.find('\n'));
+        return bad(first.empty() ? "is no glTF" : fmt::format("cannot be read as glTF: {}", shown(first)),
+                   first.starts_with("File not found") ? "put the files that it names beside it" : "");
+    }
+    if (!in_.asset.version.starts_with("2"))
+        return bad(fmt::format("is glTF of version '{}'; version 2 is read", shown(in_.asset.version)));
+    return std::nullopt;
+}
+
+bool GltfReader::check_extensions() {
+    for (const std::string& name : in_.extensionsRequired)
+        if (std::find(known_extensions.begin(), known_extensions.end(), name) == known_extensions.end())
+            return error(fmt::format("needs the extension '{}', which is not read", shown(name)),
+                         "export it again without (compression and instancing are switched off there)");
+    return true;
+}
+
+/// The bytes of a buffer view, if they are all there.
+std::optional<std::span<const std::uint8_t>> GltfReader::view_bytes(int view) const {
+    if (!names_one(view, in_.bufferViews)) return std::nullopt;
+    const tinygltf::BufferView& v = in_.bufferViews[static_cast<std::size_t>(view)];
+    if (!names_one(v.buffer, in_.buffers)) return std::nullopt;
+    const std::vector<unsigned char>& bytes = in_.buffers[static_cast<std::size_t>(v.buffer)].data;
+    if (v.byteOffset > bytes.size() || v.byteLength > bytes.size() - v.byteOffset) return std::nullopt;
+    return std::span(bytes).subspan(v.byteOffset, v.byteLength);
+}
+
+/// What an accessor says about itself.
+GltfAccessor GltfReader::accessor_of(const tinygltf::Accessor& in) const {
+    GltfAccessor a;
+    a.component = in.componentType, a.count = in.count, a.normalized = in.normalized;
+    a.view = in.bufferView, a.first = in.byteOffset;
+    a.bytes = view_bytes(in.bufferView);
+    if (a.bytes) a.stride = in_.bufferViews[static_cast<std::size_t>(in.bufferView)].byteStride;
+    if (in.sparse.isSparse) {
+        const auto& places = in.sparse.indices;
+        const auto& values = in.sparse.values;
+        a.sparse = GltfAccessor::Sparse{
+            in.sparse.count,   places.componentType, view_bytes(places.bufferView), view_bytes(values.bufferView),
+            places.byteOffset, values.byteOffset};
+    }
+    return a;
+}
+
+/// What an accessor holds; false, with an error that calls it `what`, unless all of it is there.
+bool GltfReader::rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out) {
+    if (!names_one(accessor, in_.accessors))
+        return error(fmt::format("{} name accessor {} of {}", what, accessor, in_.accessors.size()));
+    const tinygltf::Accessor& in = in_.accessors[static_cast<std::size_t>(accessor)];
+    if (in.type != type) return error(fmt::format("{} are not of the type that is expected there", what));
+    const Result<GltfRows> held = accessors_->rows(accessor_of(in), is_index ? 1 : 3, is_index, what);
+    if (!held) return error(held.error().message);
+    out = *held;
+    return true;
+}
+
+bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string& mesh, GltfModel::Mesh& out) {
+    GltfModel::Primitive p;
+    switch (in.mode) {
+        case TINYGLTF_MODE_POINTS:
+        case TINYGLTF_MODE_LINE:
+        case TINYGLTF_MODE_LINE_LOOP:
+        case TINYGLTF_MODE_LINE_STRIP:
+            return true;  // without area
+        case TINYGLTF_MODE_TRIANGLE_STRIP:
+            p.mode = GltfModel::Mode::strip;
+            break;
+        case TINYGLTF_MODE_TRIANGLE_FAN:
+            p.mode = GltfModel::Mode::fan;
+            break;
+        case -1:
+        case TINYGLTF_MODE_TRIANGLES:
+            break;
+        default:
+            return error(fmt::format("mesh '{}' is drawn in mode {}, which does not exist", mesh, in.mode));
+    }
+    for (const auto& [name, value] : in.extensions)
+        if (name == "KHR_draco_mesh_compression")
+            return error(fmt::format("mesh '{}' is compressed (Draco), which is not read", mesh),
+                         "export it again without compression");
+    const auto position = in.attributes.find("POSITION");
+    if (position == in.attributes.end()) return true;  // the specification has such primitives passed over
+    p.accessor = position->second;
+    if (!rows(p.accessor, TINYGLTF_TYPE_VEC3, false, fmt::format("positions of mesh '{}'", mesh), p.positions))
+        return false;
+    p.has_indices = in.indices >= 0;
+    if (p.has_indices &&
+        !rows(in.indices, TINYGLTF_TYPE_SCALAR, true, fmt::format("indices of mesh '{}'", mesh), p.indices))
+        return false;
+    if (in.material >= 0 && !names_one(in.material, in_.materials))
+        return error(fmt::format("mesh '{}' has material {} of {}", mesh, in.material, in_.materials.size()));
+    p.material = in.material;
+    if (with_textures_) read_places(in, p);
+    out.primitives.push_back(p);
+    return true;
+}
+
+double number_in(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key, double otherwise) {
+    const auto found = extensions.find(extension);
+    if (found == extensions.end() || !found->second.IsObject() || !found->second.Has(key)) return otherwise;
+    const tinygltf::Value& value = found->second.Get(key);
+    return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+}
+
+void GltfReader::read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
+    for (std::size_t set = 0; set < out.places.size(); ++set) {
+        const auto found = in.attributes.find(fmt::format("TEXCOORD_{}", set));
+        if (found == in.attributes.end() || !names_one(found->second, in_.accessors)) continue;
+        const tinygltf::Accessor& accessor = in_.accessors[static_cast<std::size_t>(found->second)];
+        if (accessor.type != TINYGLTF_TYPE_VEC2) continue;
+        const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), 2, false, "places");
+        if (held && held->size() >= out.positions.size()) out.places[set] = *held;
+    }
+}
+
+GltfModel::TextureUse GltfReader::texture_use(int index, int place_set,
+                                              const tinygltf::ExtensionMap& extensions) const {
+    GltfModel::TextureUse out;
+    if (!names_one(index, in_.textures) || (place_set != 0 && place_set != 1)) return out;
+    const tinygltf::Texture& texture = in_.textures[static_cast<std::size_t>(index)];
+    if (!names_one(texture.source, in_.images)) return out;
+    out.picture = texture.source, out.place_set = place_set;
+    if (names_one(texture.sampler, in_.samplers)) {
+        const tinygltf::Sampler& sampler = in_.samplers[static_cast<std::size_t>(texture.sampler)];
+        out.wrap_s = sampler.wrapS, out.wrap_t = sampler.wrapT;
+    }
+    const auto found = extensions.find("KHR_texture_transform");
+    if (found == extensions.end() || !found->second.IsObject()) return out;
+    const auto pair = [&](const char* key, double otherwise) {
+        std::array<double, 2> value{otherwise, otherwise};
+        if (!found->second.Has(key) || found->second.Get(key).ArrayLen() != 2) return value;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const tinygltf::Value& number = found->second.Get(key).Get(k);
+            if (number.IsNumber()) value[k] = number.GetNumberAsDouble();
+        }
+        return value;
+    };
+    const auto offset = pair("offset", 0), scale = pair("scale", 1);
+    const double turn = number_in(extensions, "KHR_texture_transform", "rotation", 0);
+    const double c = std::cos(turn), s = std::sin(turn);
+    out.transform = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    const double set = number_in(extensions, "KHR_texture_transform", "texCoord", out.place_set);
+    if (set == 0 || set == 1) out.place_set = static_cast<int>(set);
+    return out;
+}
+
+/// Pictures stay where they are in buffers; those beside the file move to the model.
+void GltfReader::read_pictures() {
+    for (tinygltf::Image& image : in_.images) {
+        if (image.bufferView >= 0) {
+            out_.pictures.push_back(view_bytes(image.bufferView).value_or(std::span<const std::uint8_t>()));
+            continue;
+        }
+        out_.bytes.push_back(std::move(image.image));
+        out_.pictures.push_back(out_.bytes.back());
+    }
+}
+
+bool GltfReader::read_meshes() {
+    for (std::size_t i = 0; i < in_.meshes.size(); ++i) {
+        GltfModel::Mesh mesh{name_or(shown(in_.meshes[i].name), "mesh", i), {}};
+        for (const tinygltf::Primitive& primitive : in_.meshes[i].primitives)
+            if (!read_primitive(primitive, mesh.name, mesh)) return false;
+        out_.meshes.push_back(std::move(mesh));
+    }
+    return true;
+}
+
+/// The mean of a texture's picture; white, with a warning, where it cannot be read.
+GltfModel::Colour GltfReader::texture_mean(int texture, const ByteCurve& decode, const std::string& material) {
+    const auto unread = [&](const std::string& why) {
+        warn(fmt::format("a texture of material '{}' {}: it counts as white", material, why));
+        return GltfModel::Colour{1, 1, 1};
+    };
+    if (texture < 0) return {1, 1, 1};
+    if (!names_one(texture, in_.textures)) return unread("is not there");
+    const int source = in_.textures[static_cast<std::size_t>(texture)].source;
+    if (!names_one(source, in_.images)) return unread("has no picture");
+    const tinygltf::Image& image = in_.images[static_cast<std::size_t>(source)];
+    std::span<const std::uint8_t> bytes = image.image;
+    if (image.bufferView >= 0) {
+        const auto held = view_bytes(image.bufferView);
+        if (!held) return unread("lies in bytes that are not there");
+        bytes = *held;
+    } else if (bytes.empty()) {
+        return unread(fmt::format("('{}') cannot be found or read", shown(image.uri)));
+    }
+    const Result<std::array<double, 3>> mean = mean_colour(bytes, decode);
+    if (!mean) return unread(mean.error().message);
+    return {(*mean)[0], (*mean)[1], (*mean)[2]};
+}
+
+GltfModel::Colour colour_of(const std::vector<double>& factor, double otherwise) {
+    if (factor.size() < 3) return {otherwise, otherwise, otherwise};
+    return {factor[0], factor[1], factor[2]};
+}
+
+GltfModel::Colour times(const GltfModel::Colour& a, const GltfModel::Colour& b, double s = 1) {
+    return {s * a.r * b.r, s * a.g * b.g, s * a.b * b.b};
+}
+
+void GltfReader::read_materials() {
+    for (std::size_t i = 0; i < in_.materials.size(); ++i) {
+        const tinygltf::Material& in = in_.materials[i];
+        const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
+        GltfModel::Material m;
+        m.name = name_or(shown(in.name), "material", i);
+        m.base =
+            times(colour_of(pbr.baseColorFactor, 1), texture_mean(pbr.baseColorTexture.index, srgb_curve(), m.name));
+        m.metallic = pbr.metallicFactor;
+        if (m.metallic > 0)  // metalness is the texture's blue
+            m.metallic *= texture_mean(pbr.metallicRoughnessTexture.index, linear_curve(), m.name).b;
+        const double strength = number_in(in.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
+        m.emission = times(colour_of(in.emissiveFactor, 0), {1, 1, 1}, strength);
+        if (m.emission.r != 0 || m.emission.g != 0 || m.emission.b != 0)
+            m.emission = times(m.emission, texture_mean(in.emissiveTexture.index, srgb_curve(), m.name));
+        m.double_sided = in.doubleSided;
+        if (with_textures_) {
+            const tinygltf::TextureInfo &base = pbr.baseColorTexture, &glow = in.emissiveTexture;
+            m.base_texture = texture_use(base.index, base.texCoord, base.extensions);
+            m.emission_texture = texture_use(glow.index, glow.texCoord, glow.extensions);
+        }
+        m.transmission = number_in(in.extensions, "KHR_materials_transmission", "transmissionFactor", 0);
+        m.diffuse_transmission =
+            number_in(in.extensions, "KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0);
+        m.transparent = in.alphaMode == "BLEND" || in.alphaMode == "MASK";
+        out_.materials.push_back(std::move(m));
+    }
+}
+
+void GltfReader::read_views_and_lamps() {
+    for (std::size_t i = 0; i < in_.cameras.size(); ++i) {
+        const tinygltf::Camera& in = in_.cameras[i];
+        GltfModel::View view{name_or(shown(in.name), "camera", i), in.perspective.yfov, in.perspective.aspectRatio, 0};
+        if (in.type == "orthographic") view.xmag = std::abs(in.orthographic.xmag);
+        out_.views.push_back(std::move(view));
+    }
+    for (std::size_t i = 0; i < in_.lights.size(); ++i) {
+        const tinygltf::Light& in = in_.lights[i];
+        GltfModel::Lamp lamp;
+        lamp.name = name_or(shown(in.name), "light", i);
+        lamp.kind = in.type == "spot"          ? PunctualLight::Kind::spot
+                    : in.type == "directional" ? PunctualLight::Kind::directional
+                                               : PunctualLight::Kind::point;
+        lamp.intensity = times(colour_of(in.color, 1), {1, 1, 1}, in.intensity);
+        if (lamp.kind == PunctualLight::Kind::spot)
+            lamp.inner_cone = in.spot.innerConeAngle, lamp.outer_cone = in.spot.outerConeAngle;
+        lamp.has_range = in.range > 0;
+        out_.lamps.push_back(std::move(lamp));
+    }
+}
+
+bool GltfReader::read_node(const tinygltf::Node& in, std::size_t number) {
+    GltfModel::Node node;
+    node.name = shown(in.name);
+    const std::optional<Affine> transform = gltf_transform(in.matrix, in.rotation, in.scale, in.translation);
+    if (!transform) return error(fmt::format("node {} ('{}') has a transform that is none", number, node.name));
+    node.to_parent = *transform;
+    const double lamp = number_in(in.extensions, "KHR_lights_punctual", "light", -1);
+    if ((in.mesh >= 0 && !names_one(in.mesh, out_.meshes)) || (in.camera >= 0 && !names_one(in.camera, out_.views)) ||
+        !(lamp < static_cast<double>(out_.lamps.size())))
+        return error(fmt::format("node {} ('{}') names a mesh, camera or light that is not there", number, node.name));
+    node.mesh = in.mesh, node.view = in.camera, node.lamp = lamp < 0 ? -1 : static_cast<int>(lamp);
+    node.is_deformed = in.skin >= 0 || !in.weights.empty();
+    for (const int child : in.children) {
+        if (!names_one(child, in_.nodes))
+            return error(
+                fmt::format("node {} ('{}') has child {} of {} nodes", number, node.name, child, in_.nodes.size()));
+        node.children.push_back(child);
+    }
+    if (in.extensions.count("EXT_mesh_gpu_instancing") > 0)
+        return error(fmt::format("node {} ('{}') has instances in a buffer, which are not read", number, node.name),
+                     "export it again with a node an instance");
+    out_.nodes.push_back(std::move(node));
+    return true;
+}
+
+bool GltfReader::read_nodes() {
+    for (std::size_t i = 0; i < in_.nodes.size(); ++i)
+        if (!read_node(in_.nodes[i], i)) return false;
+    if (!in_.scenes.empty()) {
+        const int scene = names_one(in_.defaultScene, in_.scenes) ? in_.defaultScene : 0;
+        for (const int root : in_.scenes[static_cast<std::size_t>(scene)].nodes) {
+            if (!names_one(root, in_.nodes))
+                return error(fmt::format("the scene has node {} of {}", root, in_.nodes.size()));
+            out_.roots.push_back(root);
+        }
+        return true;
+    }
+    std::vector<bool> is_child(in_.nodes.size());
+    for (const GltfModel::Node& node : out_.nodes)
+        for (const int child : node.children) is_child[static_cast<std::size_t>(child)] = true;
+    for (std::size_t i = 0; i < is_child.size(); ++i)
+        if (!is_child[i]) out_.roots.push_back(static_cast<int>(i));
+    return !out_.roots.empty() || in_.nodes.empty() || error("every node hangs in another one: none is a root");
+}
+
+Result<GltfModel> GltfReader::read() {
+    std::uint64_t file_bytes = 0;
+    {
+        const Result<std::string> bytes = read_whole_file(path_);
+        if (!bytes) return bytes.error();
+        file_bytes = bytes->size();
+        if (std::optional<Error> refused = parse(*bytes)) return std::move(*refused);
+    }
+    for (const tinygltf::Buffer& buffer : in_.buffers)
+        file_bytes = std::max<std::uint64_t>(file_bytes, buffer.data.size());
+    accessors_.emplace(file_bytes, out_.bytes);
+    read_views_and_lamps();
+    if (check_extensions() && read_meshes()) {
+        read_materials();
+        read_nodes();
+        if (with_textures_) read_pictures();
+    }
+    for (tinygltf::Buffer& buffer : in_.buffers) out_.bytes.push_back(std::move(buffer.data));
+    return std::move(out_);
+}
+
+}  // namespace
+
+Result<GltfModel> load_gltf_model(const std::string& path, std::vector<Finding>& findings, bool with_textures) {
+    return GltfReader(path, findings, with_textures).read();
+}
+
+}  // namespace exitance

@@ -1,0 +1,77 @@
+#include "exitance/io/scenes/gltf/gltf_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+
+std::size_t GltfRows::bytes(Number number) {
+    switch (number) {
+        case Number::int8:
+        case Number::uint8:
+            return 1;
+        case Number::int16:
+        case Number::uint16:
+            return 2;
+        default:
+            return 4;
+    }
+}
+
+double GltfRows::at(std::size_t row, std::size_t k) const {
+    switch (number_) {
+        case Number::float32:
+            return static_cast<double>(value<float>(row, k));
+        case Number::uint32:
+            return value<std::uint32_t>(row, k);
+        case Number::int16: {
+            const double v = value<std::int16_t>(row, k);
+            return normalized_ ? std::max(v / 32767, -1.0) : v;
+        }
+        case Number::uint16:
+            return value<std::uint16_t>(row, k) / (normalized_ ? 65535.0 : 1.0);
+        case Number::int8: {
+            const double v = value<std::int8_t>(row, k);
+            return normalized_ ? std::max(v / 127, -1.0) : v;
+        }
+        case Number::uint8:
+            return value<std::uint8_t>(row, k) / (normalized_ ? 255.0 : 1.0);
+    }
+    return 0;
+}
+
+std::uint32_t GltfRows::index(std::size_t row) const {
+    switch (number_) {
+        case Number::uint8:
+            return value<std::uint8_t>(row, 0);
+        case Number::uint16:
+            return value<std::uint16_t>(row, 0);
+        default:
+            return value<std::uint32_t>(row, 0);
+    }
+}
+
+std::optional<Affine> gltf_transform(std::span<const double> matrix, std::span<const double> rotation,
+                                     std::span<const double> scale, std::span<const double> translation) {
+    Affine m;
+    if (matrix.size() == 16) {
+        const auto column = [&](std::size_t c) { return Vec3{matrix[4 * c], matrix[4 * c + 1], matrix[4 * c + 2]}; };
+        m = {column(0), column(1), column(2), column(3)};
+    } else {
+        if (rotation.size() == 4) {
+            double x = rotation[0], y = rotation[1], z = rotation[2], w = rotation[3];
+            const double length = std::sqrt(x * x + y * y + z * z + w * w);
+            if (!(length > 0)) return std::nullopt;
+            x /= length, y /= length, z /= length, w /= length;
+            m.x = {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)};
+            m.y = {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)};
+            m.z = {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
+        }
+        if (scale.size() == 3) m.x *= scale[0], m.y *= scale[1], m.z *= scale[2];
+        if (translation.size() == 3) m.origin = {translation[0], translation[1], translation[2]};
+    }
+    if (!is_finite(m.x) || !is_finite(m.y) || !is_finite(m.z) || !is_finite(m.origin)) return std::nullopt;
+    return m;
+}
+
+}  // namespace exitance

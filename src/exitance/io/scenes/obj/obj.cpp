@@ -1,0 +1,319 @@
+#include "exitance/io/scenes/obj/obj.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <unordered_map>
+
+#include "exitance/io/files/text_lines.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/obj/mtl.hpp"
+#include "exitance/io/scenes/textures/textured_faces.hpp"
+#include "exitance/scene/findings.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr const char* default_material = "default";
+constexpr long long most_points = 0xfffffffe;
+
+class ObjReader {
+  public:
+    ObjReader(const std::string& path, std::string_view text) : path_(path), lines_(text) {
+        out_.description.file = path;
+    }
+    ReadScene read();
+
+  private:
+    void read_point();
+    void read_place();
+    void read_face();
+    void add_place(std::string_view corner, std::vector<std::uint32_t>& out) const;
+    void read_libraries();
+    void read_library(std::string_view name);
+    void use_material(std::string_view name);
+    void use_group(std::string_view name);
+    void check_indices();
+    void resolve_materials();
+    void take_panes();
+    void take_textures();
+    std::vector<Vec2> places_of(std::size_t face) const;
+
+    void find(Finding::Kind kind, int line, std::string message, std::string hint = "") {
+        out_.findings.push_back({kind, path_, line, std::move(message), std::move(hint)});
+    }
+    void error(std::string message, std::string hint = "") {
+        find(Finding::Kind::error, lines_.number(), std::move(message), std::move(hint));
+    }
+
+    /// A material as 'usemtl' names it; what it means is known when all libraries are read.
+    struct Use {
+        std::string name;
+        int line;
+    };
+
+    const std::string& path_;
+    TextLines lines_;
+    ReadScene out_;
+    std::vector<Use> uses_;
+    std::unordered_map<std::string, std::uint32_t> use_of_, group_of_;
+    std::uint32_t use_ = 0, group_ = 0;
+    bool has_use_ = false, has_group_ = false, library_missing_ = false, has_library_ = false;
+    MtlExtras extras_;
+    std::vector<std::uint32_t> broken_;  ///< Points that could not be read, ascending.
+    std::vector<Vec2> places_;           ///< vt, with (0, 0) at a picture's upper left.
+    /// By face, its corners' places; none where it names none.
+    std::vector<std::vector<std::uint32_t>> places_of_face_;
+};
+
+ReadScene ObjReader::read() {
+    while (lines_.next()) {
+        const std::string_view key = lines_.word();
+        if (key == "v")
+            read_point();
+        else if (key == "vt")
+            read_place();
+        else if (key == "f" || key == "fo")
+            read_face();
+        else if (key == "usemtl")
+            use_material(lines_.rest());
+        else if (key == "g" || key == "o")
+            use_group(lines_.rest());
+        else if (key == "mtllib")
+            read_libraries();
+    }
+    check_indices();
+    resolve_materials();
+    return std::move(out_);
+}
+
+void ObjReader::read_point() {
+    auto& points = out_.description.points;
+    Point p;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string_view word = lines_.word();
+        const NumberKind kind = number_of_word(word, p[i]);
+        if (kind == NumberKind::finite) continue;
+        if (word.empty())
+            error(fmt::format("vertex has {} coordinates, not three", i));
+        else
+            error(fmt::format("coordinate '{}' is not a {}number", shown(word),
+                              kind == NumberKind::not_finite ? "finite " : ""),
+                  word.find(',') != word.npos ? "write decimals with a point" : "");
+        broken_.push_back(static_cast<std::uint32_t>(points.size()));
+        p = {};
+        break;
+    }
+    points.push_back(p);
+}
+
+/// What cannot be read is no place at all, and the faces that name it show all of their picture.
+void ObjReader::read_place() {
+    Vec2 place;
+    const bool is_place = number_of_word(lines_.word(), place.x) == NumberKind::finite;
+    if (const std::string_view word = lines_.word(); !word.empty() && is_place) number_of_word(word, place.y);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    places_.push_back(is_place ? Vec2{place.x, 1 - place.y} : Vec2{none, none});
+}
+
+void ObjReader::read_face() {
+    auto& description = out_.description;
+    SceneDescription::Face face;
+    face.line = lines_.number();
+    face.corners.reserve(4);
+    std::vector<std::uint32_t> places;
+    while (!lines_.rest().empty()) {
+        const std::string_view word = lines_.word();
+        const auto index = parse_integer(word.substr(0, word.find('/')));
+        const auto count = static_cast<long long>(description.points.size());
+        if (!index) return error(fmt::format("face names '{}', which is not a vertex number", shown(word)));
+        if (*index == 0) return error("face names vertex 0", "vertices are numbered from 1");
+        if (*index < -count) return error(fmt::format("face names vertex {}, of {} before it", *index, count));
+        if (*index > most_points) return error(fmt::format("face names vertex {}", *index));
+        face.corners.push_back(static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index));
+        add_place(word, places);
+    }
+    if (!has_use_) {
+        use_material(default_material);
+        find(Finding::Kind::warning, face.line,
+             fmt::format("face comes before any 'usemtl': it gets the material '{}', with reflectance 0.5",
+                         default_material),
+             "name a material with 'usemtl'");
+    }
+    if (!has_group_) use_group("");
+    face.material = use_, face.group = group_;
+    if (places.size() != face.corners.size()) places.clear();
+    description.faces.push_back(std::move(face));
+    places_of_face_.push_back(std::move(places));
+}
+
+/// The second number of a corner: "1/2/3".
+void ObjReader::add_place(std::string_view corner, std::vector<std::uint32_t>& out) const {
+    const std::size_t slash = corner.find('/');
+    if (slash == corner.npos) return;
+    const std::string_view rest = corner.substr(slash + 1);
+    const auto index = parse_integer(rest.substr(0, rest.find('/')));
+    const auto count = static_cast<long long>(places_.size());
+    if (!index || *index == 0 || *index < -count || *index > most_points) return;
+    out.push_back(static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index));
+}
+
+/// Names are separated by blanks; a name may also hold blanks when it is the only one.
+void ObjReader::read_libraries() {
+    std::error_code ignored;
+    if (lines_.rest().empty()) return error("'mtllib' without a file name");
+    if (std::filesystem::exists(beside(path_, lines_.rest()), ignored)) return read_library(lines_.rest());
+    while (!lines_.rest().empty()) read_library(lines_.word());
+}
+
+void ObjReader::read_library(std::string_view name) {
+    const std::string file = found_beside(path_, name);
+    const Result<std::string> text = read_whole_file(file);
+    if (text) {
+        has_library_ = true;
+        return parse_mtl(*text, file, out_.description.materials, out_.findings, extras_);
+    }
+    error(fmt::format("material file '{}' {}", shown(name), text.error().message),
+          "put it beside the scene file, or take the 'mtllib' out: then everything reflects 0.5 and emits nothing");
+    library_missing_ = true;
+}
+
+void ObjReader::use_material(std::string_view name) {
+    if (name.empty()) return error("'usemtl' without a name");
+    const auto [use, is_new] = use_of_.try_emplace(std::string(name), static_cast<std::uint32_t>(uses_.size()));
+    if (is_new) uses_.push_back({std::string(name), lines_.number()});
+    use_ = use->second;
+    has_use_ = true;
+}
+
+void ObjReader::use_group(std::string_view name) {
+    auto& groups = out_.description.groups;
+    const auto [group, is_new] = group_of_.try_emplace(std::string(name), static_cast<std::uint32_t>(groups.size()));
+    if (is_new) groups.push_back(name.empty() ? "default" : std::string(name));
+    group_ = group->second;
+    has_group_ = true;
+}
+
+/// Vertices may stand after the faces that name them; so only now is it known which there are.
+void ObjReader::check_indices() {
+    const std::vector<Point>& points = out_.description.points;
+    std::vector<SceneDescription::Face>& faces = out_.description.faces;
+    const auto is_broken = [&](const SceneDescription::Face& face) {
+        const auto beyond =
+            std::find_if(face.corners.begin(), face.corners.end(), [&](auto c) { return c >= points.size(); });
+        if (beyond != face.corners.end())
+            find(Finding::Kind::error, face.line,
+                 fmt::format("face names vertex {} of {}", *beyond + 1, points.size()));
+        return beyond != face.corners.end() || std::any_of(face.corners.begin(), face.corners.end(), [&](auto c) {
+                   return std::binary_search(broken_.begin(), broken_.end(), c);
+               });
+    };
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        if (is_broken(faces[f])) continue;
+        if (kept != f) faces[kept] = std::move(faces[f]), places_of_face_[kept] = std::move(places_of_face_[f]);
+        ++kept;
+    }
+    faces.resize(kept), places_of_face_.resize(kept);
+}
+
+void ObjReader::resolve_materials() {
+    auto& materials = out_.description.materials;
+    std::unordered_map<std::string, std::uint32_t> by_name;
+    for (std::uint32_t m = 0; m < materials.size(); ++m) by_name.emplace(materials[m].name, m);
+    std::vector<std::uint32_t> meaning;
+    std::size_t untold = 0;
+    for (const Use& use : uses_) {
+        auto known = by_name.find(use.name);
+        if (known == by_name.end()) {
+            if (!has_library_ && !library_missing_ && use.name != default_material && untold++ == 0)
+                find(Finding::Kind::repair, use.line,
+                     fmt::format("no material file is named, in which '{}' would be: what has such a material reflects "
+                                 "0.5 and emits nothing",
+                                 shown(use.name)),
+                     "name it with 'mtllib'");
+            if (has_library_ && !library_missing_ && use.name != default_material)
+                find(Finding::Kind::error, use.line,
+                     fmt::format("material '{}' is in no material file", shown(use.name)),
+                     "define it with 'newmtl', or mend the name");
+            known = by_name.emplace(use.name, static_cast<std::uint32_t>(materials.size())).first;
+            materials.push_back({use.name, Spectrum(0.5), Spectrum()});
+        }
+        meaning.push_back(known->second);
+    }
+    for (auto& face : out_.description.faces) face.material = meaning[face.material];
+    take_textures();
+    take_panes();
+}
+
+/// Where a face's corners are in its picture; none where that is not said.
+std::vector<Vec2> ObjReader::places_of(std::size_t face) const {
+    std::vector<Vec2> out;
+    for (const std::uint32_t place : places_of_face_[face]) {
+        if (place >= places_.size() || std::isnan(places_[place].x)) return {};
+        out.push_back(places_[place]);
+    }
+    return out;
+}
+
+/// Faces take the colours of their parts of pictures.
+void ObjReader::take_textures() {
+    if (extras_.pictures.empty()) return;
+    SceneDescription& d = out_.description;
+    TexturedFaces textured(d, whitest_reflectance);
+    std::vector<const MtlPictures*> pictures(d.materials.size());
+    for (std::size_t m = 0; m < pictures.size(); ++m)
+        if (const auto found = extras_.pictures.find(d.materials[m].name); found != extras_.pictures.end())
+            pictures[m] = &found->second;
+    constexpr auto repeat = TextureArea::Wrap::repeat;
+    for (std::size_t f = 0; f < d.faces.size(); ++f) {
+        const MtlPictures* shown = pictures[d.faces[f].material];
+        const std::vector<Vec2> places = shown ? places_of(f) : std::vector<Vec2>();
+        if (places.empty()) continue;
+        ShownColour colour;
+        if (shown->reflectance) colour.reflectance = relative(*shown->reflectance, places, repeat, repeat);
+        if (shown->exitance) colour.exitance = relative(*shown->exitance, places, repeat, repeat);
+        textured.show(f, colour);
+    }
+    textured.finish();
+}
+
+/// Faces of glass become panes.
+void ObjReader::take_panes() {
+    if (extras_.glass.empty()) return;
+    SceneDescription& d = out_.description;
+    std::erase_if(d.faces, [&](const SceneDescription::Face& face) {
+        const auto glass = extras_.glass.find(d.materials[face.material].name);
+        if (glass == extras_.glass.end()) return false;
+        Pane pane;
+        for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
+        pane.transmissivity = glass->second, pane.line = face.line;
+        d.panes.push_back(std::move(pane));
+        return true;
+    });
+}
+
+}  // namespace
+
+ReadScene read_obj(const std::string& path) {
+    const Result<std::string> text = read_whole_file(path);
+    const bool wide = text && (text->starts_with("\xff\xfe") || text->starts_with("\xfe\xff"));
+    if (text && !wide) return ObjReader(path, *text).read();
+    ReadScene out;
+    out.description.file = path;
+    out.findings.push_back({Finding::Kind::error, path, 0, wide ? "is text in UTF-16" : text.error().message,
+                            wide ? "save it as UTF-8 or plain ASCII" : ""});
+    return out;
+}
+
+Result<SceneDescription> load_obj(const std::string& path) {
+    ReadScene read = read_obj(path);
+    sort_findings(read.findings);
+    if (has_errors(read.findings)) return error_of(read.findings);
+    return std::move(read.description);
+}
+
+}  // namespace exitance

@@ -1,0 +1,161 @@
+#include "exitance/io/scenes/textures/scene_textures.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/scene/locator.hpp"
+#include "exitance/scene/material_name.hpp"
+
+namespace exitance {
+namespace {
+
+/// Y up to Z up.
+constexpr Affine upright{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}};
+
+/// Numbers of a triangle's vertices.
+std::array<std::size_t, 3> vertices_of(const GltfModel::Primitive& p, std::size_t t) {
+    std::array<std::size_t, 3> at = {3 * t, 3 * t + 1, 3 * t + 2};
+    if (p.mode == GltfModel::Mode::strip) at = {t, t + 1 + t % 2, t + 2 - t % 2};
+    if (p.mode == GltfModel::Mode::fan) at = {t + 1, t + 2, 0};
+    if (p.has_indices)
+        for (std::size_t& i : at) i = p.indices.index(i);
+    return at;
+}
+
+class TextureFinder {
+  public:
+    TextureFinder(const Scene& scene, const GltfModel& model) : scene_(scene), model_(model), locator_(scene) {}
+
+    std::optional<SceneTextures> find() {
+        std::size_t corners = 0;
+        for (const Surface& s : scene_.surfaces()) corners += s.corner_count;
+        for (std::vector<Vec2>& set : out_.places) set.resize(corners);
+        seen_.resize(model_.nodes.size());
+        for (const int root : model_.roots) visit(root, upright, 0);
+        if (!found_[0] && !found_[1]) return std::nullopt;
+        if (!found_[1]) out_.places[1].clear();
+        add_pictures();
+        return std::move(out_);
+    }
+
+  private:
+    void visit(int number, const Affine& parent, int depth) {
+        constexpr int most_depth = 1000;
+        const auto at = static_cast<std::size_t>(number);
+        if (seen_[at] || depth > most_depth) return;
+        seen_[at] = true;
+        const GltfModel::Node& node = model_.nodes[at];
+        const Affine to_world = parent * node.to_parent;
+        if (node.mesh >= 0)
+            for (const GltfModel::Primitive& p : model_.meshes[static_cast<std::size_t>(node.mesh)].primitives)
+                add(p, to_world);
+        for (const int child : node.children) visit(child, to_world, depth + 1);
+    }
+
+    void add(const GltfModel::Primitive& p, const Affine& to_world) {
+        if (p.places[0].size() == 0 && p.places[1].size() == 0) return;
+        const std::size_t count = p.has_indices ? p.indices.size() : p.positions.size();
+        const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
+        for (std::size_t t = 0; t < triangles; ++t) {
+            const std::array<std::size_t, 3> v = vertices_of(p, t);
+            if (std::max({v[0], v[1], v[2]}) >= p.positions.size()) continue;
+            std::array<Point, 3> corner;
+            for (std::size_t k = 0; k < 3; ++k) corner[k] = to_world.point(p.positions.point(v[k]));
+            const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+            if (!(norm(normal) > 0)) continue;
+            const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
+            // Faces may have been turned, or be the other side of a sheet.
+            for (const double side : {1.0, -1.0})
+                if (const SurfaceId s = locator_.find(middle, side * normalized(normal)); !s.is_none())
+                    add_places(p, v, corner, s);
+        }
+    }
+
+    void add_places(const GltfModel::Primitive& p, const std::array<std::size_t, 3>& v,
+                    const std::array<Point, 3>& corner, SurfaceId s) {
+        const Patch3 patch(corner);
+        const std::uint32_t first = scene_.surfaces()[s].first_corner;
+        const auto material = static_cast<std::size_t>(std::max(p.material, 0));
+        for (std::size_t set = 0; set < 2; ++set) {
+            if (p.places[set].size() == 0) continue;
+            found_[set] = true;
+            const GltfModel::Material* m = p.material >= 0 ? &model_.materials[material] : nullptr;
+            const bool moved = m && m->base_texture.picture >= 0 && m->base_texture.place_set == static_cast<int>(set);
+            for (std::size_t k = 0; k < scene_.outline(s).size(); ++k) {
+                const std::array<double, 3> weight = patch.weights(scene_.outline(s)[k]);
+                Vec2 place;
+                for (std::size_t c = 0; c < 3; ++c)
+                    place = place + weight[c] * Vec2{p.places[set].at(v[c], 0), p.places[set].at(v[c], 1)};
+                if (moved) place = m->base_texture.moved(place);
+                out_.places[set][first + k] = place;
+            }
+        }
+    }
+
+    /// Barycentric coordinates in a triangle.
+    struct Patch3 {
+        explicit Patch3(const std::array<Point, 3>& c)
+            : corner(c), n(cross(c[1] - c[0], c[2] - c[0])), area(squared_norm(n)) {}
+        std::array<double, 3> weights(const Point& p) const {
+            const double b = dot(cross(p - corner[0], corner[2] - corner[0]), n) / area;
+            const double c = dot(cross(corner[1] - corner[0], p - corner[0]), n) / area;
+            return {1 - b - c, b, c};
+        }
+        std::array<Point, 3> corner;
+        Vec3 n;
+        double area;
+    };
+
+    void add_pictures() {
+        out_.coats.resize(scene_.materials().size());
+        std::vector<int> number(model_.pictures.size(), -1);
+        for (MaterialId id : scene_.materials().ids()) {
+            const std::string_view name = name_in_file(scene_.materials()[id].name);
+            const auto material = std::find_if(model_.materials.begin(), model_.materials.end(),
+                                               [&](const GltfModel::Material& m) { return m.name == name; });
+            if (material == model_.materials.end() || material->base_texture.picture < 0) continue;
+            if (material - model_.materials.begin() >= static_cast<std::ptrdiff_t>(scene_.materials().size())) continue;
+            const GltfModel::TextureUse& texture = material->base_texture;
+            const auto source = static_cast<std::size_t>(texture.picture);
+            if (number[source] < 0) {
+                const std::span<const std::uint8_t> file = model_.pictures[source];
+                Result<TexturePixels> pixels = decode_texture(file);
+                if (!pixels || pixels->width == 0) continue;
+                number[source] = static_cast<int>(out_.pictures.size());
+                out_.pictures.push_back(
+                    {{file.begin(), file.end()}, file[0] == 0xff ? "image/jpeg" : "image/png", std::move(*pixels)});
+            }
+            const auto whole = static_cast<std::uint32_t>(material - model_.materials.begin());
+            out_.coats[id] = {number[source], texture.place_set, texture.wrap_s, texture.wrap_t, MaterialId(whole)};
+        }
+    }
+
+    const Scene& scene_;
+    const GltfModel& model_;
+    Locator locator_;
+    SceneTextures out_;
+    std::vector<bool> seen_;
+    bool found_[2] = {false, false};
+};
+
+}  // namespace
+
+std::string find_scene_file(const Scene& scene, const std::string& beside) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const fs::path there = scene.file(), here = fs::path(beside).parent_path() / there.filename();
+    if (fs::is_regular_file(there, ignored)) return there.string();
+    return fs::is_regular_file(here, ignored) ? here.string() : "";
+}
+
+std::optional<SceneTextures> load_scene_textures(const Scene& scene, const std::string& path) {
+    if (ending(path) != ".glb" && ending(path) != ".gltf") return std::nullopt;
+    std::vector<Finding> findings;  // told when the scene was solved
+    const Result<GltfModel> model = load_gltf_model(path, findings, true);
+    if (!model) return std::nullopt;
+    return TextureFinder(scene, *model).find();
+}
+
+}  // namespace exitance
