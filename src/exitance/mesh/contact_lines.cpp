@@ -29,6 +29,51 @@ void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double
     out.push_back({p - across, q - across, height});
 }
 
+/// Lines along an edge, on one side of it (`inwards`, of length 1), under what is `height` above the plane there: light
+/// that enters such a gap falls off with the distance from its mouth by the height, so that strips twice as wide as
+/// those before them follow it, until next to nothing is left. The first one ends where the mouth's own strip does.
+void strips_into_gap(const Point& p, const Point& q, const Vec3& inwards, double height, std::vector<Segment>& out) {
+    for (double distance : {1.0, 3.0, 7.0}) {
+        const Vec3 across = distance * height * inwards;
+        out.push_back({p + across, q + across, height});
+    }
+}
+
+/// Where a gap opens along an edge: of a face that hovers over the plane of a region, to the side on which that face
+/// is; or of the region itself, where another face hovers over it there, inwards.
+void gap_along_edge(const Scene& scene, const Bvh& faces, const std::pair<Point, Point>& edge, RegionId of_edge,
+                    RegionId own, double gap, double tolerance, std::vector<Segment>& out) {
+    const double least = 10 * tolerance;
+    if (gap <= least) return;
+    const Plane& plane = scene.regions()[own].plane;
+    const Normal& n = scene.regions()[of_edge].plane.n;
+    const Vec3 left = cross(n, edge.second - edge.first);
+    const Vec3 inwards = (1 / norm(left)) * left;  // borders run counter-clockwise
+    if (of_edge != own) {
+        // Upright sides have their edges there, too, but nothing under them is a gap.
+        constexpr double alike = 0.9;  // cosine
+        const double lower = plane.signed_distance(edge.first), upper = plane.signed_distance(edge.second);
+        if (dot(n, plane.n) < -alike && std::min(lower, upper) > least && std::max(lower, upper) <= gap)
+            strips_into_gap(edge.first, edge.second, inwards, std::max(lower, upper), out);
+        return;
+    }
+    const Point x = 0.5 * (edge.first + edge.second) + (10 * tolerance) * inwards;
+    double height = gap;
+    bool is_covered = false;
+    Box above;
+    above.add(x + least * plane.n), above.add(x + gap * plane.n);
+    faces.visit_box(above, [&](std::uint32_t i) {
+        const SurfaceId s(i);
+        const Normal& other = scene.surfaces()[s].normal;
+        const double down = -dot(other, plane.n);
+        if (scene.surfaces()[s].region == own || down <= 0) return;
+        const double h = dot(other, x - scene.outline(s)[0]) / down;
+        if (h <= least || h > height || !contains(scene.outline(s), other, x + h * plane.n)) return;
+        height = h, is_covered = true;
+    });
+    if (is_covered) strips_into_gap(edge.first, edge.second, inwards, height, out);
+}
+
 /// The line in which a face crosses a plane; its edges that hover over the plane are left out.
 void crossing_of_face(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
                       std::vector<Segment>& out) {
@@ -130,8 +175,9 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
     box.hi += Vec3{tolerance_, tolerance_, tolerance_};
     std::vector<Segment> segments;
     borders_.visit_box(box, [&](std::uint32_t i) {
-        if (edges_[i].region != tree.region(e))
-            contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, segments);
+        const auto& [a, b, region] = edges_[i];
+        if (region != tree.region(e)) contacts_of_edge(a, b, plane, tolerance_, gap, segments);
+        gap_along_edge(*scene_, faces_, {a, b}, region, tree.region(e), gap, tolerance_, segments);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
