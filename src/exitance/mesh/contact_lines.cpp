@@ -29,11 +29,13 @@ void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double
     out.push_back({p - across, q - across, height});
 }
 
+constexpr double deepest_strip = 7;  ///< Heights of a gap: there a hundredth of the light at its mouth is left.
+
 /// Lines along an edge, on one side of it (`inwards`, of length 1), under what is `height` above the plane there: light
 /// that enters such a gap falls off with the distance from its mouth by the height, so that strips twice as wide as
 /// those before them follow it, until next to nothing is left. The first one ends where the mouth's own strip does.
 void strips_into_gap(const Point& p, const Point& q, const Vec3& inwards, double height, std::vector<Segment>& out) {
-    for (double distance : {1.0, 3.0, 7.0}) {
+    for (double distance : {1.0, 3.0, deepest_strip}) {
         const Vec3 across = distance * height * inwards;
         out.push_back({p + across, q + across, height});
     }
@@ -94,6 +96,19 @@ void crossing_of_face(std::span<const Point> outline, const Plane& plane, double
     std::sort(crossings.begin(), crossings.end(),
               [&](const Point& a, const Point& b) { return dot(a, direction) < dot(b, direction); });
     out.push_back({crossings.front(), crossings.back(), 0});
+}
+
+/// The area of an element before contacts cut it: what its size asks of them is to hold for all of its parts, or else
+/// the first cuts would hide the others. Contacts alone cut otherwise than into halves and quarters.
+double area_before_contacts(const ElementTree& tree, ElementId e) {
+    const auto is_share = [](double ratio, double share) { return std::abs(ratio - share) < 1e-6 * share; };
+    while (!tree.parent(e).is_none()) {
+        const ElementId parent = tree.parent(e);
+        const double ratio = tree.area(e) / tree.area(parent);
+        if (!tree.is_cell(e) && (is_share(ratio, 0.5) || is_share(ratio, 0.25))) break;
+        e = parent;
+    }
+    return tree.area(e);
 }
 
 /// Length of the part of a segment inside a convex polygon, as a share of the segment, and where it runs.
@@ -159,7 +174,7 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
 std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree, ElementId e) const {
     const Plane& plane = scene_->regions()[tree.region(e)].plane;
     const std::vector<Vec2> domain = tree.domain(e);
-    const double gap = std::max(tolerance_, height_of_jump(tree.area(e)));
+    const double gap = std::max(tolerance_, height_of_jump(area_before_contacts(tree, e)));
     Box box;
     double longest = 0;
     const std::vector<Point> outline = tree.outline(e);
@@ -175,8 +190,15 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
     box.hi += Vec3{tolerance_, tolerance_, tolerance_};
     std::vector<Segment> segments;
     borders_.visit_box(box, [&](std::uint32_t i) {
+        if (edges_[i].region != tree.region(e))
+            contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, segments);
+    });
+    // Strips lie beside the edge that they begin at, over parts that others have cut off from it, too.
+    const double reach = deepest_strip * gap;
+    Box around = box;
+    around.lo -= Vec3{reach, reach, reach}, around.hi += Vec3{reach, reach, reach};
+    borders_.visit_box(around, [&](std::uint32_t i) {
         const auto& [a, b, region] = edges_[i];
-        if (region != tree.region(e)) contacts_of_edge(a, b, plane, tolerance_, gap, segments);
         gap_along_edge(*scene_, faces_, {a, b}, region, tree.region(e), gap, tolerance_, segments);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
