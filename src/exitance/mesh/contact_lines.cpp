@@ -29,6 +29,53 @@ void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double
     out.push_back({p - across, q - across, height});
 }
 
+constexpr double deepest_strip = 7;  ///< Heights of a gap: there a hundredth of the light at its mouth is left.
+
+/// Lines along an edge, on one side of it (`inwards`, of length 1), under what is `height` above the plane there: light
+/// that enters such a gap falls off with the distance from its mouth by the height, so that strips twice as wide as
+/// those before them follow it, until next to nothing is left. The first one ends where the mouth's own strip does.
+void strips_into_gap(const Point& p, const Point& q, const Vec3& inwards, double height, std::vector<Segment>& out) {
+    for (double distance : {1.0, 3.0, deepest_strip}) {
+        const Vec3 across = distance * height * inwards;
+        out.push_back({p + across, q + across, height});
+    }
+}
+
+/// Where a gap opens along an edge: of a face that hovers over the plane of a region, to the side on which that face
+/// is; or of the region itself, where another face hovers over it there, inwards.
+void gap_along_edge(const Scene& scene, const Bvh& faces, const std::pair<Point, Point>& edge, RegionId of_edge,
+                    RegionId own, double gap, double tolerance, std::vector<Segment>& out) {
+    const double least = 10 * tolerance;
+    if (gap <= least) return;
+    const Plane& plane = scene.regions()[own].plane;
+    const Normal& n = scene.regions()[of_edge].plane.n;
+    const Vec3 left = cross(n, edge.second - edge.first);
+    const Vec3 inwards = (1 / norm(left)) * left;  // borders run counter-clockwise
+    if (of_edge != own) {
+        // Upright sides have their edges there, too, but nothing under them is a gap.
+        constexpr double alike = 0.9;  // cosine
+        const double lower = plane.signed_distance(edge.first), upper = plane.signed_distance(edge.second);
+        if (dot(n, plane.n) < -alike && std::min(lower, upper) > least && std::max(lower, upper) <= gap)
+            strips_into_gap(edge.first, edge.second, inwards, std::max(lower, upper), out);
+        return;
+    }
+    const Point x = 0.5 * (edge.first + edge.second) + (10 * tolerance) * inwards;
+    double height = gap;
+    bool is_covered = false;
+    Box above;
+    above.add(x + least * plane.n), above.add(x + gap * plane.n);
+    faces.visit_box(above, [&](std::uint32_t i) {
+        const SurfaceId s(i);
+        const Normal& other = scene.surfaces()[s].normal;
+        const double down = -dot(other, plane.n);
+        if (scene.surfaces()[s].region == own || down <= 0) return;
+        const double h = dot(other, x - scene.outline(s)[0]) / down;
+        if (h <= least || h > height || !contains(scene.outline(s), other, x + h * plane.n)) return;
+        height = h, is_covered = true;
+    });
+    if (is_covered) strips_into_gap(edge.first, edge.second, inwards, height, out);
+}
+
 /// The line in which a face crosses a plane; its edges that hover over the plane are left out.
 void crossing_of_face(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
                       std::vector<Segment>& out) {
@@ -49,6 +96,19 @@ void crossing_of_face(std::span<const Point> outline, const Plane& plane, double
     std::sort(crossings.begin(), crossings.end(),
               [&](const Point& a, const Point& b) { return dot(a, direction) < dot(b, direction); });
     out.push_back({crossings.front(), crossings.back(), 0});
+}
+
+/// The area of an element before contacts cut it: what its size asks of them is to hold for all of its parts, or else
+/// the first cuts would hide the others. Contacts alone cut otherwise than into halves and quarters.
+double area_before_contacts(const ElementTree& tree, ElementId e) {
+    const auto is_share = [](double ratio, double share) { return std::abs(ratio - share) < 1e-6 * share; };
+    while (!tree.parent(e).is_none()) {
+        const ElementId parent = tree.parent(e);
+        const double ratio = tree.area(e) / tree.area(parent);
+        if (!tree.is_cell(e) && (is_share(ratio, 0.5) || is_share(ratio, 0.25))) break;
+        e = parent;
+    }
+    return tree.area(e);
 }
 
 /// Length of the part of a segment inside a convex polygon, as a share of the segment, and where it runs.
@@ -114,7 +174,7 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
 std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree, ElementId e) const {
     const Plane& plane = scene_->regions()[tree.region(e)].plane;
     const std::vector<Vec2> domain = tree.domain(e);
-    const double gap = std::max(tolerance_, height_of_jump(tree.area(e)));
+    const double gap = std::max(tolerance_, height_of_jump(area_before_contacts(tree, e)));
     Box box;
     double longest = 0;
     const std::vector<Point> outline = tree.outline(e);
@@ -132,6 +192,14 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
     borders_.visit_box(box, [&](std::uint32_t i) {
         if (edges_[i].region != tree.region(e))
             contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, segments);
+    });
+    // Strips lie beside the edge that they begin at, over parts that others have cut off from it, too.
+    const double reach = deepest_strip * gap;
+    Box around = box;
+    around.lo -= Vec3{reach, reach, reach}, around.hi += Vec3{reach, reach, reach};
+    borders_.visit_box(around, [&](std::uint32_t i) {
+        const auto& [a, b, region] = edges_[i];
+        gap_along_edge(*scene_, faces_, {a, b}, region, tree.region(e), gap, tolerance_, segments);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);

@@ -50,6 +50,54 @@ TEST(ContactLines, AnEdgeThatHoversHasAStripOnEitherSide) {
     EXPECT_NEAR(tree.area(tree.leaf_at(ElementId(0), {0.25 + 0.006, 0.5}).element), 0.05 * 4, 1e-9);
 }
 
+/// A floor of 4 m x 4 m, and a board of 1 m x 2 m that looks down at it from `gap` metres above.
+Scene floor_under_board(double gap) {
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, gap}, {1, 3, gap}, {2, 3, gap}, {2, 1, gap}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1}, {{4, 5, 6, 7}, 0, 0, 2}};
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+/// Where elements end along a line through both, at y = 2; x from 1 to 1.5.
+std::vector<double> ends_under_board(const ElementTree& tree, double from, double gap) {
+    std::vector<double> out;
+    for (double height : {0.0, 1.0, 3.0, 7.0}) {
+        const double before = (1 + height * gap - 1e-6 - from) / 4, after = (1 + height * gap + 1e-6 - from) / 4;
+        if (tree.leaf_at(ElementId(0), {before, 0.5}).element != tree.leaf_at(ElementId(0), {after, 0.5}).element)
+            out.push_back(height);
+    }
+    return out;
+}
+
+TEST(ContactLines, AGapHasStripsThatWidenFromItsMouthInwards) {
+    const Scene scene = floor_under_board(0.02);
+    const ContactLines contacts(scene);
+    ElementTree floor;
+    floor.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(floor, {ElementId(0)}, contacts);
+    EXPECT_EQ(ends_under_board(floor, 0, 0.02), (std::vector<double>{0, 1, 3, 7}));
+    // The board itself, from its own border on; beyond it there is nothing.
+    ElementTree board;
+    board.add_root(RegionId(1), {{1, 1, 0.02}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(board, {ElementId(0)}, contacts);
+    for (double height : {1.0, 3.0, 7.0}) {
+        const double at = height * 0.02;
+        EXPECT_NE(board.leaf_at(ElementId(0), {0.5, at - 1e-6}).element,
+                  board.leaf_at(ElementId(0), {0.5, at + 1e-6}).element)
+            << height;
+    }
+}
+
+TEST(ContactLines, ABoardFarAboveHasNone) {
+    const Scene scene = floor_under_board(0.5);
+    ElementTree board;
+    board.add_root(RegionId(1), {{1, 1, 0.5}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(board, {ElementId(0)}, ContactLines(scene));
+    EXPECT_EQ(board.leaves().size(), 1u);
+}
+
 TEST(ContactLines, AnEdgeFarAboveAndABorderCutNothing) {
     const Scene scene = floor_and_plate(0.6);
     const ContactLines contacts(scene);

@@ -228,4 +228,22 @@ std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) 
     return out;
 }
 
+std::vector<double> allowed_by_room(const Stage& stage, std::span<const double> light_in, double of_all) {
+    std::vector<double> out(light_in.begin(), light_in.end());
+    double left = of_all, area = 1;  // what rooms that are not capped leave, and the share of those that are
+    std::vector<std::size_t> rising(out.size());
+    for (std::size_t room = 0; room < out.size(); ++room) rising[room] = room;
+    std::stable_sort(rising.begin(), rising.end(), [&](std::size_t a, std::size_t b) { return out[a] < out[b]; });
+    for (std::size_t k = 0; k < rising.size(); ++k) {
+        const std::size_t room = rising[k];
+        const double share = stage.rooms.area(room) / stage.area, cap = std::sqrt(left / area);
+        if (out[room] >= cap) {
+            for (; k < rising.size(); ++k) out[rising[k]] = cap;
+            break;
+        }
+        left -= share * out[room] * out[room], area -= share;
+    }
+    return out;
+}
+
 }  // namespace exitance

@@ -67,6 +67,11 @@ std::vector<ElementFunction> delivered_functions(const Scene& scene, const Eleme
 /// Empty where all is one room.
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
 
+/// What errors rooms may have, in proportion: their light l, but where few hold most of it less, since the error of all
+/// together is held to the demand, too. Capped at c:  sum of (area share) min(l, c)^2 <= `of_all`, by which the square
+/// of the whole's error may come to that many times the demand's. Empty where `light_in` is.
+std::vector<double> allowed_by_room(const Stage& stage, std::span<const double> light_in, double of_all);
+
 /// RMS over the surfaces of the standard error of rho E_ind, where a method is a random one, W/m^2.
 double rms_standard_error(const Stage& stage, const GlobalLight& light);
 

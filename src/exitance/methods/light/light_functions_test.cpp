@@ -90,5 +90,25 @@ TEST(DeliveredFunctions, AddUpToWhatRaysRead) {
     }
 }
 
+TEST(AllowedByRoom, IsTheLightOfARoomUnlessTheErrorOfAllWouldBeTooLarge) {
+    const Scene scene = built_scene("keyhole");
+    Stage stage(scene);
+    const StopRequest stop;
+    stage.rooms = find_light_rooms(stage, 1, stop);
+    ASSERT_EQ(stage.rooms.count(), 2u);
+    const double small = stage.rooms.area(1) / stage.area;
+    const auto of_all = [&](const std::vector<double>& e) { return (1 - small) * e[0] * e[0] + small * e[1] * e[1]; };
+    // Nearly all light is in the small room: an error in proportion to it would be four times that of the whole.
+    const std::vector<double> uneven = {0.02, (1 - 0.02 * (1 - small)) / small};
+    const std::vector<double> capped = allowed_by_room(stage, uneven, 1.5);
+    EXPECT_DOUBLE_EQ(capped[0], uneven[0]);
+    EXPECT_LT(capped[1], 0.5 * uneven[1]);
+    EXPECT_NEAR(of_all(capped), 1.5, 1e-12);
+    // Rooms alike may each have as much as they have light.
+    const std::vector<double> even = {1.01, 0.9};
+    EXPECT_EQ(allowed_by_room(stage, even, 1.5), even);
+    EXPECT_TRUE(allowed_by_room(stage, {}, 1.5).empty());
+}
+
 }  // namespace
 }  // namespace exitance

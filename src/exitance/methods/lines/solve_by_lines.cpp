@@ -69,9 +69,10 @@ void certify(const Stage& stage, const SolveOptions& options, Solution& solution
     const QuickFunction b(reflected, stage.scene.regions().size());
     CertificateOptions look{.error = options.error_target(), .seed = options.seed};
     look.direct_in_elements = true;
-    look.light_in = light_by_room(stage, coarse);
+    look.light_in = look.allowed_in = light_by_room(stage, coarse);
     Certifier certifier(stage, coarse, solution.indirect, b, look);
-    const Certificate found = certifier.look();
+    Certificate found = certifier.look();
+    certifier.tell_p99(found);
     s.relative_error_estimate = s.relative_error_estimate_interpolant = found.estimate;
     s.relative_error_bound = found.bound;
     s.relative_error_estimate_worst_room = found.largest();

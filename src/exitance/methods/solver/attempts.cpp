@@ -131,6 +131,7 @@ void Solver::find_light() {
         record_work(*light_, statistics());
         if (!gives_up()) share_ = direct_share();
         light_in_ = light_by_room(stage_, *light_);
+        allowed_in_ = allowed_by_room(stage_, light_in_, calibrated::whole_beyond_rooms);
     }
     statistics().seconds["solve"] += watch.seconds();
 }
@@ -202,7 +203,7 @@ ElementFunction Solver::gather(const ReflectedLight& b, std::span<const ElementG
                                                .relative_tolerance = knobs_.gather_relative_tolerance,
                                                .elements = elements,
                                                .element_share = knobs_.gather_element_share,
-                                               .light_in = light_in_},
+                                               .light_in = allowed_in_},
                                               gathered_, progress_, stop_, safe_points());
     statistics().rays += gathered_.rays;
     return out;

@@ -19,7 +19,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
                               std::span<const ElementGather> gathered) {
     options.seed = options_.seed;
     options.direct_in_elements = light_->holds_direct;
-    options.light_in = light_in_;
+    options.light_in = light_in_, options.allowed_in = allowed_in_;
     if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
     // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
     std::optional<ElementFunction> older;
@@ -45,6 +45,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         if (estimate <= limit || estimate - 2 * certificate_.uncertainty > limit) break;
         certificate_ = certifier.look();
     }
+    certifier.tell_p99(certificate_);
     add_clustering_error();
     record_certificate(certificate_, *light_, solution_.indirect, statistics());
     statistics().rooms = certifier.rooms(), statistics().surface_errors = certifier.surface_errors();
@@ -73,7 +74,7 @@ ErrorParts Solver::error_parts() const {
     if (!gathers()) return {.method = certificate_.largest()};
     // Of the worst room, as if its parts were made like those of all.
     const bool has_rooms = stage_.rooms.count() > 0 && certificate_.of_rooms > 0;
-    const double worse = has_rooms ? certificate_.worst_room / certificate_.of_rooms : 1;
+    const double worse = has_rooms ? certificate_.largest() / certificate_.of_rooms : 1;
     const ErrorParts parts = mean_error_parts();
     return {worse * parts.method, worse * parts.noise, worse * parts.interpolation};
 }

@@ -81,7 +81,7 @@ template <class Archive>
 void Solver::archive_state(Archive& a, std::string& phase) {
     a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase,
       becomes_linear_);
-    a(light_in_, solution_.indirect, solution_.links, solution_.cells, solution_.direct_share,
+    a(light_in_, allowed_in_, solution_.indirect, solution_.links, solution_.cells, solution_.direct_share,
       solution_.direct_in_elements, solution_.statistics);
     bool has_local_pass = local_pass_.has_value();
     a(has_local_pass);

@@ -116,7 +116,8 @@ class Solver {
     bool fresh_ = true;             ///< Does the method find new light in this attempt?
     bool becomes_linear_ = false;   ///< What the method `matrix` takes for granted.
     Spectrum share_;                ///< c of that light, see find_direct_share.
-    std::vector<double> light_in_;  ///< Of every room by the mean light; empty where all is one room.
+    std::vector<double> light_in_;    ///< Of every room by the mean light; empty where all is one room.
+    std::vector<double> allowed_in_;  ///< What errors rooms may have, in proportion (`allowed_by_room`).
     std::string resumed_phase_;
     double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.
 };

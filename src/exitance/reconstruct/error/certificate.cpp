@@ -7,21 +7,19 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/geometry/polygon.hpp"
+#include "exitance/reconstruct/error/certificate_places.hpp"
+#include "exitance/reconstruct/error/error_tail.hpp"
 #include "exitance/reconstruct/error/surface_errors.hpp"
 #include "exitance/transport/distributed.hpp"
+#include "exitance/transport/narrow_places.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
 namespace exitance {
 namespace {
 
-/// A place to measure the residual at, and its share in the mean over all surfaces.
-struct WeightedSample {
-    ElementTree::Place place;
-    double weight;
-};
-
 /// One point of the certificate: two independent estimates of the residual there.
 struct Sample {
+    ElementTree::Place place;  ///< In the delivered function.
     RegionId region;
     SurfaceId surface;
     std::uint32_t room = 0;
@@ -30,58 +28,10 @@ struct Sample {
     double squared = 0;       ///< Of the error there, mean over the bands, (W/m^2)^2.
     Spectrum local1, local2;  ///< Its part by the local pass, where known.
     bool tells_local = false;
+    Spectrum delivered;      ///< E there, less direct light, W/m^2.
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
     std::uint32_t rays = 0;
 };
-
-/// A number in [0, 1) moved towards both ends, where it is 1 / share as dense: elements are most wrong at their edges,
-/// beside corners and contacts, where light varies faster than any polynomial.
-struct TowardsEnds {
-    double at, share;
-
-    explicit TowardsEnds(double s) : at(s * s * (3 - 2 * s)), share(6 * s * (1 - s)) {}
-};
-
-/// `count` places, one in each stratum of a running sum over the leaves: half of it area, half area x the square of the
-/// expected error. A few lie on what is left out: should there be light, it is to be noticed.
-std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
-                                              const CertificateOptions& options, std::uint64_t seed) {
-    const std::size_t count = options.points;
-    const Field<ElementId, LocalPassReport::Leaf>* const known = options.leaves;
-    const std::vector<ElementId> leaves = tree.leaves();
-    // Where rooms are judged apart, all are looked at alike, and errors count by the light there.
-    const auto error_at = [&](ElementId e) {
-        const double light = options.light_in.empty() ? 1 : options.light_in[stage.rooms.of(tree, e)];
-        return std::pow((*known)[e].expected_error / light, 2);
-    };
-    double area = 0, error = 0;
-    for (ElementId e : leaves) {
-        area += stage.counted_area(tree, e);
-        error += known ? stage.counted_area(tree, e) * error_at(e) : 0;
-    }
-    const double mean_error = error / area;
-    const auto density = [&](ElementId e) {
-        const double seldom = stage.is_left_out(tree.region(e)) ? 0.1 : 1;
-        return seldom * stage.rooms.weight(tree, e) * (mean_error > 0 ? 0.5 + 0.5 * error_at(e) / mean_error : 1.0);
-    };
-    double total = 0;
-    for (ElementId e : leaves) total += tree.area(e) * density(e);
-    const double share_of_all = total / stage.area;  // 1 where nothing is left out
-    const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
-    std::vector<WeightedSample> out;
-    double before = 0;
-    std::size_t leaf = 0;
-    for (std::uint32_t k = 0; k < count; ++k) {
-        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
-        const auto share = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
-        while (leaf + 1 < leaves.size() && before + share() <= wanted) before += share(), ++leaf;
-        const ElementId e = leaves[leaf];
-        const TowardsEnds s(points(k, 1)), t(points(k, 2));
-        out.push_back({{e, tree.uniform(e, s.at, t.at)},
-                       share_of_all * s.share * t.share / (density(e) * static_cast<double>(count))});
-    }
-    return out;
-}
 
 /// The face of a region that holds a point of it.
 SurfaceId surface_at(const Scene& scene, RegionId region, const Point& x) {
@@ -90,13 +40,6 @@ SurfaceId surface_at(const Scene& scene, RegionId region, const Point& x) {
         for (SurfaceId s : surfaces)
             if (contains(scene.outline(s), scene.surfaces()[s].normal, x)) return s;
     return surfaces[0];
-}
-
-/// The places given, again and again, `count` in all.
-std::vector<WeightedSample> in_turn(const std::vector<ElementTree::Place>& places, std::size_t count) {
-    std::vector<WeightedSample> out;
-    for (std::size_t k = 0; k < count; ++k) out.push_back({places[k % places.size()], 1 / static_cast<double>(count)});
-    return out;
 }
 
 /// b + rho H b + (rho H)^2 b + ..., on the coarse mesh.
@@ -130,16 +73,6 @@ constexpr std::size_t local_every = 4;
 constexpr std::size_t batches = 32;   ///< Of samples, for the spread of their mean.
 constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
 
-/// The value that so large a share of the weights belong to none above.
-double quantile(std::vector<std::pair<double, double>> weighted, double share) {
-    std::sort(weighted.begin(), weighted.end());
-    double all = 0, below = 0;
-    for (const auto& [value, weight] : weighted) all += weight;
-    for (const auto& [value, weight] : weighted)
-        if ((below += weight) >= share * all) return value;
-    return weighted.empty() ? 0 : weighted.back().first;
-}
-
 /// The mean of batches, and how uncertain it is.
 struct BatchMean {
     double mean = 0, standard_error = 0;
@@ -167,6 +100,8 @@ struct Certifier::Content {
     RayRows H;  ///< Between the leaves of `light`.
     std::size_t looks = 0;
     std::vector<Sample> samples;  ///< Of all looks.
+    std::vector<Spectrum> late;   ///< The smooth part of the error, by leaf number of the coarse mesh, as of the last one.
+    Field<ElementId, std::uint8_t> narrow;  ///< Leaves of the delivered function.
 
     Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
             const CertificateOptions& options_)
@@ -181,10 +116,14 @@ struct Certifier::Content {
           area(leaf_areas(light.tree, light.numbering)),
           H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1,
             Dealing::by_element, RowsHeld::by_owner) {
-        if (mean_reflected > 0) constant = error_constant(H, rho, area);
+        if (mean_reflected <= 0) return;
+        constant = error_constant(H, rho, area);
+        if (options.places.empty()) narrow = find_narrow_leaves(stage, indirect.tree);
     }
 
     void measure_residuals();
+    Spectrum residual_by_rays(const Sample& sample, unsigned rays, std::uint64_t key, GatherWorkspace& workspace) const;
+    void tell_p99(Certificate& out);
     std::vector<Spectrum> mean_residuals() const;
     std::vector<Spectrum> late_response() const;
     Certificate judge();
@@ -204,7 +143,7 @@ void Certifier::Content::measure_residuals() {
     };
     const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
     const std::vector<WeightedSample> places = options.places.empty()
-                                                   ? stratified_places(stage, indirect.tree, options, seed)
+                                                   ? stratified_places(stage, indirect.tree, narrow, options, seed)
                                                    : in_turn(options.places, options.points);
     const std::size_t before = samples.size();
     samples.resize(before + places.size());
@@ -224,7 +163,8 @@ void Certifier::Content::measure_residuals() {
                 if (options.direct_in_elements)
                     delivered -= stage.clustered.at(x, n, region, point_accuracy(options.error), clustered).irradiance;
                 Sample& sample = samples[before + k];
-                sample.region = region, sample.weight = weight;
+                sample.place = place, sample.region = region, sample.weight = weight;
+                sample.delivered = delivered;
                 sample.surface = surface_at(stage.scene, region, x);
                 if (stage.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage.rooms.at(region, x));
                 sample.leaf = light.numbering.number[coarse.find(region, x).element];
@@ -319,7 +259,7 @@ std::vector<Spectrum> Certifier::Content::late_response() const {
     return response;
 }
 
-/// Every room by itself; parts of the residual are then those of the rooms, each by its own light.
+/// Every room by itself; parts of the residual are then those of the rooms, each by what it may have.
 void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
     if (count == 0) {
@@ -347,11 +287,10 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         const double estimate = std::sqrt(std::max(error.mean, error.standard_error)) / light_there;
         rooms.push_back({stage.rooms.area(room), light_there, estimate});
         out.worst_room = std::max(out.worst_room, estimate);
-        const auto relative = [&](double sum) {
-            return told[room] > 0 ? sum / told[room] / (light_there * light_there) : 0;
-        };
+        const double allowed = options.allowed_in[room] * mean_reflected, by_allowed = light_there / allowed;
+        const auto relative = [&](double sum) { return told[room] > 0 ? sum / told[room] / (allowed * allowed) : 0; };
         const double share = 1 / static_cast<double>(count);
-        all += share * estimate * estimate;
+        all += share * estimate * estimate * by_allowed * by_allowed;
         all_local += share * std::max(0.0, relative(local[room]));
         all_method += share * std::max(0.0, relative(method[room]));
     }
@@ -361,18 +300,15 @@ void Certifier::Content::judge_rooms(Certificate& out) {
 
 Certificate Certifier::Content::judge() {
     Certificate out{.constant = constant, .mean_reflected = mean_reflected, .points = samples.size(), .rays = H.rays()};
-    const std::vector<Spectrum> response = late_response();
+    late = late_response();
     std::array<double, batches> residual_squared{}, error_squared{};
-    std::vector<std::pair<double, double>> squares;  // and how much of the area has them
     double local_squared = 0, method_squared = 0, told = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         Sample& s = samples[k];
         const double weight = s.weight / static_cast<double>(looks);
-        const Spectrum& late = response[s.leaf];
         residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
-        s.squared = mean((s.r1 + late) * (s.r2 + late));
-        squares.emplace_back(s.squared, weight);
-        error_squared[k % batches] += weight * batches * squares.back().first;
+        s.squared = mean((s.r1 + late[s.leaf]) * (s.r2 + late[s.leaf]));
+        error_squared[k % batches] += weight * batches * s.squared;
         if (s.tells_local) {
             told += weight;
             local_squared += weight * mean(s.local1 * s.local2);
@@ -391,9 +327,55 @@ Certificate Certifier::Content::judge() {
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
     out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
     out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
-    out.p99 = std::sqrt(std::max(0.0, quantile(std::move(squares), 0.99))) / mean_reflected;
     judge_rooms(out);
     return out;
+}
+
+/// The residual at a point, by so many rays.
+Spectrum Certifier::Content::residual_by_rays(const Sample& sample, unsigned rays, std::uint64_t key,
+                                              GatherWorkspace& workspace) const {
+    const Point x = indirect.tree.patch(sample.place.element).at(sample.place.uv);
+    const Region& region = stage.scene.regions()[sample.region];
+    cast_gather(stage, x, region.plane.n, sample.region, rays, key, workspace);
+    return stage.scene.material(sample.region).reflectance *
+           (read_gather(b, workspace).irradiance - sample.delivered);
+}
+
+void Certifier::Content::tell_p99(Certificate& out) {
+    constexpr double share = 0.01;
+    constexpr unsigned most_rays = 1 << 14;
+    std::vector<WeightedError> points;
+    std::vector<unsigned> rays;
+    double mean_square = 0;
+    for (const Sample& s : samples) {
+        const double weight = s.weight / static_cast<double>(looks);
+        points.push_back({rms_over_bands(0.5 * (s.r1 + s.r2) + late[s.leaf]), weight});
+        rays.push_back(s.rays);
+        mean_square += weight * s.squared;
+    }
+    if (options.summed) {
+        out.p99 = error_below(points, {}, share) / mean_reflected;
+        return;
+    }
+    const auto by_more_rays = [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
+        const auto rays_at = [&](std::size_t i) { return std::min(most_rays, factor * samples[i].rays / 2); };
+        for (std::size_t i : which) out.rays += 2 * rays_at(i);
+        shared_ranges(
+            which.size(), 1,
+            [&](std::size_t begin, std::size_t end) {
+                GatherWorkspace workspace;
+                for (std::size_t k = begin; k < end; ++k) {
+                    const Sample& s = samples[which[k]];
+                    for (std::uint64_t half = 0; half < 2; ++half) {
+                        const std::uint64_t key = hash(
+                            options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);
+                        error[k][half] = late[s.leaf] + residual_by_rays(s, rays_at(which[k]), key, workspace);
+                    }
+                }
+            },
+            [&](std::size_t k) -> TwoErrors& { return error[k]; }, {"certificate"});
+    };
+    out.p99 = error_below(points, rays, mean_square, share, by_more_rays) / mean_reflected;
 }
 
 Certifier::Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
@@ -427,6 +409,10 @@ Certificate Certifier::look() {
     if (content_->mean_reflected <= 0) return {};
     content_->measure_residuals();
     return content_->judge();
+}
+
+void Certifier::tell_p99(Certificate& certificate) {
+    if (!content_->samples.empty()) content_->tell_p99(certificate);
 }
 
 }  // namespace exitance

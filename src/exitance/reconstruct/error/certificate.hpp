@@ -34,6 +34,8 @@ struct CertificateOptions {
     const SummedLight* summed = nullptr;
     /// The light of every room by the mean light; empty where all is one room.
     std::vector<double> light_in = {};
+    /// What errors rooms may have, in proportion: by which points are dealt out, and the parts of the error counted.
+    std::vector<double> allowed_in = {};
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -41,7 +43,7 @@ struct Certificate {
     double estimate = 0;     ///< Relative RMS error of B, the defect propagated by a coarse solve,
     double uncertainty = 0;  ///< and its standard error: large where few points hold most of it.
     double bound = 0;        ///< The same, as an upper bound at 95% confidence.
-    double p99 = 0;       ///< What the error is below on 99% of the area, relative likewise; noise of few rays counts.
+    double p99 = 0;       ///< What the error is below on 99% of the area, relative likewise; see `tell_p99`.
     double residual = 0;  ///< Relative RMS of the residual r.
     /// Parts of the residual, relative RMS, when it is known what was gathered: how far the delivered light is from the
     /// gather of that (rays' noise and interpolation), and how far what was gathered is from what should have been (the
@@ -52,7 +54,7 @@ struct Certificate {
         0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2: what errors are relative to.
     std::size_t points = 0, rays = 0;
     /// Where rooms are judged apart: the estimate of the worst one, and the root of the mean of the rooms' squares,
-    /// which `local` and `method` are parts of. As the estimate, where all is one room.
+    /// each by what it may have, which `local` and `method` are parts of. As the estimate, where all is one room.
     double worst_room = 0, of_rooms = 0;
     /// Of the whole and of every room.
     double largest() const { return std::max(estimate, worst_room); }
@@ -62,7 +64,8 @@ struct Certificate {
 ///
 ///     r = M + rho H B - B = rho (E_dir + H b - E_dir - E_ind),     b = B - M,
 ///
-/// at points stratified over all surfaces, denser where the error is expected, and weighted accordingly. At each, two
+/// at points stratified over all surfaces, denser where the error is expected and in gaps too small to count by area,
+/// and weighted accordingly. At each, two
 /// independent ray gathers over `b` give r1 and r2, so that E[r1 r2] = r^2 without the rays' noise. Error e = (I - rho
 /// H)^-1 r: its rough part is r itself, its smooth part is the response of a coarse solve to the regions' mean
 /// residuals. The bound takes the norm of (I - rho H)^-1, sqrt(C_1 C_inf) from two coarse solves with unit light, and
@@ -78,6 +81,10 @@ class Certifier {
 
     /// Measures at `options.points` more places, and tells what all of them so far say. `rays` counts all of them, too.
     Certificate look();
+
+    /// What the error is below on 99% of the area: sets `p99` of the last look's result, and counts the rays that it
+    /// takes. The points whose errors seem largest are measured again, since by few rays those are mostly noise.
+    void tell_p99(Certificate& certificate);
 
     /// As of the last look: every room's error, the largest room first.
     const std::vector<RoomError>& rooms() const;
