@@ -144,7 +144,6 @@ void LinkRefiner::cut_elements(const std::vector<ElementId>& elements, NodalFiel
     });
 }
 
-/// From now on the children of these are held, with the light that there is.
 void LinkRefiner::open(std::vector<ElementId> parents) {
     std::sort(parents.begin(), parents.end());
     parents.erase(std::unique(parents.begin(), parents.end()), parents.end());

@@ -46,6 +46,9 @@ class LinkRefiner {
     /// Cuts leaves; their parts take their functions, of `b` and of each of `also`.
     void cut_elements(const std::vector<ElementId>& elements, NodalField& b, std::span<NodalField* const> also);
 
+    /// From now on the children of these, if they have any, are held, with the light that there is.
+    void open(std::vector<ElementId> parents);
+
     /// Root of areas times squared errors, W/m^2 m: of rules and visibility, by link; of interpolation, by receiver.
     double link_error() const { return link_error_; }
     double interpolation_error() const { return std::sqrt(interpolation_); }
@@ -96,7 +99,6 @@ class LinkRefiner {
     std::vector<LinkPair> cut_receivers(NodalField& b, std::span<NodalField* const> also,
                                         const LinkTolerance& tolerance, Receivers& receivers);
 
-    void open(std::vector<ElementId> parents);
     void sum_up();
 
     ElementTree& tree_;

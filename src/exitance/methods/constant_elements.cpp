@@ -1,5 +1,7 @@
 #include "exitance/methods/constant_elements.hpp"
 
+#include <algorithm>
+
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/direct_share.hpp"
 
@@ -42,6 +44,13 @@ void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, s
 }
 
 }  // namespace
+
+std::vector<double> kept_light(const RayRows& rows, const Scene& scene) {
+    std::vector<double> kept = rows.kept();
+    const auto is_open = [](double share) { return share < 1; };
+    if (scene.has_diffusing_panes() && std::any_of(kept.begin(), kept.end(), is_open)) kept.clear();
+    return kept;
+}
 
 void relax_constant_elements(const MethodInput& input, const TransportOperator& rows, GlobalLight& light) {
     input.progress.phase("solve");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exitance/methods/methods.hpp"
+#include "exitance/transport/ray_rows.hpp"
 
 namespace exitance {
 
@@ -14,5 +15,9 @@ namespace exitance {
 /// Where surfaces glow all over, the direct light that F finds by its own rays takes a share of the exact one's place
 /// (`light.direct_share`): then the noise of F meets only what varies of reflected and emitted light together.
 void relax_constant_elements(const MethodInput& input, const TransportOperator& F, GlobalLight& light);
+
+/// `GlobalLight::kept` by rows of rays. Those of a diffusing pane leave by both sides, where its own light leaves by
+/// one: they tell how much arrives only where all does.
+std::vector<double> kept_light(const RayRows& rows, const Scene& scene);
 
 }  // namespace exitance

@@ -5,19 +5,14 @@ namespace exitance {
 Result<void> check_diffusing_panes(const Scene& scene, const SolveOptions& options) {
     if (!scene.has_diffusing_panes()) return {};
     const bool by_lines = options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
+    const bool classic_cells = options.method == Method::growing_cells && options.gcs == CellsKind::classic;
     const char* const option = by_lines              ? "--local-pass"
                                : options.task_engine ? "--task-engine"
-                               : options.method != Method::automatic && options.method != Method::matrix ? "--method"
-                                                                                                         : nullptr;
+                               : classic_cells       ? "--gcs"
+                                                     : nullptr;
     if (option)
         return Error{ErrorCode::usage, "takes light to one side of a surface; the scene has diffusing panes", option,
-                     "--method matrix (which auto chooses) takes it to both"};
-    if (options.basis && is_galerkin(*options.basis))
-        return Error{ErrorCode::usage, "blocks of Galerkin's matrix take light to one side of a diffusing pane",
-                     "--basis", "rows by rays take it to both: --basis constant or linear"};
-    if (options.form_factors.value_or(FormFactorKind::ray_cast) != FormFactorKind::ray_cast)
-        return Error{ErrorCode::usage, "takes light to one side of a surface; the scene has diffusing panes",
-                     "--form-factors", "--form-factors ray-cast takes it to both"};
+                     "without it light comes to both, by any method; auto chooses matrix"};
     const Relaxation relaxation = options.relaxation.value_or(Relaxation::gmres);
     if (relaxation == Relaxation::cg || relaxation == Relaxation::chebyshev)
         return Error{ErrorCode::usage, "asks for symmetry, which diffusing panes leave the system without",

@@ -6,6 +6,7 @@
 #include "exitance/methods/methods.hpp"
 #include "exitance/transport/hemicube_rows.hpp"
 #include "exitance/transport/linear_rows.hpp"
+#include "exitance/transport/passed_light.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -45,10 +46,6 @@ unsigned hemicube_cells(const MethodInput& input) {
     return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));  // given by memory
 }
 
-bool is_open(double kept) {
-    return kept < 1;
-}
-
 HierarchyBasis galerkin_basis(BasisKind basis) {
     return basis == BasisKind::galerkin1   ? HierarchyBasis::haar
            : basis == BasisKind::galerkin2 ? HierarchyBasis::multiwavelet2
@@ -78,16 +75,14 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
         const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed,
                         Dealing::by_element, RowsHeld::by_owner);
-        if (options.bounces < 0) light.kept = F.kept();
-        // Of a pane these are rays to both sides; its own light leaves by one.
-        if (stage.scene.has_diffusing_panes() && std::any_of(light.kept.begin(), light.kept.end(), is_open))
-            light.kept.clear();
+        if (options.bounces < 0) light.kept = kept_light(F, stage.scene);
         relax_constant_elements(input, F, light);
         light.rays = light.links = F.rays();
     } else if (*options.form_factors == FormFactorKind::hemicube) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
         const HemicubeRows F(stage, light.tree, light.numbering, locator, hemicube_cells(input));
-        relax_constant_elements(input, F, light);
+        const PassedLight passed(stage.scene, light.tree, light.numbering.leaves);
+        relax_constant_elements(input, PassingTransport(F, passed), light);
         light.rays = F.rays();
         light.links = light.form_factors = F.entries();
     } else {
@@ -95,7 +90,8 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const auto samples = options.visibility_samples.value_or(default_visibility_samples);
         const PatchTransfer transfer(stage, light.tree, static_cast<unsigned>(samples), options.seed);
         const DenseTransport F(transfer, light.numbering, patches, progress, stop);
-        relax_constant_elements(input, F, light);
+        const PassedLight passed(stage.scene, light.tree, light.numbering.leaves);
+        relax_constant_elements(input, PassingTransport(F, passed), light);
         light.rays = transfer.rays();
         light.form_factors = transfer.form_factors();
         light.links = F.entries();

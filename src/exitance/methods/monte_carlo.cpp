@@ -2,6 +2,7 @@
 #include "exitance/core/random.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/transport/element_rays.hpp"
+#include "exitance/transport/passed_light.hpp"
 
 namespace exitance {
 namespace {
@@ -15,6 +16,7 @@ class Shooter {
           tree_(tree),
           numbering_(numbering),
           locator_(tree, stage.scene.regions().size()),
+          passed_(stage.scene, tree, numbering.leaves),
           seed_(seed) {}
 
     std::vector<Spectrum> shoot(std::span<const Spectrum> power, double rays) {
@@ -43,6 +45,7 @@ class Shooter {
             for (std::size_t k = first[i]; k < first[i + 1]; ++k)
                 if (target[k] != missed) arrived[target[k]] += carried;
         }
+        if (!passed_.empty()) pass(arrived);
         return arrived;
     }
 
@@ -50,6 +53,14 @@ class Shooter {
 
   private:
     static constexpr std::uint32_t missed = ElementRays::missed;
+
+    /// Of panes, as flux that is met.
+    void pass(std::vector<Spectrum>& arrived) const {
+        const auto area = [&](std::size_t i) { return tree_.area(numbering_.leaves[i]); };
+        for (std::size_t i = 0; i < arrived.size(); ++i) arrived[i] = arrived[i] / area(i);
+        passed_.meet(std::span(arrived));
+        for (std::size_t i = 0; i < arrived.size(); ++i) arrived[i] = area(i) * arrived[i];
+    }
 
     void trace(const std::vector<std::size_t>& first, std::size_t begin, std::size_t end,
                std::vector<std::uint32_t>& target) const {
@@ -66,6 +77,7 @@ class Shooter {
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
     ElementLocator locator_;
+    PassedLight passed_;
     std::uint64_t seed_, step_ = 0;
 };
 

@@ -28,6 +28,7 @@ ShootingSetup::ShootingSetup(const MethodInput& input, const DirectProjection& f
       transfer_(input.stage, tree,
                 static_cast<unsigned>(input.options.visibility_samples.value_or(default_visibility_samples)),
                 input.options.seed),
+      passed_(input.stage.scene, tree, numbering.leaves),
       columns_(patches.size()) {
     direct.resize(patches.size());
     if (!shoots_direct_light()) direct = leaf_means(first, numbering);
@@ -49,6 +50,7 @@ std::span<const float> ShootingSetup::column(std::size_t patch) {
     if (&out == &kept) kept_bytes_ += bytes;
     out.resize(numbering.leaves.size());
     transfer_.column(numbering.leaves, patches[patch], out);
+    passed_.meet(std::span(out));
     return out;
 }
 
@@ -89,6 +91,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     for (ElementId e : leaves) refine_element(tree, e);
     transfer_.update_places();
     numbering = LeafNumbering(tree);
+    passed_ = PassedLight(input_.stage.scene, tree, numbering.leaves);
     const std::size_t n = numbering.leaves.size();
     reflectance = leaf_reflectances(input_.stage.scene, tree, numbering);
     area = leaf_areas(tree, numbering);
@@ -113,13 +116,23 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
                 continue;
             }
             if (!shoots_direct_light()) direct[i] = mean_direct_light(e, exact);
-            for (std::size_t p = 0; p < patches.size(); ++p)
-                if (max(sent[p]) > 0) irradiance[i] += transfer_.form_factor(e, patches[p], workspace) * sent[p];
+            irradiance[i] = light_of_patches(i, workspace);
         }
         transfer_.count(workspace);
     });
     for (std::vector<float>& kept : columns_) kept.clear(), kept.shrink_to_fit();
     kept_bytes_ = 0;
+}
+
+/// What a leaf meets of all that patches have sent.
+Spectrum ShootingSetup::light_of_patches(std::size_t leaf, PatchTransfer::Workspace& workspace) const {
+    return passed_.met_at(leaf, [&](std::size_t i) {
+        Spectrum sum;
+        for (std::size_t p = 0; p < patches.size(); ++p)
+            if (max(sent[p]) > 0)
+                sum += transfer_.form_factor(numbering.leaves[i], patches[p], workspace) * sent[p];
+        return sum;
+    });
 }
 
 Spectrum ShootingSetup::mean_direct_light(ElementId e, ClusteredLight::Workspace& workspace) const {

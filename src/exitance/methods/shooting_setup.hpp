@@ -2,6 +2,7 @@
 
 #include "exitance/methods/methods.hpp"
 #include "exitance/solve/shooting.hpp"
+#include "exitance/transport/passed_light.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 
 namespace exitance {
@@ -45,9 +46,11 @@ class ShootingSetup {
   private:
     Spectrum mean_direct_light(ElementId e, ClusteredLight::Workspace& workspace) const;
     std::span<const float> column(std::size_t patch);
+    Spectrum light_of_patches(std::size_t leaf, PatchTransfer::Workspace& workspace) const;
 
     const MethodInput& input_;
     PatchTransfer transfer_;
+    PassedLight passed_;  ///< Between the present leaves.
     std::vector<std::vector<float>> columns_;
     std::vector<float> fresh_;
     std::size_t kept_bytes_ = 0;

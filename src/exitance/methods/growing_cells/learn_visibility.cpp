@@ -175,6 +175,60 @@ CellTransport make_transport(const Stage& stage, const SurfacePool& pool, const 
     return T;
 }
 
+/// What cells on diffusing panes meet, from what arrives at each side: rows of a transport are mixed as
+/// `Material::through` says. Of the places of a cell, each takes what comes from behind from the cell of the nearest
+/// place there.
+class PassedToCells {
+  public:
+    PassedToCells(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& network, const Nodes& nodes)
+        : own_(network.cells.size(), 1.0), behind_(network.cells.size()) {
+        if (!stage.scene.has_diffusing_panes()) return;
+        Field<RegionId, std::vector<std::uint32_t>> of_region(stage.scene.regions().size());
+        for (const std::uint32_t i : nodes.point) of_region[pool[i].region].push_back(i);
+        parallel_for(own_.size(), 16, [&](std::size_t c) {
+            const std::uint32_t first = nodes.first[c], last = nodes.first[c + 1];
+            for (std::uint32_t j = first; j < last; ++j) {
+                const PoolPoint& p = pool[nodes.point[j]];
+                const RegionId behind = stage.scene.behind(p.region);
+                if (behind.is_none() || of_region[behind].empty()) continue;
+                const auto farther = [&](std::uint32_t a, std::uint32_t b) {
+                    return squared_norm(pool[a].at - p.at) < squared_norm(pool[b].at - p.at);
+                };
+                const std::vector<std::uint32_t>& there = of_region[behind];
+                const double share = stage.scene.material(p.region).through / (last - first);
+                own_[c] -= share;
+                behind_[c].push_back(
+                    {network.cell_of[*std::min_element(there.begin(), there.end(), farther)], share});
+            }
+        });
+    }
+
+    void meet(CellTransport& T) const {
+        const std::vector<Spectrum> matrix = T.matrix, first = T.first;
+        for (std::size_t c = 0; c < T.size; ++c) {
+            if (behind_[c].empty()) continue;
+            T.first[c] *= own_[c];
+            for (std::size_t q = 0; q < T.size; ++q) T.matrix[c * T.size + q] *= own_[c];
+            for (const auto& [other, share] : behind_[c]) {
+                T.first[c] += share * first[other];
+                for (std::size_t q = 0; q < T.size; ++q)
+                    T.matrix[c * T.size + q] += share * matrix[other * T.size + q];
+            }
+        }
+    }
+    bool empty() const {
+        return std::all_of(behind_.begin(), behind_.end(), [](const auto& shares) { return shares.empty(); });
+    }
+
+  private:
+    struct Share {
+        std::uint32_t cell;
+        double share;
+    };
+    std::vector<double> own_;  ///< By cell.
+    std::vector<std::vector<Share>> behind_;
+};
+
 /// E = E_1 + T E_1 + T^2 E_1 + ...: one reflection after the other.
 SolveReport reflect(const CellTransport& T, std::vector<Spectrum>& E, double residual, std::size_t most,
                     const StopRequest& stop) {
@@ -246,6 +300,7 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
         pool, [&](double u, double) { return static_cast<std::uint32_t>(u * static_cast<double>(pool.size())); }, units,
         false, stage.scene.size(), input.options.seed, input.stop);
     const Nodes nodes = make_nodes(stage, pool, network);
+    const PassedToCells passed(stage, pool, network, nodes);
     std::vector<Spectrum> cell_light(network.cells.size()), sent(pool.size());
     for (std::size_t c = 0; c < cell_light.size(); ++c) {
         cell_light[c] = nodes.mean_direct[c];
@@ -263,7 +318,8 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
         if (!kernel.grow(units / part, input.stop, &input.progress)) break;  // nothing faces anything
         kernel.fit();
         input.progress.phase("solve");
-        const CellTransport T = make_transport(stage, pool, network, nodes, kernel, input.options.seed);
+        CellTransport T = make_transport(stage, pool, network, nodes, kernel, input.options.seed);
+        if (!passed.empty()) passed.meet(T);
         out.report =
             reflect(T, E, input.knobs.residual, std::min(most_reflections, input.knobs.max_iterations), input.stop);
         out.kernels += T.kernels, out.rays += T.rays;

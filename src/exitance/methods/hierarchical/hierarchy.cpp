@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/transport/rooms.hpp"
 
@@ -82,9 +83,40 @@ double Hierarchy::light_norm() const {
 
 void Hierarchy::refine(const LinkTolerance& tolerance) {
     NodalField* const also[] = {&reflected_direct};
-    if (!far) return refiner.refine(radiosity, also, tolerance, input.progress, input.stop);
-    const std::vector<LinkPair> near = far->refine(radiosity, tolerance, input.stop);
-    refiner.refine(near, radiosity, also, tolerance, input.progress, input.stop);
+    if (far) {
+        const std::vector<LinkPair> near = far->refine(radiosity, tolerance, input.stop);
+        refiner.refine(near, radiosity, also, tolerance, input.progress, input.stop);
+    } else {
+        refiner.refine(radiosity, also, tolerance, input.progress, input.stop);
+    }
+    refine_panes_alike();
+}
+
+/// What comes to one side of a diffusing pane leaves by the other, too: where that is held on smaller elements, so it
+/// is there.
+void Hierarchy::refine_panes_alike() {
+    const Scene& scene = input.stage.scene;
+    if (!scene.has_diffusing_panes()) return;
+    NodalField* const also[] = {&reflected_direct};
+    constexpr double as_small = 0.75;  // of the area of an element behind
+    const double least = input.options.min_area.value_or(calibrated::least_link_area * input.stage.area);
+    while (!input.stop.requested()) {
+        const std::vector<ElementId> ends = sites.ends();
+        const PassedLight passed(scene, light.tree, ends);
+        std::vector<ElementId> opened, cut;
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            const double area = light.tree.area(ends[i]);
+            bool finer = false;
+            passed.visit_behind(i, [&](std::uint32_t j, double) {
+                finer = finer || light.tree.area(ends[j]) < as_small * area;
+            });
+            if (finer && !light.tree.is_leaf(ends[i])) opened.push_back(ends[i]);
+            if (finer && light.tree.is_leaf(ends[i]) && area > 2 * least) cut.push_back(ends[i]);
+        }
+        if (opened.empty() && cut.empty()) break;
+        refiner.open(opened);
+        refiner.cut_elements(cut, radiosity, also);
+    }
 }
 
 double Hierarchy::open_share() const {

@@ -61,6 +61,7 @@ struct Hierarchy {
 
   private:
     NodalValues reflected_once(ElementId leaf) const;
+    void refine_panes_alike();
     void find_light_below(const std::vector<ElementId>& parents, Field<ElementId, double>& roughness);
 };
 

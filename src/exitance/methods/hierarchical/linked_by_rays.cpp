@@ -76,7 +76,7 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
 
     // Every leaf has links of its own: the part is all of the hierarchy.
     const ElementPart part{sites.inner(), leaves};
-    light.kept = rows.kept();
+    light.kept = kept_light(rows, stage.scene);
     relax_constant_elements(input, LinkOperator(sites, links, nullptr, part), light);
     light.links = links.size();
     light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();

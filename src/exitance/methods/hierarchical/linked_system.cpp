@@ -11,11 +11,23 @@ void LinkedSystem::set_links(Links near, std::optional<ClusterLinks> far) {
     far_ = std::move(far);
 }
 
+/// What such elements hold of the light of panes.
+PassedLight LinkedSystem::passed_between(std::span<const ElementId> ends) const {
+    const NodalBasis& basis = sites_.basis();
+    return {input_.stage.scene, sites_.tree(), ends, sites_.nodes(), basis.order() - 1,
+            [&](ElementId e, const Point& x, std::span<double> factors) {
+                const Patch frame = sites_.frame(e);
+                basis.interpolate(frame.shape, frame.coordinates(x), factors);
+            }};
+}
+
 SolveReport LinkedSystem::solve(const NodalField& rhs, NodalField& x, bool closed) {
     const ElementTree& tree = sites_.tree();
     const ClusterLinks* const far = far_ ? &*far_ : nullptr;
     const ElementPart part = linked_part(sites_, *near_, far);
-    const LinkOperator F(sites_, *near_, far, part);
+    const LinkOperator one_sided(sites_, *near_, far, part);
+    const PassedLight passed = passed_between(part.ends);
+    const PassingTransport F(one_sided, passed);
     const std::size_t n = sites_.nodes();
     std::vector<Spectrum> rho(F.size()), first(F.size()), value(F.size());
     std::vector<double> area(F.size());
@@ -56,6 +68,13 @@ void LinkedSystem::gather(const NodalField& b, NodalField& E) const {
     near_->gather(b, E);
     if (far_) far_->add_to(E, b);
     E.push();
+    if (!input_.stage.scene.has_diffusing_panes()) return;
+    const std::vector<ElementId> ends = sites_.ends();
+    const std::size_t n = sites_.nodes();
+    std::vector<Spectrum> met(ends.size() * n);
+    for (std::size_t i = 0; i < met.size(); ++i) met[i] = E.node(ends[i / n], i % n);
+    passed_between(ends).meet(std::span(met));
+    for (std::size_t i = 0; i < met.size(); ++i) E.set_node(ends[i / n], i % n, met[i]);
 }
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 #include "exitance/links/cluster_links.hpp"
 #include "exitance/links/links.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/transport/passed_light.hpp"
 
 namespace exitance {
 
@@ -33,6 +34,8 @@ class LinkedSystem {
     const Links& links() const { return *near_; }  ///< Those between elements.
 
   private:
+    PassedLight passed_between(std::span<const ElementId> ends) const;
+
     const MethodInput& input_;
     const LinkSites& sites_;
     std::optional<Links> near_;

@@ -22,7 +22,7 @@ void correct_by_rays(Hierarchy& h) {
     const RayRows rows(h.input.stage, light.tree, light.numbering, locator, h.input.knobs.solve_rays,
                        h.input.options.seed);
     light.rays += rows.rays();
-    light.kept = rows.kept();
+    light.kept = kept_light(rows, h.input.stage.scene);
     const std::size_t before = light.report.iterations;
     relax_constant_elements(h.input, rows, light);
     light.report.iterations += before;

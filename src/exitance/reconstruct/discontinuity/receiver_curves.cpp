@@ -69,7 +69,7 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
     if (out.light.is_dark() && options_.secondary.empty()) return out;
     add_contacts(number, out);
     if (region.area >= options_.least_area)
-        add_events(number, out), add_secondary(number, out);
+        add_events(number, out), add_secondary(number, out), add_curves_behind(number, out);
     else if (!out.light.is_unshadowed())
         out.left_out += out.light.sources.size();
     if (options_.stop && options_.stop->requested()) return out;
@@ -85,6 +85,18 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
         out.curves.resize(options_.most_curves);
     }
     return out;
+}
+
+/// Curves of a diffusing pane's other side, whose light comes through.
+void CurveFinder::add_curves_behind(RegionId region, ReceiverCurves& out) const {
+    const RegionId behind = stage_->scene.behind(region);
+    if (behind.is_none()) return;
+    ReceiverCurves there = look(behind);
+    add_contacts(behind, there), add_events(behind, there), add_secondary(behind, there);
+    for (FlatCurve& c : there.curves) {
+        c.a = out.frame.flat(there.frame.at(c.a)), c.b = out.frame.flat(there.frame.at(c.b));
+        out.curves.push_back(c);
+    }
 }
 
 void CurveFinder::add_contacts(RegionId region, ReceiverCurves& out) const {

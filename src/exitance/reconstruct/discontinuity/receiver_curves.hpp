@@ -58,6 +58,7 @@ class CurveFinder {
 
   private:
     void add_contacts(RegionId region, ReceiverCurves& out) const;
+    void add_curves_behind(RegionId region, ReceiverCurves& out) const;
     /// What a source brings to a region, W/m^2 of rho E.
     struct Effect {
         double gain = HUGE_VAL;  ///< At most, anywhere.
