@@ -32,13 +32,15 @@ std::vector<Vec2> places_about_pixel(int samples, std::uint64_t seed) {
 /// Makes one tile of a picture after the other. One a thread.
 class TilePainter {
   public:
-    TilePainter(const RadiosityFunction& light, const PictureOptions& options, std::span<const Vec2> places)
+    TilePainter(const RadiosityFunction& light, const PictureOptions& options, std::span<const Vec2> places,
+                double brightness)
         : scene_(light.solution().scene),
           tracer_(light.stage().tracer),
           options_(options),
           rays_(options.camera, options.size),
           places_(places),
-          light_(light, static_cast<std::uint32_t>(places.size()), options.gather, options.seed) {}
+          light_(light, static_cast<std::uint32_t>(places.size()), options.gather, options.seed, SpotPoints::any,
+                 brightness) {}
 
     /// The tile whose upper left pixel is (x0, y0).
     void paint(int x0, int y0, Picture& picture) {
@@ -154,6 +156,31 @@ class TilePainter {
     std::vector<Spot> spots_;
 };
 
+/// The median of irradiance, as the elements that `export` writes have it, over some pixels that show fronts.
+double usual_brightness(const RadiosityFunction& light, const PictureOptions& options) {
+    constexpr int side = 24;  // pixels each way
+    const Solution& solution = light.solution();
+    const CameraRays rays(options.camera, options.size);
+    std::vector<ProbePoint> places;
+    for (int i = 0; i < side * side; ++i) {
+        Point origin;
+        Vec3 direction;
+        RayHit hit;
+        const double x = (i % side + 0.5) / side * options.size.width,
+                     y = (i / side + 0.5) / side * options.size.height;
+        if (!rays.ray(x, y, origin, direction)) continue;
+        light.stage().tracer.nearest(std::span(&direction, 1), origin, RegionId(), std::span(&hit, 1));
+        if (hit.surface.is_none() || !hit.front) continue;
+        places.push_back({origin + hit.distance * direction, solution.scene.surfaces()[hit.surface].normal});
+    }
+    std::vector<double> E;
+    for (const Light& there : light.interpolant_at(places)) E.push_back(mean(there.irradiance));
+    if (E.empty()) return 0;
+    const auto middle = E.begin() + static_cast<std::ptrdiff_t>(E.size() / 2);
+    std::nth_element(E.begin(), middle, E.end());
+    return *middle;
+}
+
 }  // namespace
 
 Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
@@ -161,6 +188,7 @@ Picture take_picture(const RadiosityFunction& light, const PictureOptions& optio
     progress.phase("render");
     Picture picture{options.size, std::vector<Pixel>(options.size.pixels())};
     const std::vector<Vec2> places = places_about_pixel(options.samples, options.seed);
+    const double brightness = usual_brightness(light, options);
     const auto columns = static_cast<std::size_t>((options.size.width + tile_side - 1) / tile_side);
     const std::size_t tiles = columns * static_cast<std::size_t>((options.size.height + tile_side - 1) / tile_side);
     // A painter's memory serves several tiles; where a tile is long work, the threads are better off with one each.
@@ -168,7 +196,7 @@ Picture take_picture(const RadiosityFunction& light, const PictureOptions& optio
     for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
         parallel_ranges(std::min(at_once, tiles - first), grain, [&](std::size_t begin, std::size_t end) {
-            TilePainter painter(light, options, places);
+            TilePainter painter(light, options, places, brightness);
             for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
                 painter.paint(static_cast<int>(i % columns) * tile_side, static_cast<int>(i / columns) * tile_side,
                               picture);

@@ -149,6 +149,42 @@ TEST(Picture, AFinalGatherOfAFurnaceIsUniformToo) {
         EXPECT_NEAR(pixel.irradiance[0], 1 / (1 - rho), 1e-6);
 }
 
+/// Two furnished rooms under 96 lamps, nothing reflected.
+Solution many_shadows() {
+    Solution s;
+    s.scene = built_scene("carpet", {{"u", "12"}, {"v", "8"}, {"cuts", "1"}, {"books", "0"}});
+    ElementFunction& f = s.interpolant;
+    f.tree = Stage(s.scene).make_elements({.edge = 10});
+    f.first_value.resize(f.tree.size(), 0);
+    for (ElementId e : f.tree.leaves()) {
+        f.first_value[e] = static_cast<std::uint32_t>(f.values.size());
+        for (int k = 0; k < f.tree.patch(e).corner_count(); ++k) f.values.emplace_back();
+    }
+    s.indirect = f;
+    return s;
+}
+
+TEST(Picture, OfManyShadowsIsWhatTheFunctionIsThereButForNoise) {
+    const Solution s = many_shadows();
+    const Camera camera{{6, 3, 1.5}, {4, 2, 0.8}, 80};
+    const PictureSize size{96, 64};
+    const Picture picture = picture_of(s, camera, size, 1);
+    const RadiosityFunction light(s);
+    const CameraRays rays(camera, size);
+    double all = 0, miss = 0, count = 0;
+    for (int y = 0; y < size.height; y += 3)
+        for (int x = 0; x < size.width; x += 3) {
+            const Pixel& pixel = picture.pixels[static_cast<std::size_t>(y * size.width + x)];
+            if (pixel.front == 0) continue;
+            const double expected = mean(light_behind(s, light, rays, x, y).irradiance);
+            const double E = mean(pixel.irradiance);
+            all += expected, miss += std::pow((E - expected) / std::max(expected, 0.01), 2), ++count;
+        }
+    EXPECT_GT(all / count, 0.1);  // W/m^2
+    // 0.4% are asked for, and light is interpolated where its middle is within 1%; some pixels take all rays there are.
+    EXPECT_LT(std::sqrt(miss / count), 0.02);
+}
+
 TEST(Picture, AStopLeavesItEmpty) {
     const Solution s = sample_solution();
     Progress progress;

@@ -50,10 +50,9 @@ class Octagon {
 };
 
 constexpr std::uint32_t probing = 4;  ///< Points of a spot that tell whether the others are wanted.
-constexpr double alike = 0.01;        ///< Values that differ by less make no difference to their mean.
 
 bool agree(const Spectrum& a, const Spectrum& b) {
-    return std::abs(mean(a) - mean(b)) <= alike * std::max(mean(a), mean(b));
+    return std::abs(mean(a) - mean(b)) <= TileLight::alike * std::max(mean(a), mean(b));
 }
 
 /// The mean of value(i) over [0, count): of the first few if these differ little beside `rest` and themselves.
@@ -74,13 +73,15 @@ Spectrum probed_mean(std::uint32_t count, const Spectrum& rest, const Value& val
 }  // namespace
 
 TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed,
-                     SpotPoints kind)
+                     SpotPoints kind, double brightness)
     : light_(light),
       samples_(samples),
       gather_(gather),
       seed_(seed),
       kind_(kind),
-      direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()) {
+      brightness_(brightness),
+      direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()),
+      shared_(light.stage().direct, light.stage().tracer) {
     spot_at_.fill(0), is_found_.fill(0);
 }
 
@@ -207,144 +208,34 @@ Spectrum TileLight::mirrored_mean(const Spot& spot, const Spectrum& rest, const 
     return sum / spot.count;
 }
 
-namespace {
-
-/// What a pixel's light may miss, as part of it: less than anybody sees beside its neighbours.
-constexpr double pixel_error = 0.004;
-constexpr std::uint32_t cell_side = 4;  ///< Pixels; between the corners of a cell light may be interpolated.
-constexpr double even = 0.04;           ///< It is if they differ by less than this.
-
-}  // namespace
-
-/// Do clusters of emitters pay on these spots of one region? Asked at three of them where there are too many emitters
-/// to look at each: else what is certainly hidden is better left out first (`has_many_shadows`).
-bool TileLight::suits_clusters(std::span<const Spot> spots) {
-    constexpr std::size_t too_many = 1000;
-    const Stage& stage = light_.stage();
-    const bool possible = stage.clustered.is_possible() && stage.clustered.tree().sources().size() > too_many;
-    if (!possible || squared(direct_share_) == 0) return false;
-    const RegionId region = spots.front().region;
-    const Normal& n = stage.scene.regions()[region].plane.n;
-    const std::size_t last = spots.size() - 1;
-    return std::ranges::any_of(std::array{std::size_t{0}, last / 2, last}, [&](std::size_t i) {
-        return stage.clustered.pays(points_[spots[i].first], n, region, {.relative = pixel_error}, clustered_);
-    });
-}
-
-/// Emitters of which every point would see another part.
-bool TileLight::has_many_shadows(const ReceiverLight* whole) const {
-    if (!whole || !light_.stage().clustered.is_possible()) return false;
-    constexpr std::ptrdiff_t many = 24;
-    return std::ranges::count_if(whole->sources, [](const auto& source) { return source.count > 0; }) > many;
-}
-
-const Spot* TileLight::spot_at(std::span<const Spot> spots, int x, int y) const {
-    const std::uint32_t found = spot_at_[static_cast<std::size_t>(y * tile_side + x)];
-    return found == 0 ? nullptr : &spots[found - 1];
-}
-
-/// Direct light at one place of a spot; asked for once.
-Spectrum TileLight::light_by_clusters(const Spot& spot) {
-    const auto pixel = static_cast<std::size_t>(spot.y * tile_side + spot.x);
-    if (is_found_[pixel]) return found_[pixel];
-    const Stage& stage = light_.stage();
-    Point at = points_[spot.first];
-    if (spot.count == samples_) {  // else its middle may be hidden behind what shows beside it
-        at = Point();
-        for (std::uint32_t i = 0; i < spot.count; ++i) at += points_[spot.first + i] / spot.count;
-    }
-    const double rest = mean(spot.irradiance);  // what there is already
-    constexpr unsigned most_rays = 1024;
-    const LightAccuracy accuracy{pixel_error, pixel_error * rest, most_rays};
-    const Normal& n = stage.scene.regions()[spot.region].plane.n;
-    const ClusteredLight::Estimate found = stage.clustered.by_clusters(at, n, spot.region, accuracy, clustered_);
-    is_found_[pixel] = 1, noise_[pixel] = std::sqrt(found.variance);
-    return found_[pixel] = direct_share_ * found.irradiance;
-}
-
-/// Light between the corners of a cell of pixels, if it is even there and its middle is as the corners say.
-bool TileLight::interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y1) {
-    const std::array<const Spot*, 4> corners = {spot_at(spots, x0, y0), spot_at(spots, x1, y0), spot_at(spots, x0, y1),
-                                                spot_at(spots, x1, y1)};
-    if (!std::ranges::all_of(corners, [&](const Spot* s) { return s && s->count == samples_; })) return false;
-    std::array<Spectrum, 4> E;
-    double least = HUGE_VAL, most = 0, noise = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        E[i] = light_by_clusters(*corners[i]);
-        noise = std::max(noise, noise_[static_cast<std::size_t>(corners[i]->y * tile_side + corners[i]->x)]);
-        const double all = mean(E[i] + corners[i]->irradiance);
-        least = std::min(least, all), most = std::max(most, all);
-    }
-    constexpr double seldom = 3;  // standard deviations: what noise alone makes, no smaller cell would mend
-    if (most - least > std::max(even * most, seldom * noise)) return false;
-    const auto between = [&](int x, int y) {
-        const double u = static_cast<double>(x - x0) / (x1 - x0), v = static_cast<double>(y - y0) / (y1 - y0);
-        return (1 - v) * ((1 - u) * E[0] + u * E[1]) + v * ((1 - u) * E[2] + u * E[3]);
-    };
-    const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
-    const Spot* middle = spot_at(spots, x, y);
-    if (!middle || std::abs(mean(light_by_clusters(*middle) - between(x, y))) > std::max(alike * most, seldom * noise))
-        return false;
-    for (int k = y0; k <= y1; ++k)
-        for (int i = x0; i <= x1; ++i) {
-            const auto pixel = static_cast<std::size_t>(k * tile_side + i);
-            const Spot* spot = spot_at(spots, i, k);
-            if (!spot || is_found_[pixel] || spot->count != samples_) continue;
-            found_[pixel] = between(i, k), noise_[pixel] = noise, is_found_[pixel] = 1;
-        }
-    return true;
-}
-
-/// The pixels of a cell, corners included: interpolated, or those of its quarters.
-void TileLight::fill(std::span<Spot> spots, int x0, int y0, int x1, int y1) {
-    if (x1 - x0 <= 1 || y1 - y0 <= 1 || interpolate(spots, x0, y0, x1, y1)) return;
-    const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
-    fill(spots, x0, y0, x, y), fill(spots, x, y0, x1, y);
-    fill(spots, x0, y, x, y1), fill(spots, x, y, x1, y1);
-}
-
-/// All spots of one region where emitters are many and small: shadows are soft there as a rule, so that light is asked
-/// for at corners of cells, and between them where it is not even.
-void TileLight::evaluate_by_clusters(std::span<Spot> spots) {
-    const auto pixel_of = [](const Spot& spot) { return static_cast<std::size_t>(spot.y * tile_side + spot.x); };
-    for (std::size_t i = 0; i < spots.size(); ++i) {
-        spots[i].irradiance = elements(spots[i]);
-        spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
-    }
-    constexpr int last = tile_side - 1, side = cell_side;
-    for (int y = 0; y < last; y += side)
-        for (int x = 0; x < last; x += side) fill(spots, x, y, std::min(x + side, last), std::min(y + side, last));
-    for (Spot& spot : spots) {
-        spot.irradiance += light_by_clusters(spot);
-        spot_at_[pixel_of(spot)] = 0, is_found_[pixel_of(spot)] = 0;
-    }
-}
-
 /// All spots of one region, block by block.
 void TileLight::evaluate_region(std::span<Spot> spots) {
+    by_rays_.fill(false);
     if (suits_clusters(spots)) return evaluate_by_clusters(spots);
     const ReceiverLight* whole = prepare(spots, nullptr, whole_) ? &whole_ : nullptr;
-    if (has_many_shadows(whole)) return evaluate_by_clusters(spots);
     settled_.assign(spots.size(), 0), rest_.resize(spots.size());
-    for (std::size_t begin = 0, end = 0; begin < spots.size(); begin = end) {
-        const auto block = static_cast<std::size_t>(block_of(spots[begin]));
-        while (end < spots.size() && block_of(spots[end]) == static_cast<int>(block)) ++end;
+    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
         known_[block] = look_at_block(spots.subspan(begin, end - begin), whole, parts_[block]);
+    });
+    if (share_rays(spots, whole)) evaluate_by_shared_rays(spots);
+    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
+            settled_[i] = by_rays_[block];
+            if (settled_[i]) continue;
             Spectrum light;
             settled_[i] = first_guess(spots[i], known_[block], light);
             rest_[i] = elements(spots[i]);
             spots[i].irradiance = rest_[i] + light;
-            spot_at_[static_cast<std::size_t>(spots[i].y * tile_side + spots[i].x)] = static_cast<std::uint32_t>(i + 1);
         }
-    }
+    });
     const bool squares = kind_ == SpotPoints::mirrored;
     for (std::size_t i = 0; i < spots.size(); ++i)
         settled_[i] |= !(squares && spots[i].count == samples_ ? bends_between_neighbours(spots, i)
                                                                : differs_from_neighbours(spots, i));
     for (std::size_t i = 0; i < spots.size(); ++i) {
         Spot& spot = spots[i];
-        spot_at_[static_cast<std::size_t>(spot.y * tile_side + spot.x)] = 0;
+        spot_at_[pixel_of(spot)] = 0;
         if (settled_[i]) continue;
         const ReceiverLight* known = known_[static_cast<std::size_t>(block_of(spot))];
         if (squares && spot.count == samples_) {
