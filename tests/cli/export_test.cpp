@@ -49,6 +49,39 @@ TEST(ProgramExport, WritesDiscontinuityCurvesAndQuadraticTriangles) {
     EXPECT_NE(read_text(cells).find(count), std::string::npos);
 }
 
+TEST(ProgramExport, WritesCloughAndTochersElementsAsCubicTriangles) {
+    const TemporaryFolder folder;
+    const std::string scene = folder / "table.obj", solution = folder / "table.h5", cells = folder / "table.vtu";
+    ASSERT_EQ(run_program({"generate", "table", "-o", scene, "-q"}).status, 0);
+    const Finished run = run_program({"solve", scene, "-o", solution, "--method", "discontinuity", "--bounces", "0",
+                                      "--error-interpolant", "0.01", "--dm-element", "clough-tocher", "--json", "-q"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["basis"], "clough-tocher");
+    EXPECT_LE(json["relative_error_estimate_interpolant"], 0.01);
+    ASSERT_EQ(run_program({"export", solution, "-o", cells}).status, 0);
+    const std::string count = "NumberOfCells=\"" + std::to_string(3 * json["triangles"].get<int>()) + "\"";
+    EXPECT_NE(read_text(cells).find(count), std::string::npos);
+    EXPECT_EQ(run_program({"export", solution, "-o", folder / "table.glb"}).status, 0);
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "table.png", "--size", "40x30", "--mesh"}).status, 0);
+}
+
+TEST(ProgramExport, WritesOneMeshOfLayers) {
+    const TemporaryFolder folder;
+    const std::string scene = folder / "boxes.obj", solution = folder / "boxes.h5", cells = folder / "boxes.vtu";
+    ASSERT_EQ(run_program({"generate", "boxes", "lights=2", "-o", scene, "-q"}).status, 0);
+    const Finished run = run_program({"solve", scene, "-o", solution, "--method", "discontinuity", "--bounces", "0",
+                                      "--error-interpolant", "0.01", "--layers", "on", "--json", "-q"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["layers"], 2);
+    EXPECT_GT(json["layer_bytes"], 0);
+    EXPECT_LT(json["layer_bytes"].get<double>(), 0.5 * json["winged_edge_bytes"].get<double>());
+    ASSERT_EQ(run_program({"export", solution, "-o", cells}).status, 0);
+    const std::string count = "NumberOfCells=\"" + std::to_string(json["triangles"].get<int>()) + "\"";
+    EXPECT_NE(read_text(cells).find(count), std::string::npos);
+}
+
 TEST(ProgramExport, TablesOfFacesTellTheErrorOfEachAndWhatItRestsOn) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5", table = folder / "room.csv";

@@ -105,6 +105,13 @@ TEST(ProgramUsage, OptionsOfDiscontinuityMeshingElsewhereAreNamed) {
         {"--premesh", "coarse", "--method", "discontinuity"},
         {"--dm-quality", "delaunay", "--method", "matrix"},
         {"--dm-quality", "delaunay", "--triangulation", "shortest", "--method", "discontinuity"},
+        {"--dm-element", "clough-tocher", "--method", "matrix"},
+        {"--dm-element", "cubic", "--method", "discontinuity"},
+        {"--dm-element", "clough-tocher", "--method", "discontinuity", "--local-pass", "c"},
+        {"--layers", "on", "--method", "hierarchical"},
+        {"--layers", "both", "--method", "discontinuity"},
+        {"--layers", "on", "--method", "discontinuity", "--dm-element", "clough-tocher"},
+        {"--layers", "on", "--method", "discontinuity", "--local-pass", "a"},
         {"--dm-sources", "much", "--method", "discontinuity"},
         {"--dm-sources", "-1W", "--method", "discontinuity"},
     };

@@ -45,6 +45,12 @@ void declare_discontinuity(CLI::App& app, SolveOptions& options) {
         "Shape of triangles: as bisection leaves it (rivara, default), or by points added until angles are above "
         "20.7 degrees (delaunay)")
         ->group(group);
+    add_choice(app, "--dm-element", mesh_element_names, o.element,
+               "On triangles: quadratic (default), or cubics whose tangent planes agree but across edges where light "
+               "jumps or has a kink (clough-tocher)")
+        ->group(group);
+    add_switch(app, "--layers", o.layers, "One compressed mesh a source, to be added up, in place of one for all")
+        ->group(group);
 }
 
 Result<void> check_discontinuity(const SolveOptions& options) {
@@ -54,10 +60,21 @@ Result<void> check_discontinuity(const SolveOptions& options) {
                              : o.three_edges   ? "--eee"
                              : o.triangulation ? "--triangulation"
                              : o.premesh       ? "--premesh"
-                                               : "--dm-quality";
+                             : o.quality       ? "--dm-quality"
+                             : o.element       ? "--dm-element"
+                                               : "--layers";
     if (options.method != Method::discontinuity)
         return Error{ErrorCode::usage, "is obeyed by --method discontinuity alone", name,
                      "exitance solve SCENE -o S.h5 --method discontinuity"};
+    if (o.element == MeshElement::clough_tocher && options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e)
+        return Error{ErrorCode::usage, "has no elements but quadratic ones for --local-pass a to d", "--dm-element",
+                     "leave --dm-element or --local-pass out"};
+    if (o.layers && options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e)
+        return Error{ErrorCode::usage, "keeps direct light apart, which --local-pass a to d does not", "--layers",
+                     "leave --layers or --local-pass out"};
+    if (o.layers == true && o.element == MeshElement::clough_tocher)
+        return Error{ErrorCode::usage, "holds quadratic elements alone", "--layers",
+                     "leave --layers or --dm-element out"};
     if (o.sources && options.bounces == 0)
         return Error{ErrorCode::usage, "asks for shadows of reflected light, of which --bounces 0 leaves none",
                      "--dm-sources", "leave --bounces 0 or --dm-sources out"};

@@ -161,6 +161,8 @@ Json discontinuity_json(const DiscontinuityChoice& c) {
               {"triangulation", name_or_null(triangulation_choices, c.triangulation)},
               {"premesh", name_or_null(premesh_names, c.premesh)},
               {"dm_quality", name_or_null(mesh_quality_names, c.quality)}};
+    if (c.element) json["dm_element"] = name_in(mesh_element_names, *c.element);
+    if (c.layers) json["layers"] = *c.layers;
     if (c.sources)
         json["dm_sources"] = {{"count", value_or_null(c.sources->count)}, {"power", value_or_null(c.sources->power)}};
     return json;

@@ -171,7 +171,7 @@ Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene
 /// What is told of a solution that has been written stays of it: statistics, options and the like. The rest makes room.
 void drop_light(Solution& solution) {
     solution.scene = {}, solution.indirect = {}, solution.interpolant = {};
-    solution.links = {}, solution.discontinuity = {}, solution.cells = {};
+    solution.links = {}, solution.discontinuity = {}, solution.layers = {}, solution.cells = {};
     release_freed_memory();
 }
 

@@ -89,6 +89,18 @@ void DirectLight::add_windows(const Scene& scene) {
     }
 }
 
+void DirectLight::keep_only(std::span<const std::uint32_t> emitters, bool beams) {
+    static const std::vector<PunctualLight> no_lights;
+    std::vector<Emitter> kept;
+    std::size_t first_distant = emitters.size();
+    for (const std::uint32_t e : emitters) {
+        if (is_distant(e)) first_distant = std::min(first_distant, kept.size());
+        kept.push_back(emitters_[e]);
+    }
+    emitters_ = std::move(kept), first_distant_ = first_distant;
+    if (!beams) beams_ = Beams(no_lights, *occluders_);
+}
+
 double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const {
     if (!shines_on(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return 0;
     double sum = 0;

@@ -101,6 +101,8 @@ class DirectLight {
         enum class Sky : std::uint8_t { none, open, window } sky = Sky::none;
     };
     const std::vector<Emitter>& emitters() const { return emitters_; }
+    /// Leaves these emitters, by their numbers in rising order, and lights without extent only if they are to stay.
+    void keep_only(std::span<const std::uint32_t> emitters, bool beams);
     /// Can its light come to a region (or none) at all?
     bool shines_on(const Emitter& emitter, RegionId own) const {
         return !is_own(emitter, own) && (emitter.sky == Emitter::Sky::none ||

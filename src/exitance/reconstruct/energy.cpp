@@ -96,9 +96,8 @@ template <class Visit>
 void for_arriving(const Solution& solution, const DirectProjection& direct, const Visit& visit) {
     if (const SixNodeMesh& mesh = solution.discontinuity; !mesh.empty()) {
         for (std::uint32_t t = 0; t < mesh.size(); ++t) {
-            // A quadratic polynomial has the mean of its values at the middles of a triangle's edges.
             const auto& n = mesh.nodes[t];
-            const Spectrum E = (1.0 / 3) * (mesh.value(n[3]) + mesh.value(n[4]) + mesh.value(n[5]));
+            const Spectrum E = mesh.mean(t);
             const Point &a = mesh.points[n[0]], &b = mesh.points[n[1]], &c = mesh.points[n[2]];
             visit(mesh.area(t), E, Leaving{mesh.region[t], 0, nullptr, {}, {a, b - a, c - a, Patch::Shape::triangle}});
         }

@@ -21,6 +21,7 @@ RadiosityFunction::RadiosityFunction(const Solution& solution)
       interpolant_locator_(solution.interpolant.tree, solution.scene.regions().size()),
       cells_(solution.cells),
       triangles_(solution.discontinuity, solution.scene),
+      layers_(solution.layers, solution.scene),
       stage_(std::make_unique<Stage>(solution.scene)),
       accuracy_(point_accuracy(solution.statistics.relative_error_estimate.value_or(1))) {}
 
@@ -80,16 +81,19 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
     return out;
 }
 
+Spectrum RadiosityFunction::interpolated(RegionId region, const Point& x) const {
+    if (!solution_.layers.empty()) return exact_share() * layers_.at(region, x) + elements(region, x);
+    if (!solution_.discontinuity.empty()) return triangles_.at(region, x);
+    return solution_.interpolant.at(interpolant_locator_.find(region, x));
+}
+
 std::vector<Light> RadiosityFunction::interpolant_at(std::span<const ProbePoint> points) const {
     std::vector<Light> out(points.size());
     parallel_for(points.size(), 256, [&](std::size_t i) {
         const SurfaceId surface = locator_.find(points[i].x, points[i].n);
         if (surface.is_none()) return;
         const RegionId region = solution_.scene.surfaces()[surface].region;
-        const Spectrum irradiance = solution_.discontinuity.empty()
-                                        ? solution_.interpolant.at(interpolant_locator_.find(region, points[i].x))
-                                        : triangles_.at(region, points[i].x);
-        out[i] = light_on(solution_.scene.material(surface), irradiance);
+        out[i] = light_on(solution_.scene.material(surface), interpolated(region, points[i].x));
     });
     return out;
 }

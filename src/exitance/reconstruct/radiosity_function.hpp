@@ -65,6 +65,7 @@ class RadiosityFunction {
     const Stage& stage() const { return *stage_; }
 
   private:
+    Spectrum interpolated(RegionId region, const Point& x) const;
     Spectrum irradiance_on(RegionId region, const Point& x, Component component,
                            ClusteredLight::Workspace& workspace) const;
 
@@ -73,6 +74,7 @@ class RadiosityFunction {
     ElementLocator indirect_locator_, interpolant_locator_;
     CellFunction cells_;        ///< Where growing cells hold the light.
     SixNodeLocator triangles_;  ///< Of the discontinuity mesh, where there is one.
+    LayerFunction layers_;      ///< Direct light as one mesh a source, where it was asked for.
     std::unique_ptr<Stage> stage_;
     LightAccuracy accuracy_;  ///< Of direct light where emitters are many and small.
 };

@@ -8,6 +8,7 @@
 
 #include "exitance/links/kept_link.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
+#include "exitance/mesh/dm_tree/light_layers.hpp"
 #include "exitance/mesh/growing_cells/cell_light.hpp"
 
 namespace exitance {
@@ -111,6 +112,9 @@ struct Solution {
     /// E_dir + E_ind once more, where the method made such a mesh: then it is what `export` writes, and `interpolant`
     /// follows it by linear triangles, for what needs these.
     SixNodeMesh discontinuity = {};
+    /// E_dir as one mesh a source, where it was asked for: then their sum, with what the elements hold, is what is read
+    /// where no single mesh is needed; `discontinuity` is still there for files and pictures of one mesh.
+    LightLayers layers = {};
     /// What growing cells learned. Where they are `delivered`, they are evaluated in place of `indirect`, which is
     /// their projection on elements then.
     CellLight cells = {};

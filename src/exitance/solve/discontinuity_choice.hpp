@@ -14,6 +14,8 @@ namespace exitance {
 enum class ThreeEdgeEvents { automatic, on, off };
 /// In which order a face is cut: all curves at once, those that bound half-shadows first, or a coarse grid before all.
 enum class Premesh { off, penumbra_first, coarse };
+/// The function on a triangle: one quadratic polynomial, or three cubic ones whose tangent planes agree.
+enum class MeshElement { quadratic, clough_tocher };
 /// How triangles get their shape: by points that are added for it before light is looked at, or as bisection leaves it.
 enum class MeshQuality { delaunay, rivara };
 
@@ -26,6 +28,10 @@ inline constexpr std::array<std::pair<Premesh, std::string_view>, 3> premesh_nam
     {Premesh::off, "off"},
     {Premesh::penumbra_first, "penumbra-first"},
     {Premesh::coarse, "coarse"},
+}};
+inline constexpr std::array<std::pair<MeshElement, std::string_view>, 2> mesh_element_names{{
+    {MeshElement::quadratic, "quadratic"},
+    {MeshElement::clough_tocher, "clough-tocher"},
 }};
 inline constexpr std::array<std::pair<MeshQuality, std::string_view>, 2> mesh_quality_names{{
     {MeshQuality::delaunay, "delaunay"},
@@ -52,8 +58,10 @@ struct DiscontinuityChoice {
     std::optional<TriangulationScheme> triangulation = {};
     std::optional<Premesh> premesh = {};
     std::optional<MeshQuality> quality = {};
+    std::optional<MeshElement> element = {};
+    std::optional<bool> layers = {};  ///< One mesh a source.
 
-    bool any() const { return sources || three_edges || triangulation || premesh || quality; }
+    bool any() const { return sources || three_edges || triangulation || premesh || quality || element || layers; }
 };
 
 }  // namespace exitance

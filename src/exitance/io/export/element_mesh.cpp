@@ -28,6 +28,75 @@ class FaceFinder {
     std::optional<Locator> locator_;
 };
 
+/// Clough and Tocher's elements as VTK's Lagrange triangles of degree three, which hold them exactly: three each,
+/// between an edge and the centroid. Corners and the thirds of edges across which light is continuous are shared.
+class CubicCells {
+  public:
+    static constexpr std::size_t nodes = 10;
+
+    explicit CubicCells(const SixNodeMesh& from) : from_(from) {
+        if (from.is_clough_tocher()) corner_.resize(from.points.size(), none), thirds_.resize(from.points.size(), none);
+    }
+
+    void add(std::uint32_t t, ElementMesh& mesh) {
+        std::array<std::uint32_t, 3> corner, edge;
+        std::array<std::array<std::uint32_t, 2>, 3> spoke;
+        std::array<Weights, 3> at{};
+        for (std::size_t i = 0; i < 3; ++i) at[i][i] = 1;
+        const Weights centre{1.0 / 3, 1.0 / 3, 1.0 / 3};
+        for (std::size_t i = 0; i < 3; ++i) {
+            std::uint32_t& shared = corner_[from_.nodes[t][i]];
+            if (shared == none) shared = put(t, at[i], mesh);
+            corner[i] = shared;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Weights &a = at[i], &b = at[(i + 1) % 3];
+            std::uint32_t& shared = thirds_[from_.nodes[t][3 + i]];  // the first that comes runs from a to b
+            edge[i] = shared;
+            if (shared != none) continue;
+            shared = edge[i] = put(t, between(a, b, 1), mesh);
+            put(t, between(a, b, 2), mesh);
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+            spoke[i] = {put(t, between(at[i], centre, 1), mesh), put(t, between(at[i], centre, 2), mesh)};
+        const std::uint32_t middle = put(t, centre, mesh);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const Point& a = mesh.points[corner[i]];
+            const bool runs = squared_norm(mesh.points[edge[i]] - a) <= squared_norm(mesh.points[edge[i] + 1] - a);
+            const std::uint32_t first = runs ? edge[i] : edge[i] + 1, second = runs ? edge[i] + 1 : edge[i];
+            Weights inner{};
+            for (std::size_t k = 0; k < 3; ++k) inner[k] = (at[i][k] + at[j][k] + centre[k]) / 3;
+            for (const std::uint32_t p : {corner[i], corner[j], middle, first, second, spoke[j][0], spoke[j][1],
+                                          spoke[i][1], spoke[i][0], put(t, inner, mesh)})
+                mesh.connectivity.push_back(p);
+        }
+    }
+
+  private:
+    using Weights = std::array<double, 3>;
+    static constexpr std::uint32_t none = 0xffffffffu;
+
+    static Weights between(const Weights& a, const Weights& b, int thirds) {
+        Weights out{};
+        for (std::size_t k = 0; k < 3; ++k) out[k] = ((3 - thirds) * a[k] + thirds * b[k]) / 3;
+        return out;
+    }
+
+    std::uint32_t put(std::uint32_t t, const Weights& L, ElementMesh& mesh) {
+        Point place;
+        for (std::size_t k = 0; k < 3; ++k) place += L[k] * from_.points[from_.nodes[t][k]];
+        const Spectrum light = from_.at(t, {L[1], L[2]});
+        mesh.points.push_back(place);
+        mesh.irradiance.emplace_back();
+        for (std::size_t b = 0; b < bands; ++b) mesh.irradiance.back()[b] = static_cast<float>(light[b]);
+        return static_cast<std::uint32_t>(mesh.points.size() - 1);
+    }
+
+    const SixNodeMesh& from_;
+    std::vector<std::uint32_t> corner_, thirds_;  ///< Points by node: of corners; the first third by an edge's middle.
+};
+
 }  // namespace
 
 std::vector<std::int64_t> ElementMesh::cell_points() const {
@@ -40,35 +109,45 @@ std::vector<std::int64_t> ElementMesh::cell_points() const {
 }
 
 std::vector<std::uint8_t> ElementMesh::cell_types() const {
-    constexpr std::uint8_t quadratic_triangle = 22;
-    std::vector<std::uint8_t> out(size(), quadratic_triangle);
-    for (std::size_t i = 0; i < size() && !is_quadratic; ++i) out[i] = vtk_cell_type(corner_count(i));
+    constexpr std::uint8_t quadratic_triangle = 22, lagrange_triangle = 69;
+    std::vector<std::uint8_t> out(size(), cells == Cells::cubic ? lagrange_triangle : quadratic_triangle);
+    for (std::size_t i = 0; i < size() && cells == Cells::polygons; ++i) out[i] = vtk_cell_type(corner_count(i));
     return out;
 }
 
 ElementMesh make_cells(const Solution& solution) {
     const SixNodeMesh& from = solution.discontinuity;
     if (from.empty()) return make_element_mesh(solution);
-    const Scene& scene = solution.scene;
     ElementMesh mesh;
-    mesh.is_quadratic = true;
-    mesh.points = from.points, mesh.irradiance = from.values, mesh.radiosity = from.values;
-    FaceFinder finder(scene);
+    FaceFinder finder(solution.scene);
+    CubicCells cubics(from);
+    mesh.cells = from.is_clough_tocher() ? ElementMesh::Cells::cubic : ElementMesh::Cells::quadratic;
+    if (!from.is_clough_tocher()) mesh.points = from.points, mesh.irradiance = from.values;
+    mesh.radiosity.resize(mesh.points.size());
     for (std::uint32_t t = 0; t < from.size(); ++t) {
+        const std::size_t before = mesh.connectivity.size();
+        if (from.is_clough_tocher())
+            cubics.add(t, mesh);
+        else
+            mesh.connectivity.insert(mesh.connectivity.end(), from.nodes[t].begin(), from.nodes[t].end());
+        const std::size_t nodes = from.is_clough_tocher() ? CubicCells::nodes : from.nodes[t].size();
         const RegionId region = from.region[t];
-        const Material& material = scene.material(region);
-        for (const std::uint32_t n : from.nodes[t]) {
-            mesh.connectivity.push_back(n);
-            const Spectrum light = from.value(n);
+        const Material& material = solution.scene.material(region);
+        mesh.radiosity.resize(mesh.points.size());
+        for (std::size_t i = before; i < mesh.connectivity.size(); ++i) {
+            const std::uint32_t n = mesh.connectivity[i];
             for (std::size_t b = 0; b < bands; ++b)
-                mesh.radiosity[n][b] = static_cast<float>(material.exitance[b] + material.reflectance[b] * light[b]);
+                mesh.radiosity[n][b] = static_cast<float>(
+                    material.exitance[b] + material.reflectance[b] * static_cast<double>(mesh.irradiance[n][b]));
         }
-        mesh.first_point.push_back(static_cast<std::uint32_t>(mesh.connectivity.size()));
         const SurfaceId face = finder.find(region, from.centre(t));
-        mesh.surface.push_back(static_cast<std::int32_t>(face.value));
-        mesh.region.push_back(static_cast<std::int32_t>(region.value));
-        mesh.material.push_back(static_cast<std::int32_t>(scene.regions()[region].material.value));
-        mesh.group.push_back(static_cast<std::int32_t>(scene.surfaces()[face].group.value));
+        for (std::size_t end = before + nodes; end <= mesh.connectivity.size(); end += nodes) {
+            mesh.first_point.push_back(static_cast<std::uint32_t>(end));
+            mesh.surface.push_back(static_cast<std::int32_t>(face.value));
+            mesh.region.push_back(static_cast<std::int32_t>(region.value));
+            mesh.material.push_back(static_cast<std::int32_t>(solution.scene.regions()[region].material.value));
+            mesh.group.push_back(static_cast<std::int32_t>(solution.scene.surfaces()[face].group.value));
+        }
     }
     return mesh;
 }

@@ -25,7 +25,9 @@ struct ElementMesh {
     std::array<std::pair<const char*, const std::vector<std::int32_t>*>, 4> cell_ids() const {
         return {{{"surface", &surface}, {"region", &region}, {"material", &material}, {"group", &group}}};
     }
-    bool is_quadratic = false;  ///< Triangles of six nodes: corners, then the middles of the edges.
+    /// Polygons; triangles of six nodes, corners, then the middles of the edges; or triangles of ten, corners, thirds
+    /// of the edges 01, 12, 20, and the centroid, through which cubic polynomials lead.
+    enum class Cells : std::uint8_t { polygons, quadratic, cubic } cells = Cells::polygons;
 
     /// Points of all cells, and what VTK calls each cell.
     std::vector<std::int64_t> cell_points() const;
@@ -34,7 +36,8 @@ struct ElementMesh {
 
 ElementMesh make_element_mesh(const Solution& solution);
 
-/// The same with the quadratic triangles of a discontinuity mesh, whose nodes are shared, where there is one.
+/// The same with the quadratic triangles of a discontinuity mesh, whose nodes are shared, where there is one; of Clough
+/// and Tocher's elements, three cubic triangles each.
 ElementMesh make_cells(const Solution& solution);
 
 /// VTK's type of a polygon of so many corners: triangle, quadrilateral or polygon.

@@ -7,6 +7,30 @@
 namespace exitance {
 namespace {
 
+using Slopes = std::array<SixNodeMesh::Slope, 3>;
+
+std::vector<float> flat_slopes(const std::vector<Slopes>& slopes) {
+    std::vector<float> out;
+    for (const Slopes& three : slopes)
+        for (const SixNodeMesh::Slope& slope : three) out.insert(out.end(), slope.begin(), slope.end());
+    return out;
+}
+
+std::vector<Slopes> rows_of_slopes(const std::vector<float>& flat) {
+    std::vector<Slopes> out(flat.size() / (3 * bands));
+    for (std::size_t i = 0; i < flat.size(); ++i) out[i / (3 * bands)][i / bands % 3][i % bands] = flat[i];
+    return out;
+}
+
+void read_slopes(Hdf5Reader& file, const std::string& group, SixNodeMesh& mesh) {
+    const auto gradients = file.read<float>(group + "/gradients", 3 * bands);
+    const auto of = file.read<std::uint32_t>(group + "/gradient_of", 3, mesh.size());
+    const auto slopes = file.read<float>(group + "/slopes", 3 * bands, mesh.size());
+    if (file.failed()) return;
+    mesh.gradients = rows_of_slopes(gradients), mesh.slopes = rows_of_slopes(slopes);
+    for (std::size_t t = 0; t < mesh.size(); ++t) mesh.gradient_of.push_back({of[3 * t], of[3 * t + 1], of[3 * t + 2]});
+}
+
 bool is_order(std::uint8_t v) {
     return v <= 4 || v == 255;
 }
@@ -21,6 +45,14 @@ std::optional<std::string> find_nonsense(const SixNodeMesh& mesh, std::size_t re
     for (const auto& triangle : mesh.nodes)
         for (const std::uint32_t n : triangle)
             if (n >= mesh.points.size()) return "leads to a node that is not there";
+    for (const auto* slopes : {&mesh.gradients, &mesh.slopes})
+        for (const Slopes& three : *slopes)
+            for (const SixNodeMesh::Slope& slope : three)
+                for (const float v : slope)
+                    if (!std::isfinite(v)) return "holds a slope that is not finite";
+    for (const auto& triangle : mesh.gradient_of)
+        for (const std::uint32_t g : triangle)
+            if (g >= mesh.gradients.size()) return "leads to a gradient that is not there";
     for (const RegionId r : mesh.region)
         if (r.value >= region_count) return "names a region that is not there";
     for (const DiscontinuityCurve& c : mesh.curves)
@@ -57,6 +89,15 @@ void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNo
     file.write(in("edge_order"), edge_order, 3,
                {"1", "of edges 01, 12, 20: 0 border, 1 D0, 2 D1, 3 D2, 4 EEE, 255 none"});
     file.write(in("shadow"), shadow, 1, {"1", "of a triangle: 0 lit, 1 penumbra, 2 umbra"});
+    if (mesh.is_clough_tocher()) {
+        std::vector<std::uint32_t> of;
+        for (const auto& three : mesh.gradient_of) of.insert(of.end(), three.begin(), three.end());
+        file.write(in("gradients"), flat_slopes(mesh.gradients), 3 * bands,
+                   {"W/m^3", "slopes of irradiance at corners along x, y, z, a row of bands each"});
+        file.write(in("gradient_of"), of, 3, {"1", "gradients of a triangle's corners"});
+        file.write(in("slopes"), flat_slopes(mesh.slopes), 3 * bands,
+                   {"W/m^3", "of a triangle at the middles of edges 01, 12, 20, inwards at a right angle, likewise"});
+    }
     file.write(in("curve_region"), curve_region, 1, {"1", "region that a curve lies on"});
     file.write(in("curve_ends"), ends, 6, {"m", "where a curve begins and ends"});
     file.write(in("curve_order"), curve_order, 1, {"1", "order of a curve: 1 D0, 2 D1, 3 D2, 4 D2 of three edges"});
@@ -108,6 +149,8 @@ SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::
                                static_cast<CurveCause>(cause[i]),
                                RegionId(source[i])});
     }
+    if (file.has(in("slopes"))) read_slopes(file, group, mesh);
+    if (file.failed()) return {};
     if (const auto wrong = find_nonsense(mesh, region_count)) return file.fail(in("points"), *wrong), SixNodeMesh();
     return mesh;
 }

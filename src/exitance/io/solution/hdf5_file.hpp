@@ -14,11 +14,12 @@
 namespace exitance {
 
 /// The numbers that data sets hold.
-enum class Hdf5Type { uint8, int32, uint32, int64, float32, float64 };
+enum class Hdf5Type { uint8, uint16, int32, uint32, int64, float32, float64 };
 
 template <class T>
 constexpr Hdf5Type hdf5_type() {
     if constexpr (std::is_same_v<T, std::uint8_t>) return Hdf5Type::uint8;
+    if constexpr (std::is_same_v<T, std::uint16_t>) return Hdf5Type::uint16;
     if constexpr (std::is_same_v<T, std::int32_t>) return Hdf5Type::int32;
     if constexpr (std::is_same_v<T, std::uint32_t>) return Hdf5Type::uint32;
     if constexpr (std::is_same_v<T, std::int64_t>) return Hdf5Type::int64;

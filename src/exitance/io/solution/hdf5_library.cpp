@@ -23,6 +23,8 @@ std::int64_t hdf5_native_type(Hdf5Type type) {
     switch (type) {
         case Hdf5Type::uint8:
             return H5T_NATIVE_UINT8;
+        case Hdf5Type::uint16:
+            return H5T_NATIVE_UINT16;
         case Hdf5Type::int32:
             return H5T_NATIVE_INT32;
         case Hdf5Type::uint32:
@@ -41,6 +43,8 @@ std::int64_t hdf5_stored_type(Hdf5Type type) {
     switch (type) {
         case Hdf5Type::uint8:
             return H5T_STD_U8LE;
+        case Hdf5Type::uint16:
+            return H5T_STD_U16LE;
         case Hdf5Type::int32:
             return H5T_STD_I32LE;
         case Hdf5Type::uint32:

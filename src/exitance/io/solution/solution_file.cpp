@@ -27,6 +27,7 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
     write_function(file, "exitance/interpolant", solution.interpolant);
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
+    if (!solution.layers.empty()) write_layers(file, "exitance/layers", solution.layers);
     if (!solution.cells.cells.empty()) write_cells(file, "exitance/growing_cells", solution.cells);
     if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
     if (groups && !groups->empty()) write_light_groups(file, "exitance/groups", *groups);
@@ -65,6 +66,7 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
     solution.interpolant = read_function(file, "exitance/interpolant", regions);
     if (file.has("exitance/discontinuity"))
         solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions);
+    if (file.has("exitance/layers")) solution.layers = read_layers(file, "exitance/layers", regions);
     if (file.has("exitance/growing_cells")) solution.cells = read_cells(file, "exitance/growing_cells");
     if (file.has("exitance/links")) solution.links = read_links(file, "exitance/links", regions);
     if (groups && file.has("exitance/groups") && !file.failed())

@@ -149,7 +149,52 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
     ASSERT_TRUE(t->statistics.discontinuity);
     EXPECT_EQ(t->statistics.discontinuity->wedges, 7u);
     EXPECT_EQ(t->statistics.discontinuity->mean_radius_ratio, 0.4);
+    EXPECT_FALSE(held.is_clough_tocher());
     mesh.values[3][0] = std::nanf("");
+    ASSERT_TRUE(write_solution(path("bad.h5"), s));
+    EXPECT_FALSE(load_solution(path("bad.h5")));
+    mesh.values[3][0] = 1;
+    mesh.gradients.resize(2), mesh.slopes.resize(1), mesh.gradient_of = {{0, 1, 1}};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t b = 0; b < bands; ++b)
+            mesh.gradients[1][axis][b] = static_cast<float>(10 * axis + b),
+            mesh.slopes[0][axis][b] = static_cast<float>(b);
+    ASSERT_TRUE(write_solution(path("smooth.h5"), s));
+    const Result<Solution> smooth = load_solution(path("smooth.h5"));
+    ASSERT_TRUE(smooth) << smooth.error().message;
+    EXPECT_TRUE(smooth->discontinuity.gradients == mesh.gradients && smooth->discontinuity.slopes == mesh.slopes);
+    EXPECT_EQ(smooth->discontinuity.gradient_of, mesh.gradient_of);
+    mesh.gradient_of[0][2] = 2;
+    ASSERT_TRUE(write_solution(path("bad.h5"), s));
+    EXPECT_FALSE(load_solution(path("bad.h5")));
+}
+
+TEST_F(SolutionFiles, HoldLayersOfLightAndRefuseThoseThatMakeNoSense) {
+    Solution s = sample_solution();
+    LayerTriangles triangles;
+    triangles.points = {{0, 0}, {1, 0}, {0, 1}, {1, 1}}, triangles.values = {1, 2, 3, 4};
+    triangles.corners = {{0, 1, 2}, {1, 3, 2}}, triangles.middles = {{1.5, 2.5, 2}, {3, 3.5, 2.5}};
+    s.layers.sources = {RegionId(1), RegionId()};
+    s.layers.sheets = {{RegionId(0), 1, Spectrum(0.5), LightLayer(triangles, LightLayer::Form::floats)},
+                       {RegionId(1), 0, Spectrum(2), LightLayer(triangles, LightLayer::Form::halves)}};
+    ASSERT_TRUE(write_solution(path("s.h5"), s));
+    const Result<Solution> t = load_solution(path("s.h5"));
+    ASSERT_TRUE(t) << t.error().message;
+    EXPECT_EQ(t->layers.sources, s.layers.sources);
+    ASSERT_EQ(t->layers.sheets.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        LightLayers::Sheet& sheet = s.layers.sheets[i];
+        sheet.light.make_grid();
+        EXPECT_EQ(t->layers.sheets[i].region, sheet.region);
+        EXPECT_EQ(t->layers.sheets[i].source, sheet.source);
+        EXPECT_EQ(t->layers.sheets[i].colour, sheet.colour);
+        EXPECT_EQ(t->layers.sheets[i].light.at({0.3, 0.4}), sheet.light.at({0.3, 0.4}));
+        EXPECT_EQ(t->layers.sheets[i].light.memory_bytes(), sheet.light.memory_bytes());
+    }
+    s.layers.sheets[0].source = 2;
+    ASSERT_TRUE(write_solution(path("bad.h5"), s));
+    EXPECT_FALSE(load_solution(path("bad.h5")));
+    s.layers.sheets[0].source = 1, s.layers.sheets[1].region = RegionId(100'000);
     ASSERT_TRUE(write_solution(path("bad.h5"), s));
     EXPECT_FALSE(load_solution(path("bad.h5")));
 }

@@ -48,6 +48,10 @@ KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t reg
 void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNodeMesh& mesh);
 SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
+/// Direct light as one mesh a source.
+void write_layers(Hdf5Writer& file, const std::string& group, const LightLayers& layers);
+LightLayers read_layers(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+
 /// The networks of growing cells.
 void write_cells(Hdf5Writer& file, const std::string& group, const CellLight& light);
 CellLight read_cells(Hdf5Reader& file, const std::string& group);
@@ -61,7 +65,7 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);
 
 /// The group /VTKHDF that ParaView opens: the leaves of the interpolant as polygons, each with points of its own,
-/// since light may jump from one to the next; or the quadratic triangles of a discontinuity mesh.
+/// since light may jump from one to the next; or the quadratic or cubic triangles of a discontinuity mesh.
 void write_vtkhdf(Hdf5Writer& file, const Solution& solution);
 
 }  // namespace exitance

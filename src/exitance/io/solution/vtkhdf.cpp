@@ -20,11 +20,12 @@ void write_vtkhdf(Hdf5Writer& file, const Solution& solution) {
     file.write("VTKHDF/NumberOfCells", std::span(&cell_count, 1), 1, {"1", "cells: leaf elements"});
     file.write("VTKHDF/NumberOfConnectivityIds", std::span(&corner_count, 1), 1, {"1", "corners of all cells"});
     file.write("VTKHDF/Points", flat(mesh.points), 3,
-               {"m", "corners of the elements, each element with its own, or nodes of quadratic triangles"});
+               {"m", "corners of the elements, each element with its own, or nodes of quadratic or cubic triangles"});
     file.write("VTKHDF/Connectivity", connectivity, 1, {"1", "points of the cells"});
     file.write("VTKHDF/Offsets", offsets, 1, {"1", "where the points of a cell begin in Connectivity"});
-    file.write("VTKHDF/Types", types, 1,
-               {"1", "VTK's cell types: 5 triangle, 7 polygon, 9 quadrilateral, 22 quadratic triangle"});
+    file.write(
+        "VTKHDF/Types", types, 1,
+        {"1", "VTK's cell types: 5 triangle, 7 polygon, 9 quadrilateral, 22 quadratic triangle, 69 Lagrange triangle"});
     file.make_group("VTKHDF/PointData");
     file.write("VTKHDF/PointData/radiosity", flat(mesh.radiosity), bands, {"W/m^2", "flux leaving the front per area"});
     file.write("VTKHDF/PointData/irradiance", flat(mesh.irradiance), bands,

@@ -20,7 +20,40 @@ Spectrum SixNodeMesh::value(std::uint32_t node) const {
     return out;
 }
 
+CloughTocher SixNodeMesh::element(std::uint32_t triangle, std::size_t band) const {
+    const auto& n = nodes[triangle];
+    CloughTocher::Data data{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        data.value[i] = static_cast<double>(values[n[i]][band]);
+        const auto& gradient = gradients[gradient_of[triangle][i]];
+        const Vec3 g{static_cast<double>(gradient[0][band]), static_cast<double>(gradient[1][band]),
+                     static_cast<double>(gradient[2][band])};
+        for (std::size_t k = 0; k < 2; ++k) data.to_next[i][k] = dot(g, points[n[(i + 1 + k) % 3]] - points[n[i]]);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const EdgeFrame frame(points[n[i]], points[n[(i + 1) % 3]], points[n[(i + 2) % 3]]);
+        data.across[i] =
+            frame.along * slope_along(data, i) + frame.height * static_cast<double>(slopes[triangle][i][band]);
+    }
+    return CloughTocher(data);
+}
+
+Spectrum SixNodeMesh::mean(std::uint32_t triangle) const {
+    if (!is_clough_tocher()) {  // A quadratic polynomial has the mean of its values at the middles of edges.
+        const auto& n = nodes[triangle];
+        return (1.0 / 3) * (value(n[3]) + value(n[4]) + value(n[5]));
+    }
+    Spectrum out;
+    for (std::size_t b = 0; b < bands; ++b) out[b] = element(triangle, b).mean();
+    return out;
+}
+
 Spectrum SixNodeMesh::at(std::uint32_t triangle, Vec2 st) const {
+    if (is_clough_tocher()) {
+        Spectrum smooth;
+        for (std::size_t b = 0; b < bands; ++b) smooth[b] = element(triangle, b).at({1 - st.x - st.y, st.x, st.y});
+        return smooth;
+    }
     const std::array<double, 6> w = six_node_weights(st);
     Spectrum out;
     for (std::size_t i = 0; i < 6; ++i) out += w[i] * value(nodes[triangle][i]);

@@ -7,6 +7,7 @@
 #include "exitance/core/ids.hpp"
 #include "exitance/core/spectrum.hpp"
 #include "exitance/geometry/bvh.hpp"
+#include "exitance/mesh/discontinuity/clough_tocher.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -37,7 +38,12 @@ enum class ShadowClass : std::uint8_t { lit, penumbra, umbra };
 /// where light jumps: there each side has nodes of its own. W/m^2.
 ///
 ///     E(L) = sum_corners E_i L_i (2 L_i - 1) + sum_edges E_ab 4 L_a L_b,   L the barycentric coordinates
+///
+/// Or, with slopes, as one of Clough and Tocher's elements a triangle, whose tangent planes agree across every edge but
+/// those where light jumps or has a kink; the values at the middles of edges are what it has there.
 struct SixNodeMesh {
+    using Slope = std::array<float, bands>;  ///< W/m^3
+
     std::vector<Point> points;                          ///< Of nodes, metres.
     std::vector<std::array<float, bands>> values;       ///< Of nodes.
     std::vector<std::array<std::uint32_t, 6>> nodes;    ///< Of triangles; counter-clockwise seen from the front.
@@ -45,12 +51,20 @@ struct SixNodeMesh {
     std::vector<std::array<CurveOrder, 3>> edge_order;  ///< Of the edge from corner i to the next.
     std::vector<ShadowClass> shadow;                    ///< Of triangles.
     std::vector<DiscontinuityCurve> curves;
+    // Of Clough and Tocher's elements; else empty.
+    std::vector<std::array<Slope, 3>> gradients;            ///< Along x, y, z, within the region's plane.
+    std::vector<std::array<std::uint32_t, 3>> gradient_of;  ///< Of triangles' corners.
+    std::vector<std::array<Slope, 3>> slopes;               ///< Of triangles: at the middle of edge i, at a right
+                                                            ///< angle to it, inwards.
 
+    bool is_clough_tocher() const { return !slopes.empty(); }
+    CloughTocher element(std::uint32_t triangle, std::size_t band) const;
     bool empty() const { return nodes.empty(); }
     std::size_t size() const { return nodes.size(); }
     Spectrum value(std::uint32_t node) const;
     /// At barycentric coordinates (1 - s - t, s, t).
     Spectrum at(std::uint32_t triangle, Vec2 st) const;
+    Spectrum mean(std::uint32_t triangle) const;
     double area(std::uint32_t triangle) const;
     Point centre(std::uint32_t triangle) const;
     /// Of the inscribed circle's radius to the circumscribed one's, 0 to 0.5, over all triangles.

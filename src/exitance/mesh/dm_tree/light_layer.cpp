@@ -53,6 +53,7 @@ Vec2 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
 }
 
 constexpr double most16 = 65535;
+constexpr double rounding = 1 / most16;  ///< Of the box: a whole step, where corners move by half a step at most.
 
 }  // namespace
 
@@ -79,61 +80,67 @@ std::size_t winged_edge_bytes(const LayerTriangles& triangles) {
            triangles.corners.size() * sizeof(WingedEdgeMesh::Face);
 }
 
-LightLayer::LightLayer(const LayerTriangles& from, Form form) : form_(form), lo_{HUGE_VAL, HUGE_VAL} {
+LightLayer::LightLayer(const LayerTriangles& from, Form form) {
+    Contents& c = contents_;
+    c.form = form;
     Vec2 hi{-HUGE_VAL, -HUGE_VAL};
     for (const Vec2& p : from.points) {
-        lo_ = {std::min(lo_.x, p.x), std::min(lo_.y, p.y)};
+        c.lo = {std::min(c.lo.x, p.x), std::min(c.lo.y, p.y)};
         hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
     }
-    size_ = from.points.empty() ? Vec2{1, 1} : Vec2{std::max(hi.x - lo_.x, 1e-300), std::max(hi.y - lo_.y, 1e-300)};
+    if (!from.points.empty()) c.size = {std::max(hi.x - c.lo.x, 1e-300), std::max(hi.y - c.lo.y, 1e-300)};
+    c.scale = 0;
     for (std::size_t t = 0; t < from.corners.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k)
-            scale_ = std::max(
-                {t + k == 0 ? 0 : scale_, std::abs(from.values[from.corners[t][k]]), std::abs(from.middles[t][k])});
-    if (!(scale_ > 0)) scale_ = 1;
-    constexpr std::uint32_t unused = 0xffffffffu;
+            c.scale = std::max({c.scale, std::abs(from.values[from.corners[t][k]]), std::abs(from.middles[t][k])});
+    if (!(c.scale > 0)) c.scale = 1;
     std::vector<std::uint32_t> number(from.points.size(), unused);
     EdgeNumbers edges;
     std::vector<std::array<std::uint32_t, 3>> kept;
     for (std::size_t t = 0; t < from.corners.size(); ++t) {
         if (from.is_dark(t)) continue;
-        std::array<std::uint32_t, 3> c;
+        std::array<std::uint32_t, 3> ids;
         for (std::size_t k = 0; k < 3; ++k) {
             std::uint32_t& id = number[from.corners[t][k]];
             const Vec2& p = from.points[from.corners[t][k]];
             const double value = from.values[from.corners[t][k]];
             if (id == unused) {
-                id = static_cast<std::uint32_t>(form == Form::floats ? vertices_.size() : half_vertices_.size());
+                id = static_cast<std::uint32_t>(form == Form::floats ? c.vertices.size() : c.half_vertices.size());
                 if (form == Form::floats)
-                    vertices_.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(value)});
+                    c.vertices.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(value)});
                 else
-                    half_vertices_.push_back({static_cast<std::uint16_t>(std::lround(most16 * (p.x - lo_.x) / size_.x)),
-                                              static_cast<std::uint16_t>(std::lround(most16 * (p.y - lo_.y) / size_.y)),
-                                              to_half(value / scale_)});
+                    c.half_vertices.push_back(
+                        {static_cast<std::uint16_t>(std::lround(most16 * (p.x - c.lo.x) / c.size.x)),
+                         static_cast<std::uint16_t>(std::lround(most16 * (p.y - c.lo.y) / c.size.y)),
+                         to_half(value / c.scale)});
             }
-            c[k] = id;
+            ids[k] = id;
         }
         std::array<bool, 3> fresh{};
-        const std::array<std::uint32_t, 3> e = edges.add(c, fresh);
+        const std::array<std::uint32_t, 3> e = edges.add(ids, fresh);
         for (std::size_t k = 0; k < 3; ++k) {
             if (!fresh[k]) continue;
             if (form == Form::floats)
-                edges_.push_back({unused, static_cast<float>(from.middles[t][k])});
+                c.edges.push_back({unused, static_cast<float>(from.middles[t][k])});
             else
-                half_edges_.push_back(to_half(from.middles[t][k] / scale_));
+                c.half_edges.push_back(to_half(from.middles[t][k] / c.scale));
         }
-        if (form == Form::floats) faces_.push_back({c[0], c[1], c[2], e[0], e[1], e[2]});
-        kept.push_back(c);
+        if (form == Form::floats) c.faces.push_back({ids[0], ids[1], ids[2], e[0], e[1], e[2]});
+        kept.push_back(ids);
     }
     if (form == Form::floats) return;
-    if (half_vertices_.size() <= 0x10000) {
-        for (const auto& c : kept)
-            narrow_.push_back(
-                {static_cast<std::uint16_t>(c[0]), static_cast<std::uint16_t>(c[1]), static_cast<std::uint16_t>(c[2])});
+    if (c.half_vertices.size() <= 0x10000) {
+        for (const auto& k : kept)
+            c.narrow.push_back(
+                {static_cast<std::uint16_t>(k[0]), static_cast<std::uint16_t>(k[1]), static_cast<std::uint16_t>(k[2])});
     } else {
-        wide_ = std::move(kept);
+        c.wide = std::move(kept);
     }
     number_edges();
+}
+
+LightLayer::LightLayer(Contents contents) : contents_(std::move(contents)) {
+    if (contents_.form == Form::halves) number_edges();
 }
 
 void LightLayer::number_edges() {
@@ -143,33 +150,37 @@ void LightLayer::number_edges() {
 }
 
 std::array<std::uint32_t, 3> LightLayer::ids(std::size_t t) const {
-    if (form_ == Form::floats) return {faces_[t][0], faces_[t][1], faces_[t][2]};
-    if (!narrow_.empty()) return {narrow_[t][0], narrow_[t][1], narrow_[t][2]};
-    return wide_[t];
+    const Contents& c = contents_;
+    if (c.form == Form::floats) return {c.faces[t][0], c.faces[t][1], c.faces[t][2]};
+    if (!c.narrow.empty()) return {c.narrow[t][0], c.narrow[t][1], c.narrow[t][2]};
+    return c.wide[t];
 }
 
 std::array<Vec2, 3> LightLayer::corners(std::size_t t) const {
+    const Contents& c = contents_;
     std::array<Vec2, 3> out;
-    const auto c = ids(t);
+    const auto id = ids(t);
     for (std::size_t k = 0; k < 3; ++k) {
-        if (form_ == Form::floats) {
-            out[k] = {static_cast<double>(vertices_[c[k]].u), static_cast<double>(vertices_[c[k]].v)};
+        if (c.form == Form::floats) {
+            out[k] = {static_cast<double>(c.vertices[id[k]].u), static_cast<double>(c.vertices[id[k]].v)};
         } else {
-            const HalfVertex& v = half_vertices_[c[k]];
-            out[k] = {lo_.x + size_.x * v.u / most16, lo_.y + size_.y * v.v / most16};
+            const HalfVertex& v = c.half_vertices[id[k]];
+            out[k] = {c.lo.x + c.size.x * v.u / most16, c.lo.y + c.size.y * v.v / most16};
         }
     }
     return out;
 }
 
 std::array<double, 6> LightLayer::values(std::size_t t) const {
+    const Contents& c = contents_;
+    const bool floats = c.form == Form::floats;
     std::array<double, 6> out;
-    const auto c = ids(t);
+    const auto id = ids(t);
     for (std::size_t k = 0; k < 3; ++k) {
-        out[k] = form_ == Form::floats ? static_cast<double>(vertices_[c[k]].value)
-                                       : scale_ * from_half(half_vertices_[c[k]].value);
-        out[3 + k] = form_ == Form::floats ? static_cast<double>(edges_[faces_[t][3 + k]].value)
-                                           : scale_ * from_half(half_edges_[edge_of_[t][k]]);
+        out[k] =
+            floats ? static_cast<double>(c.vertices[id[k]].value) : c.scale * from_half(c.half_vertices[id[k]].value);
+        out[3 + k] = floats ? static_cast<double>(c.edges[c.faces[t][3 + k]].value)
+                            : c.scale * from_half(c.half_edges[edge_of_[t][k]]);
     }
     return out;
 }
@@ -179,41 +190,93 @@ double LightLayer::at(std::size_t triangle, Vec2 st) const {
 }
 
 void LightLayer::make_grid() {
+    const Vec2 lo = contents_.lo, extent = contents_.size;
     cells_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(static_cast<double>(size()))));
     grid_.assign(cells_ * cells_, {});
     const double n = static_cast<double>(cells_);
-    const auto cell = [&](double x, double lo, double size) {
-        return static_cast<std::size_t>(std::clamp(n * (x - lo) / size, 0.0, n - 1));
+    const auto cell = [&](double x, double from, double width) {
+        return static_cast<std::size_t>(std::clamp(n * (x - from) / width, 0.0, n - 1));
     };
+    const Vec2 slack{rounding * extent.x, rounding * extent.y};
     for (std::size_t t = 0; t < size(); ++t) {
         const std::array<Vec2, 3> c = corners(t);
         const auto [x0, x1] = std::minmax({c[0].x, c[1].x, c[2].x});
         const auto [y0, y1] = std::minmax({c[0].y, c[1].y, c[2].y});
-        for (std::size_t i = cell(x0, lo_.x, size_.x); i <= cell(x1, lo_.x, size_.x); ++i)
-            for (std::size_t j = cell(y0, lo_.y, size_.y); j <= cell(y1, lo_.y, size_.y); ++j)
+        for (std::size_t i = cell(x0 - slack.x, lo.x, extent.x); i <= cell(x1 + slack.x, lo.x, extent.x); ++i)
+            for (std::size_t j = cell(y0 - slack.y, lo.y, extent.y); j <= cell(y1 + slack.y, lo.y, extent.y); ++j)
                 grid_[i * cells_ + j].push_back(static_cast<std::uint32_t>(t));
     }
 }
 
 double LightLayer::at(const Vec2& p) const {
     EXI_CHECK(cells_ > 0);
-    const double n = static_cast<double>(cells_), x = n * (p.x - lo_.x) / size_.x, y = n * (p.y - lo_.y) / size_.y;
-    if (!(x >= 0 && x <= n && y >= 0 && y <= n)) return 0;
-    const auto i = std::min(cells_ - 1, static_cast<std::size_t>(x)),
-               j = std::min(cells_ - 1, static_cast<std::size_t>(y));
-    constexpr double slack = 1e-6;
-    for (std::uint32_t t : grid_[i * cells_ + j]) {
-        const Vec2 st = barycentric(corners(t), p);
-        if (st.x >= -slack && st.y >= -slack && st.x + st.y <= 1 + slack) return at(t, st);
+    const Contents& c = contents_;
+    const double n = static_cast<double>(cells_);
+    const Vec2 in{(p.x - c.lo.x) / c.size.x, (p.y - c.lo.y) / c.size.y};
+    if (!(in.x >= -rounding && in.x <= 1 + rounding && in.y >= -rounding && in.y <= 1 + rounding)) return 0;
+    const auto i = static_cast<std::size_t>(std::clamp(n * in.x, 0.0, n - 1)),
+               j = static_cast<std::size_t>(std::clamp(n * in.y, 0.0, n - 1));
+    // A coordinate below 0 is how far the place lies beyond an edge, over the height above it.
+    double nearest = rounding * std::max(c.size.x, c.size.y), light = 0;
+    for (const std::uint32_t t : grid_[i * cells_ + j]) {
+        const std::array<Vec2, 3> corner = corners(t);
+        const Vec2 st = barycentric(corner, p);
+        const std::array<double, 3> L{1 - st.x - st.y, st.x, st.y};
+        if (L[0] >= 0 && L[1] >= 0 && L[2] >= 0) return at(t, st);
+        const double twice = std::abs(cross(corner[1] - corner[0], corner[2] - corner[0]));
+        if (!std::isfinite(st.x) || !std::isfinite(st.y)) continue;  // rounded to a line
+        double beyond = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2 edge = corner[(k + 2) % 3] - corner[(k + 1) % 3];
+            beyond = std::max(beyond, -L[k] * twice / std::sqrt(dot(edge, edge)));
+        }
+        if (beyond < nearest) {
+            nearest = beyond;
+            const double s = std::max(st.x, 0.0), u = std::max(st.y, 0.0), whole = std::max(1.0, s + u);
+            light = at(t, {s / whole, u / whole});
+        }
     }
-    return 0;
+    return light;
 }
 
 std::size_t LightLayer::memory_bytes() const {
-    return vertices_.size() * sizeof(FloatVertex) + edges_.size() * sizeof(FloatEdge) +
-           faces_.size() * sizeof(faces_[0]) + half_vertices_.size() * sizeof(HalfVertex) +
-           half_edges_.size() * sizeof(half_edges_[0]) + narrow_.size() * sizeof(narrow_[0]) +
-           wide_.size() * sizeof(wide_[0]);
+    const Contents& c = contents_;
+    return c.vertices.size() * sizeof(FloatVertex) + c.edges.size() * sizeof(FloatEdge) +
+           c.faces.size() * sizeof(c.faces[0]) + c.half_vertices.size() * sizeof(HalfVertex) +
+           c.half_edges.size() * sizeof(c.half_edges[0]) + c.narrow.size() * sizeof(c.narrow[0]) +
+           c.wide.size() * sizeof(c.wide[0]);
+}
+
+std::optional<std::string> find_nonsense(const LightLayer::Contents& c) {
+    const auto is_box = [](double lo, double size) { return std::isfinite(lo) && std::isfinite(size) && size > 0; };
+    if (c.triangles() > 0 && (!is_box(c.lo.x, c.size.x) || !is_box(c.lo.y, c.size.y) || !(c.scale > 0)))
+        return "has no box or no scale";
+    for (const auto& v : c.vertices)
+        if (!std::isfinite(v.u) || !std::isfinite(v.v) || !std::isfinite(v.value)) return "holds a number not finite";
+    for (const auto& e : c.edges)
+        if (!std::isfinite(e.value)) return "holds a number not finite";
+    for (const auto& v : c.half_vertices)
+        if (!std::isfinite(from_half(v.value))) return "holds a number not finite";
+    for (const std::uint16_t e : c.half_edges)
+        if (!std::isfinite(from_half(e))) return "holds a number not finite";
+    if (!c.narrow.empty() && !c.wide.empty()) return "has ids of two sizes";
+    EdgeNumbers edges;
+    std::array<bool, 3> fresh{};
+    std::size_t count = 0;
+    const auto leads_astray = [&](const std::array<std::uint32_t, 3>& ids) {
+        edges.add(ids, fresh);
+        count += static_cast<std::size_t>(std::count(fresh.begin(), fresh.end(), true));
+        return std::any_of(ids.begin(), ids.end(), [&](std::uint32_t i) { return i >= c.half_vertices.size(); });
+    };
+    for (const auto& t : c.narrow)
+        if (leads_astray({t[0], t[1], t[2]})) return "leads to a corner that is not there";
+    for (const auto& t : c.wide)
+        if (leads_astray(t)) return "leads to a corner that is not there";
+    if (c.form == LightLayer::Form::halves && count != c.half_edges.size()) return "has not one value an edge";
+    for (const auto& t : c.faces)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (t[k] >= c.vertices.size() || t[3 + k] >= c.edges.size()) return "leads to a corner that is not there";
+    return {};
 }
 
 }  // namespace exitance

@@ -55,6 +55,40 @@ TEST(LightLayer, CompressedFormsHoldTheSameLightInHalfAndAQuarterOfTheBytes) {
     }
 }
 
+TEST(LightLayer, RoundedBordersLeaveNoDarkPlaces) {
+    // A triangle whose long side is nowhere on the grid of 16 bits: places on it lie beyond it once it is rounded.
+    LayerTriangles one;
+    one.points = {{0, 0}, {3, 0.1237}, {0.7771, 2}}, one.values = {1, 1, 1};
+    one.corners = {{0, 1, 2}}, one.middles = {{1, 1, 1}};
+    for (const auto form : {LightLayer::Form::floats, LightLayer::Form::halves}) {
+        LightLayer layer(one, form);
+        layer.make_grid();
+        for (int k = 0; k <= 200; ++k)
+            for (std::size_t side = 0; side < 3; ++side) {
+                const Vec2 a = one.points[side], b = one.points[(side + 1) % 3];
+                EXPECT_NEAR(layer.at(a + (k / 200.0) * (b - a)), 1, 1e-3);
+            }
+        EXPECT_EQ(layer.at({1.5, 0.05}), 0);  // well beside it
+    }
+}
+
+TEST(LightLayer, WhatIsStoredMakesItAgainAndNonsenseIsNamed) {
+    const LightLayer layer(grid(5), LightLayer::Form::halves);
+    LightLayer again{LightLayer::Contents(layer.contents())};
+    EXPECT_FALSE(find_nonsense(layer.contents()));
+    again.make_grid();
+    EXPECT_NEAR(again.at({0.5, 0.5}), 100 * 1.5 * std::exp(-0.5), 2);  // elements of 0.6 m
+    LightLayer::Contents wrong = layer.contents();
+    wrong.narrow[0][1] = 60000;
+    EXPECT_TRUE(find_nonsense(wrong));
+    wrong = layer.contents();
+    wrong.half_edges.pop_back();
+    EXPECT_TRUE(find_nonsense(wrong));
+    wrong = layer.contents();
+    wrong.scale = NAN;
+    EXPECT_TRUE(find_nonsense(wrong));
+}
+
 TEST(LightLayer, NothingIsALayer) {
     LightLayer layer({}, LightLayer::Form::halves);
     layer.make_grid();

@@ -4,8 +4,10 @@
 
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/progress.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/reconstruct/discontinuity/source_layers.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
@@ -55,6 +57,29 @@ ConicCurves conics_of(ThreeEdgeEvents asked) {
                                            : ConicCurves::at_umbras;
 }
 
+/// False, and the report says so, where a request to stop leaves them unfinished.
+bool add_layers(const Stage& stage, const DiscontinuityOptions& ask, Solution& solution, LayersReport& layers,
+                DiscontinuityReport& report, const StopRequest& stop) {
+    const Stopwatch watch;
+    solution.layers = make_light_layers(stage, ask, layers, stop);
+    report.direct_seconds = watch.seconds();
+    report.interrupted = layers.interrupted;
+    return !layers.interrupted;
+}
+
+/// What is kept of direct light, and what the same meshes take with winged edges.
+void record_layers(Solution& solution, const LayersReport& layers) {
+    std::map<std::string, double>& figures = solution.statistics.figures;
+    const bool has_layers = !solution.layers.empty();
+    figures["layer_bytes"] = static_cast<double>(solution.layers.memory_bytes());
+    figures["winged_edge_bytes"] =
+        static_cast<double>(has_layers ? layers.winged_edge_bytes : winged_edge_bytes(solution.discontinuity));
+    if (!has_layers) return;
+    figures["layers"] = static_cast<double>(solution.layers.sources.size());
+    figures["layer_triangles"] = static_cast<double>(layers.triangles);
+    figures["lit_layer_triangles"] = static_cast<double>(solution.layers.size());
+}
+
 }  // namespace
 
 DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOptions& options, Solution& solution,
@@ -73,13 +98,20 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     ask.penumbra_first = choice.premesh == Premesh::penumbra_first;
     ask.premesh = choice.premesh == Premesh::coarse;
     ask.refined = choice.quality == MeshQuality::delaunay;
+    ask.clough_tocher = choice.element == MeshElement::clough_tocher;
     if (choice.sources && options.bounces != 0)
         ask.secondary = secondary_sources(stage, solution, locator, *choice.sources);
     DiscontinuityReport report;
+    LayersReport layers;
+    if (choice.layers == true && !add_layers(stage, ask, solution, layers, report, stop)) return report;
     solution.discontinuity = make_discontinuity_mesh(stage, ask, report, stop);
+    report.error = std::max(report.error, layers.error);
+    if (solution.discontinuity.empty()) solution.layers = {};
     solution.interpolant = linear_elements(solution.discontinuity, solution.scene);
     SolveStatistics& statistics = solution.statistics;
     statistics.discontinuity = report.counts;
+    if (choice.element == MeshElement::clough_tocher)
+        statistics.basis = name_in(mesh_element_names, MeshElement::clough_tocher);
     statistics.elements = statistics.leaf_elements = report.counts.triangles;
     statistics.figures["candidate_share"] = report.candidate_share;
     if (report.resumed_receivers > 0) {
@@ -90,8 +122,8 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
         statistics.figures["secondary_sources"] = static_cast<double>(ask.secondary.size());
         statistics.figures["secondary_curves"] = static_cast<double>(report.secondary_curves);
     }
-    if (report.winged_edge_bytes > 0)
-        statistics.figures["winged_edge_bytes"] = static_cast<double>(report.winged_edge_bytes);
+    if (report.tree_bytes > 0) statistics.figures["dm_tree_bytes"] = static_cast<double>(report.tree_bytes);
+    record_layers(solution, layers);
     if (statistics.relative_error_estimate && !report.interrupted)
         statistics.relative_error_estimate_interpolant = std::hypot(report.error, *statistics.relative_error_estimate);
     return report;

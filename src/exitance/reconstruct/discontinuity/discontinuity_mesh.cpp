@@ -6,8 +6,9 @@
 #include <optional>
 
 #include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
+#include "exitance/reconstruct/discontinuity/clough_tocher_fit.hpp"
+#include "exitance/reconstruct/discontinuity/exact_places.hpp"
 #include "exitance/reconstruct/discontinuity/face_lights.hpp"
 #include "exitance/reconstruct/discontinuity/findable.hpp"
 #include "exitance/reconstruct/discontinuity/mesh_progress.hpp"
@@ -17,15 +18,6 @@
 
 namespace exitance {
 namespace {
-
-constexpr std::size_t first_places = 1'000;  // at which the mesh is tried
-
-/// A place on a surface with its exact light.
-struct Place {
-    RegionId region;
-    Point at;
-    Spectrum light, parallel;
-};
 
 class Builder {
   public:
@@ -67,47 +59,13 @@ class Builder {
     }
 
   private:
-    /// Where nothing reflects, E itself is looked at.
-    Spectrum weight(RegionId r) const { return reflects_ ? light_weight(stage_.scene.material(r)) : Spectrum(1.0); }
+    Spectrum weight(RegionId r) const { return places_->weight(r); }
 
-    /// Exact light at places that are uniform over all surfaces: how bright it is, and a measure for the end.
     void look_ahead() {
-        const ScrambledSobol sobol(hash(options_.seed, static_cast<std::uint64_t>(Stream::certificate)));
-        double total = 0;
-        for (const Piece& piece : stage_.pieces) total += piece.patch.area();
-        places_.resize(first_places);
-        std::size_t p = 0;
-        double passed = stage_.pieces.empty() ? 0 : stage_.pieces[0].patch.area();
-        for (std::size_t i = 0; i < places_.size(); ++i) {
-            const auto n = static_cast<std::uint32_t>(i);
-            const double at = total * (static_cast<double>(i) + sobol(n, 2)) / static_cast<double>(places_.size());
-            while (passed < at && p + 1 < stage_.pieces.size()) passed += stage_.pieces[++p].patch.area();
-            const Patch& patch = stage_.pieces[p].patch;
-            places_[i].region = stage_.pieces[p].region;
-            places_[i].at = patch.at(uniform_in_shape(patch.shape, sobol(n, 0), sobol(n, 1)));
-        }
-        parallel_ranges(places_.size(), 16, [&](std::size_t first, std::size_t last) {
-            DirectLight::Workspace workspace;
-            for (std::size_t i = first; i < last && !stop_.requested(); ++i) {
-                Place& place = places_[i];
-                const Normal& n = stage_.scene.regions()[place.region].plane.n;
-                if (!stage_.occluders.is_covered(place.at, n, place.region)) {
-                    place.light =
-                        options_.direct_weight * stage_.direct.irradiance(place.at, n, place.region, workspace);
-                }
-                if (options_.indirect) place.light += options_.indirect(place.region, place.at);
-            }
-        });
-        reflects_ = std::any_of(stage_.scene.materials().begin(), stage_.scene.materials().end(),
-                                [](const Material& m) { return max(m.reflectance) > 0; });
-        double weighted = 0, plain = 0;
-        for (const Place& place : places_) {
-            weighted += mean(stage_.scene.material(place.region).reflectance * place.light);
-            plain += mean(place.light);
-            largest_ = std::max(largest_, mean(weight(place.region) * place.light));
-        }
-        report_.scale = (weighted > 0 ? weighted : plain) / static_cast<double>(places_.size());
-        area_ = total;
+        places_.emplace(stage_, options_.direct_weight, options_.indirect, options_.seed, stop_);
+        report_.scale = options_.scale > 0 ? options_.scale : places_->mean_light();
+        largest_ = options_.scale > 0 ? options_.brightest : places_->largest_light();
+        area_ = places_->area();
     }
 
     /// What an earlier run has found, as far as it came.
@@ -180,7 +138,7 @@ class Builder {
         for (const RegionId r : stage_.scene.regions().ids()) {
             ReceiverCurves& receiver = *receivers[r.value];
             mesh_.add(triangles[r.value].triangles, receiver.frame);
-            report_.winged_edge_bytes += triangles[r.value].winged_edge_bytes;
+            report_.tree_bytes += triangles[r.value].tree_bytes;
             region_.resize(mesh_.triangles().size(), r), whole.resize(mesh_.triangles().size(), r.value);
             record(r, receiver);
         }
@@ -274,8 +232,20 @@ class Builder {
         return out;
     }
 
-    Misfit misfit_of(std::uint32_t t) const {
-        return misfit(mesh_, t, values_, weight(region_[mesh_.triangles()[t].face]));
+    /// Of what has changed; an element of Clough and Tocher changes with its neighbours.
+    void renew_misfits() {
+        misfits_.resize(mesh_.triangles().size());
+        const std::vector<std::uint32_t> fresh = mesh_.take_changed();
+        const auto weight_of = [&](std::size_t t) { return weight(region_[mesh_.triangles()[t].face]); };
+        if (options_.clough_tocher) {
+            const CloughTocherFit fit = clough_tocher();
+            parallel_for(misfits_.size(), 256,
+                         [&](std::size_t t) { misfits_[t] = fit.misfit(static_cast<std::uint32_t>(t), weight_of(t)); });
+        } else {
+            parallel_for(fresh.size(), 256, [&](std::size_t i) {
+                misfits_[fresh[i]] = misfit(mesh_, fresh[i], values_, weight_of(fresh[i]));
+            });
+        }
     }
     bool is_full() const { return mesh_.triangles().size() >= options_.max_triangles; }
 
@@ -290,9 +260,7 @@ class Builder {
                 if (lit_) mesh_ = std::move(*lit_);
                 return;
             }
-            misfits_.resize(mesh_.triangles().size());
-            const std::vector<std::uint32_t> fresh = mesh_.take_changed();
-            parallel_for(fresh.size(), 256, [&](std::size_t i) { misfits_[fresh[i]] = misfit_of(fresh[i]); });
+            renew_misfits();
             double sum = 0;
             for (const Misfit& m : misfits_) sum += m.squared;
             const auto count = static_cast<double>(misfits_.size());
@@ -368,19 +336,21 @@ class Builder {
             out.shadow.push_back(*shadow);
         }
         out.curves = curves_;
+        if (options_.clough_tocher) clough_tocher().write(out);
         report_.counts.triangles = out.size();
         report_.counts.mean_radius_ratio = out.mean_radius_ratio();
         return out;
     }
 
-    /// RMS over all surfaces of w (E - mesh), W/m^2.
     double error_at_places(const SixNodeMesh& mesh) const {
         const SixNodeLocator locator(mesh, stage_.scene);
-        const double sum = parallel_sum<double>(places_.size(), [&](std::size_t i) {
-            const Place& p = places_[i];
-            return squared(weight(p.region) * (p.light - locator.at(p.region, p.at))) / static_cast<double>(bands);
+        return places_->error([&](RegionId r, const Point& p) { return locator.at(r, p); });
+    }
+
+    CloughTocherFit clough_tocher() const {
+        return CloughTocherFit(mesh_, values_, [&](std::uint32_t t) {
+            return stage_.scene.regions()[region_[mesh_.triangles()[t].face]].plane.n;
         });
-        return std::sqrt(sum / static_cast<double>(places_.size()));
     }
 
     const Stage& stage_;
@@ -395,10 +365,9 @@ class Builder {
     std::vector<Spectrum> values_;       ///< Of nodes.
     MeshProgress found_;                 ///< By an earlier run, and what is kept of this one's curves.
     std::vector<Misfit> misfits_;        ///< Of triangles.
-    std::vector<Place> places_;
+    std::optional<ExactPlaces> places_;
     std::vector<DiscontinuityCurve> curves_;
     double largest_ = 0, area_ = 0;
-    bool reflects_ = true;
 };
 
 }  // namespace

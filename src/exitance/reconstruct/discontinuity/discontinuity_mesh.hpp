@@ -19,13 +19,16 @@ struct DiscontinuityOptions {
     double largest_error = 0.03;
     /// Light on top of what is direct, at a place of a region; empty: none.
     std::function<Spectrum(RegionId, const Point&)> indirect = {};
-    Spectrum direct_weight = Spectrum(1.0);       ///< What direct light is to be multiplied by.
+    Spectrum direct_weight = Spectrum(1.0);  ///< What direct light is to be multiplied by.
     std::vector<SecondarySource> secondary = {};  ///< Cut along their shadows, too.
     ConicCurves conics = ConicCurves::at_umbras;
     TriangulationScheme triangulation = TriangulationScheme::delaunay;
     bool penumbra_first = false;  ///< Longest curves of half-shadows first; not with Delaunay's triangulation.
     bool premesh = false;         ///< A coarse grid before all curves, likewise.
     bool refined = false;         ///< Delaunay refinement before light is looked at, with Delaunay's alone.
+    bool clough_tocher = false;   ///< Elements with tangent planes that agree, in place of quadratic ones.
+    /// What both errors are relative to, W/m^2 of rho E; 0: the mean and the largest value at places.
+    double scale = 0, brightest = 0;
     std::size_t max_triangles = 2'000'000;
     std::uint64_t seed = 1;             ///< Of the places at which the mesh is tried.
     SafePoints* safe_points = nullptr;  ///< Where curves and values at nodes are kept on the way.
@@ -40,8 +43,8 @@ struct DiscontinuityReport {
     double mesh_seconds = 0, direct_seconds = 0;
     std::size_t resumed_receivers = 0, resumed_nodes = 0;  ///< Those that a checkpoint has spared.
     std::size_t secondary_curves = 0;                      ///< Of the curves, those of secondary sources.
-    std::size_t winged_edge_bytes = 0;  ///< Of the trees before triangles are made of them; 0 with Delaunay's.
-    double candidate_share = 0;         ///< Mean over faces in penumbra of what may hide a source, of all polygons.
+    std::size_t tree_bytes = 0;  ///< Of the trees before triangles are made of them; 0 with Delaunay's.
+    double candidate_share = 0;  ///< Mean over faces in penumbra of what may hide a source, of all polygons.
 };
 
 /// Light on six-node triangles that are cut along the curves across which direct light changes its form: contacts, VE

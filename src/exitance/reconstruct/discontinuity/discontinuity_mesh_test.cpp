@@ -151,6 +151,7 @@ TEST(DiscontinuityMesh, TheThesissTriangulationsHoldTheErrorAndLoseNoArea) {
         EXPECT_NEAR(area, all, 1e-9 * all);
         EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.02);
         EXPECT_GT(s.statistics.figures.at("winged_edge_bytes"), 0);
+        EXPECT_GT(s.statistics.figures.at("dm_tree_bytes"), 0);
     }
 }
 
@@ -168,6 +169,57 @@ TEST(DiscontinuityMesh, RefinedTrianglesHaveABetterShapeAndHoldTheErrorToo) {
     EXPECT_LE(*refined.statistics.relative_error_estimate_interpolant, 0.01);
     constexpr double rounder = 1.2;
     EXPECT_GT(refined.discontinuity.mean_radius_ratio(), rounder * plain.discontinuity.mean_radius_ratio());
+}
+
+/// Of E at places uniform in area, relative to the mean and to the largest value.
+struct MeshError {
+    double rms = 0, largest = 0;
+};
+MeshError error_of(const Solution& s) {
+    const RadiosityFunction light(s);
+    const std::vector<ProbePoint> points = points_uniform_in_area(s.scene, 2000, 7);
+    const std::vector<Light> exact = light.at(points), held = light.interpolant_at(points);
+    double sum = 0, square = 0, largest = 0, brightest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double e = exact[i].irradiance[0], d = held[i].irradiance[0] - e;
+        sum += e, square += d * d;
+        largest = std::max(largest, std::abs(d)), brightest = std::max(brightest, e);
+    }
+    const auto n = static_cast<double>(points.size());
+    return {std::sqrt(square / n) / (sum / n), largest / brightest};
+}
+
+TEST(DiscontinuityMesh, CloughAndTochersElementsHoldTheErrorAskedFor) {
+    for (const char* name : {"boxes", "table"}) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.003};
+        options.discontinuity.element = MeshElement::clough_tocher;
+        const Solution s = solved(built_scene(name), options);
+        EXPECT_TRUE(s.discontinuity.is_clough_tocher());
+        EXPECT_EQ(s.statistics.basis, "clough-tocher");
+        EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.003);
+        const MeshError error = error_of(s);
+        EXPECT_LE(error.rms, 0.003);
+        EXPECT_LE(error.largest, 0.006);
+        EXPECT_LT(s.statistics.energy.defect, 0.01);
+    }
+}
+
+TEST(DiscontinuityMesh, LayersOfSourcesHoldTheErrorAskedForWithReflectionsToo) {
+    for (const int bounces : {0, -1}) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = bounces, .error_interpolant = 0.02};
+        options.discontinuity.layers = true;
+        const Solution s = solved(built_scene("boxes", {{"lights", "2"}}), options);
+        ASSERT_EQ(s.layers.sources.size(), 2u);
+        ASSERT_FALSE(s.discontinuity.empty());
+        EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.02);
+        EXPECT_LE(error_of(s).rms, 0.02);
+        EXPECT_GT(s.statistics.figures.at("layer_bytes"), 0);
+        EXPECT_LT(2 * s.statistics.figures.at("layer_bytes"), s.statistics.figures.at("winged_edge_bytes"));
+        // The one mesh that files hold is that of --layers off.
+        Solution merged = s;
+        merged.layers = {};
+        EXPECT_LE(error_of(merged).rms, 0.02);
+    }
 }
 
 TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightWhereItIsAskedTo) {

@@ -17,7 +17,7 @@ struct TriangleOptions {
 /// The triangles between a receiver's curves, with the memory of the tree that they come from.
 struct ReceiverTriangles {
     LabelledTriangles triangles;
-    std::size_t winged_edge_bytes = 0;
+    std::size_t tree_bytes = 0;
 };
 
 /// By a tree of lines where a scheme of the thesis is asked for and the receiver is convex, else by Delaunay's
