@@ -4,6 +4,7 @@
 
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/visibility/glazed_part.hpp"
+#include "exitance/visibility/window_view.hpp"
 
 namespace exitance {
 namespace {
@@ -194,8 +195,14 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
     PieceId& likely = scratch.last_blocker(*occluders_, piece);
     if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) return;
     const std::size_t most = worth ? worth(source) : Shaft::all_candidates;
-    add_source(source, scratch.shaft.classify(scratch.candidates, most), receiver[0], light, scratch);
-    if (scratch.candidates.size() > most) light.sources.back().is_crowded = true;
+    View view = scratch.shaft.classify(scratch.candidates, most);
+    const bool is_crowded = scratch.candidates.size() > most;
+    if (view != View::none && looks_out_on_faces(*occluders_, piece)) {
+        WindowView().add(*occluders_, {receiver, light.n, light.own}, piece, scratch.candidates);
+        if (!scratch.candidates.empty()) view = View::mixed;
+    }
+    add_source(source, view, receiver[0], light, scratch);
+    if (is_crowded) light.sources.back().is_crowded = true;
     if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
 }
 
@@ -217,7 +224,12 @@ void DirectLight::prepare(std::span<const Point> receiver, const ReceiverLight& 
             *occluders_, {receiver, whole.n, whole.own},
             {occluders_->corners(source.piece), emitter.plane.n, emitter.region, looks_far(source.emitter)});
         const auto from = std::span(whole.candidates).subspan(source.first, source.count);
-        add_source(name, scratch.shaft.classify(from, scratch.candidates), receiver[0], light, scratch);
+        View view = scratch.shaft.classify(from, scratch.candidates);
+        if (view != View::none && looks_out_on_faces(*occluders_, source.piece)) {
+            WindowView().add(*occluders_, {receiver, whole.n, whole.own}, source.piece, from, scratch.candidates);
+            if (!scratch.candidates.empty()) view = View::mixed;
+        }
+        add_source(name, view, receiver[0], light, scratch);
     }
     if (!whole.beams.empty())
         beams_.prepare(receiver, whole.n, whole.own, whole.beams, whole.candidates, light.beams, light.candidates);

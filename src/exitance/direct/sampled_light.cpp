@@ -9,6 +9,7 @@
 #include "exitance/direct/source_point.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/geometry/polygon.hpp"
+#include "exitance/visibility/window_view.hpp"
 
 namespace exitance {
 namespace {
@@ -113,6 +114,22 @@ void SampledLight::trace_rays() {
     std::array<bool, most_rays + 1> blocked;
     EXI_CHECK(rays_.size() <= blocked.size());
     tracer_.occluded(from_, to_, std::span(blocked).first(rays_.size()));
+    // Through a window on to the sky: from just behind the pane, which the radiance knows of.
+    const Occluders& occluders = direct_.occluders();
+    const double size = occluders.scene().size();
+    std::vector<std::size_t> on;
+    std::vector<SurfacePoint> behind, far;
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+        if (blocked[i] || !looks_out_on_faces(occluders, sources_[rays_[i].source].name.piece)) continue;
+        constexpr double step = 1e-5, beyond_all = 2;  // of the scene's size
+        const Vec3 d = normalized(to_[i].at - from_[i].at);
+        on.push_back(i);
+        behind.push_back({to_[i].at + (step * size) * d, RegionId()});
+        far.push_back({to_[i].at + (beyond_all * size) * d, RegionId()});
+    }
+    std::array<bool, most_rays + 1> hidden;
+    tracer_.occluded(behind, far, std::span(hidden).first(on.size()));
+    for (std::size_t k = 0; k < on.size(); ++k) blocked[on[k]] = hidden[k];
     for (std::size_t i = 0; i < rays_.size(); ++i)
         if (!blocked[i]) sources_[rays_[i].source].arrived += rays_[i].kernel;
     from_.clear(), to_.clear(), rays_.clear();

@@ -203,10 +203,10 @@ TEST(DiffusingPanes, AFileMayGiveOneSide) {
 TEST(DiffusingPanes, WhatTakesLightToOneSideRefusesThem) {
     const Scene scene = lit_and_dark();
     Progress progress;
-    for (const SolveOptions& options : std::initializer_list<SolveOptions>{
-             {.method = Method::discontinuity, .local_pass = LocalPassRule::c},
-             {.method = Method::growing_cells, .gcs = CellsKind::classic},
-             {.relaxation = Relaxation::cg}}) {
+    for (const SolveOptions& options :
+         std::initializer_list<SolveOptions>{{.method = Method::discontinuity, .local_pass = LocalPassRule::c},
+                                             {.method = Method::growing_cells, .gcs = CellsKind::classic},
+                                             {.relaxation = Relaxation::cg}}) {
         const Result<Solution> none = solve_scene(scene, options, progress, StopRequest());
         ASSERT_FALSE(none);
         EXPECT_EQ(none.error().code, ErrorCode::usage);

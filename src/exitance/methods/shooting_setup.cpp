@@ -129,8 +129,7 @@ Spectrum ShootingSetup::light_of_patches(std::size_t leaf, PatchTransfer::Worksp
     return passed_.met_at(leaf, [&](std::size_t i) {
         Spectrum sum;
         for (std::size_t p = 0; p < patches.size(); ++p)
-            if (max(sent[p]) > 0)
-                sum += transfer_.form_factor(numbering.leaves[i], patches[p], workspace) * sent[p];
+            if (max(sent[p]) > 0) sum += transfer_.form_factor(numbering.leaves[i], patches[p], workspace) * sent[p];
         return sum;
     });
 }

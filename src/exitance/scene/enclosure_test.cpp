@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/core/random.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -45,6 +46,37 @@ struct Room {
         }
         d.faces.push_back(std::move(f));
     }
+    /// The pane stands `depth` behind the inner wall; reveals, `beyond` deeper than that, are cut at it or not.
+    void set_back(double depth, double beyond, bool cut) {
+        for (Point& p : d.panes[0].corners) p.y = 3 + depth;
+        if (cut) reveals(3, 3 + depth), reveals(3 + depth, 3 + depth + beyond);
+        if (!cut) reveals(3, 3 + depth + beyond);
+    }
+    void reveals(double from, double to) {
+        if (!(to > from)) return;
+        face({{1, from, 1}, {3, from, 1}, {3, to, 1}, {1, to, 1}});
+        face({{1, from, 2}, {1, to, 2}, {3, to, 2}, {3, from, 2}});
+        face({{1, from, 1}, {1, to, 1}, {1, to, 2}, {1, from, 2}});
+        face({{3, from, 1}, {3, from, 2}, {3, to, 2}, {3, to, 1}});
+    }
+    /// Outer walls, floor and roof about the room, `thick` away, with the window's opening.
+    void shell(double thick) {
+        const double a = -thick, x = 4 + thick, y = 3 + thick, z = 2.5 + thick;
+        face({{a, a, a}, {a, y, a}, {x, y, a}, {x, a, a}});
+        face({{a, a, z}, {x, a, z}, {x, y, z}, {a, y, z}});
+        face({{a, a, a}, {x, a, a}, {x, a, z}, {a, a, z}});
+        face({{a, a, a}, {a, a, z}, {a, y, z}, {a, y, a}});
+        face({{x, a, a}, {x, y, a}, {x, y, z}, {x, a, z}});
+        face({{a, y, a}, {a, y, 1}, {1, y, 1}, {3, y, 1}, {x, y, 1}, {x, y, a}});
+        face({{a, y, 2}, {a, y, z}, {x, y, z}, {x, y, 2}, {3, y, 2}, {1, y, 2}});
+        face({{a, y, 1}, {a, y, 2}, {1, y, 2}, {1, y, 1}});
+        face({{3, y, 1}, {3, y, 2}, {x, y, 2}, {x, y, 1}});
+    }
+    /// A lawn and a house across the street.
+    void outdoors() {
+        face({{-20, 3.4, -0.5}, {20, 3.4, -0.5}, {20, 30, -0.5}, {-20, 30, -0.5}});
+        face({{1, 9, -0.5}, {8, 9, -0.5}, {8, 9, 4}, {1, 9, 4}});
+    }
     Scene scene() const {
         CheckedScene checked = make_scene(SceneDescription(d));
         EXI_CHECK(static_cast<bool>(checked.scene));
@@ -84,12 +116,48 @@ TEST(Enclosure, WhatIsNotClosedOrStandsBeforeWindowsHasNone) {
         if (p.z == 2.5 && p.y == 0) p.z = 2.4;
     gap.d.faces.erase(gap.d.faces.begin() + 3);  // a wall
     EXPECT_EQ(held(gap.scene()), 0u);
-    Room outdoors;
-    outdoors.face({{0, 5, 0}, {4, 5, 0}, {4, 5, 2}, {0, 5, 2}});
-    EXPECT_EQ(held(outdoors.scene()), 0u) << "a wall across the street";
     Room recessed;
     for (Point& p : recessed.d.panes[0].corners) p.y = 2.9;
     EXPECT_EQ(held(recessed.scene()), 0u);
+}
+
+TEST(Enclosure, PanesInRevealsCloseTheirRoom) {
+    Room flush;
+    const std::size_t indoors = flush.scene().regions().size();
+    flush.reveals(3, 3.3), flush.shell(0.3);
+    EXPECT_EQ(held(flush.scene()), indoors) << "at the inner edge of a thick wall";
+    Room outer;
+    outer.set_back(0.3, 0, true), outer.shell(0.3);
+    EXPECT_EQ(held(outer.scene()), indoors + 4) << "at its outer edge";
+    Room thin;
+    thin.set_back(0.2, 0, true);
+    EXPECT_EQ(held(thin.scene()), indoors + 4) << "of walls without an outside";
+    Room within;
+    within.set_back(0.1, 0.2, false), within.shell(0.3);
+    EXPECT_EQ(held(within.scene()), indoors) << "across reveals, of which a part lies outside";
+    for (Room* room : {&flush, &outer, &within}) {
+        std::reverse(room->d.panes[0].corners.begin(), room->d.panes[0].corners.end());
+        EXPECT_NEAR(find_enclosure(room->scene()).windows.at(0).n.y, -1, 1e-12) << "inwards";
+    }
+    within.outdoors();
+    EXPECT_EQ(held(within.scene()), indoors) << "a lawn and a house are outside";
+}
+
+TEST(Enclosure, WindowsThatFaceEachOtherCloseNothing) {
+    Room room;
+    Pane other = room.d.panes[0];
+    other.corners = {{3, 8, 1}, {1, 8, 1}, {1, 8, 2}, {3, 8, 2}};
+    EXPECT_EQ(held(room.scene()), room.scene().regions().size());
+    // The same room again, turned about, across a court.
+    const std::vector<SceneDescription::Face> faces = room.d.faces;
+    for (const SceneDescription::Face& f : faces) {
+        std::vector<Point> corners;
+        for (const std::uint32_t c : f.corners)
+            corners.push_back({4 - room.d.points[c].x, 11 - room.d.points[c].y, room.d.points[c].z});
+        room.face(corners);
+    }
+    room.d.panes.push_back(other);
+    EXPECT_EQ(held(room.scene()), 0u) << "a way may lead in again";
 }
 
 TEST(Enclosure, AFaceThatLeavesTheRoomIsNotWithin) {
@@ -159,6 +227,84 @@ TEST(Enclosure, TheSkyThroughItsWindowIsTheIntegral) {
             sum += kernel * (scene.distant().radiosity(w, false) * pane.transmission(w.y));
         }
     EXPECT_NEAR(stage.direct.irradiance(x, {0, 0, -1}, ceiling, workspace)[0], sum[0], 1e-3 * sum[0]);
+}
+
+namespace {
+
+/// Does a face stand in the way from x along w?
+bool is_hidden(const Scene& scene, const Point& x, const Vec3& w) {
+    for (const SurfaceId s : scene.surfaces().ids()) {
+        const auto outline = scene.outline(s);
+        const Normal& n = scene.surfaces()[s].normal;
+        const double t = dot(n, outline[0] - x) / dot(n, w);
+        if (!(t > 1e-9) || !std::isfinite(t)) continue;
+        const Point at = x + t * w;
+        bool inside = true;
+        for (std::size_t i = 0; i < outline.size(); ++i)
+            inside = inside && dot(cross(n, outline[(i + 1) % outline.size()] - outline[i]), at - outline[i]) > 0;
+        if (inside) return true;
+    }
+    return false;
+}
+
+/// Light of the sky through the pane, which faces -y, place by place: one at random in each cell, as shadows' edges run
+/// along rows of cells.
+Spectrum sum_over_pane(const Scene& scene, const Point& x, const Normal& n, int steps) {
+    const Pane& pane = scene.panes()[0];
+    const double y = pane.corners[0].y;
+    RandomStream random(1, Stream::mesh);
+    Spectrum sum;
+    for (int i = 0; i < 2 * steps; ++i)
+        for (int k = 0; k < steps; ++k) {
+            const double u = random.uniform(), v = random.uniform();
+            const Vec3 r = Point{1 + (i + u) / steps, y, 1 + (k + v) / steps} - x, w = normalized(r);
+            const double kernel = dot(n, w) * w.y / (pi * squared_norm(r) * steps * steps);
+            if (kernel > 0 && !is_hidden(scene, x, w))
+                sum += kernel * (scene.distant().radiosity(w, false) * pane.transmission(w.y));
+        }
+    return sum;
+}
+
+}  // namespace
+
+/// Some thousand of 400 x 200 cells lie across a shadow's edge and are lit or not: they leave 2e-4 of a window's light.
+TEST(Enclosure, WhatStandsOutdoorsIsCutFromTheSky) {
+    struct Case {
+        double depth, beyond;
+        bool cut, outdoors;
+    };
+    for (const Case& c : {Case{0, 0.25, true, true}, Case{0.3, 0, true, true}, Case{0.1, 0.2, false, true},
+                          Case{0.15, 0.15, true, false}}) {
+        SCOPED_TRACE(c.depth);
+        Room room;
+        room.set_back(c.depth, c.beyond, c.cut);
+        room.shell(c.depth + c.beyond);
+        if (c.outdoors) room.outdoors();
+        const Scene scene = room.scene();
+        const Stage stage(scene);
+        const Enclosure& enclosure = stage.occluders.enclosure();
+        DirectLight::Workspace workspace;
+        ReceiverLight light, nearer;
+        for (const RegionId own : {RegionId(0), RegionId(1), RegionId(2), RegionId(3)}) {
+            ASSERT_TRUE(enclosure.holds(own));
+            const Plane& plane = scene.regions()[own].plane;
+            for (Point x : {Point{1, 1, 1}, Point{2, 2.8, 0.3}, Point{3.7, 0.4, 2.2}, Point{1.7, 1.9, 1.3}}) {
+                x = x - plane.signed_distance(x) * plane.n;
+                const Spectrum exact = sum_over_pane(scene, x, plane.n, 200),
+                               E = stage.direct.irradiance(x, plane.n, own, workspace);
+                stage.direct.prepare(scene.regions()[own].loops[0], plane.n, own, light, workspace);
+                const Spectrum prepared = stage.direct.irradiance(light, x, workspace);
+                const Frame frame(plane.n);
+                const std::vector<Point> around{x + 0.1 * frame.u, x + 0.1 * frame.v, x - 0.1 * (frame.u + frame.v)};
+                stage.direct.prepare(around, light, nearer, workspace);
+                EXPECT_NEAR(stage.direct.irradiance(nearer, x, workspace)[0], E[0], 1e-9 + 1e-6 * E[0]);
+                for (std::size_t b = 0; b < bands; ++b) {
+                    EXPECT_NEAR(E[b], exact[b], 1.5e-3 * exact[b] + 1e-3) << own.value << " " << x.x << " " << b;
+                    EXPECT_NEAR(prepared[b], E[b], 1e-9 + 1e-6 * E[b]) << own.value << " " << x.x << " " << b;
+                }
+            }
+        }
+    }
 }
 
 }  // namespace exitance

@@ -88,9 +88,8 @@ class PassedLight::Maker {
         std::vector<double> weights(out_.weights_.begin() + static_cast<std::ptrdiff_t>(first_weight),
                                     out_.weights_.end());
         for (std::size_t t = 0; t < weights.size(); t += n * n) {
-            std::vector<double> gram = gram_,
-                                of_term(weights.begin() + static_cast<std::ptrdiff_t>(t),
-                                        weights.begin() + static_cast<std::ptrdiff_t>(t + n * n));
+            std::vector<double> gram = gram_, of_term(weights.begin() + static_cast<std::ptrdiff_t>(t),
+                                                      weights.begin() + static_cast<std::ptrdiff_t>(t + n * n));
             solve_in_place(gram, of_term, n, n);
             std::copy(of_term.begin(), of_term.end(),
                       out_.weights_.begin() + static_cast<std::ptrdiff_t>(first_weight + t));

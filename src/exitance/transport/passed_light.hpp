@@ -39,8 +39,7 @@ class PassedLight {
         std::vector<Value> met(rows_.size() * nodes_);
         parallel_for(rows_.size(), 64, [&](std::size_t r) {
             for (std::size_t k = 0; k < nodes_; ++k)
-                met[r * nodes_ + k] =
-                    of_row(rows_[r], k, [&](std::size_t i) -> const Value& { return values[i]; });
+                met[r * nodes_ + k] = of_row(rows_[r], k, [&](std::size_t i) -> const Value& { return values[i]; });
         });
         for (std::size_t r = 0; r < rows_.size(); ++r)
             for (std::size_t k = 0; k < nodes_; ++k) values[rows_[r].element * nodes_ + k] = met[r * nodes_ + k];

@@ -7,6 +7,7 @@
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/edge_sum.hpp"
 #include "exitance/visibility/glazed_part.hpp"
+#include "exitance/visibility/window_view.hpp"
 
 namespace exitance {
 namespace {
@@ -69,13 +70,13 @@ void make_pyramid(Workspace& scratch) {
     }
 }
 
-/// The pyramid from x over the source, between the planes of both, in scratch.region.
+/// The pyramid from x over the source, between the planes of both, in scratch.region; of a window, all the way out.
 void make_region(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
     const double slack = occluders.rounding();
     const auto above = [&](const Vec3& n, double height) { return Plane{n, dot(n, at.x) + height}; };
     scratch.region.clear();
     const Normal& ns = occluders.pieces()[source].plane.n;
-    scratch.region.add(above(ns, dot(ns, scratch.source[0]) + slack));
+    if (!looks_out_on_faces(occluders, source)) scratch.region.add(above(ns, dot(ns, scratch.source[0]) + slack));
     scratch.region.add(above(at.n, slack));
     for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
 }
@@ -136,9 +137,9 @@ bool region_hides_everything(const Occluders& occluders, const Receiver& at, Reg
 }
 
 /// What a candidate hides: the pyramid over its part between the planes of the source and the receiver, added to the
-/// shadows if it hides some of the source.
-Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, PieceId candidate,
-                 Workspace& scratch) {
+/// shadows if it hides some of the source. `all_the_way`: of a window, what lies beyond hides it, too.
+Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, bool all_the_way,
+                 PieceId candidate, Workspace& scratch) {
     const ConvexPiece& piece = occluders.pieces()[candidate];
     if (occluders.is_own(piece.region, at.own) || piece.region == source.region) return Hides::nothing;
     const std::span<const Point> corners = occluders.corners(candidate);
@@ -154,13 +155,14 @@ Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPie
         nearest = std::max(nearest, over_source), farthest = std::min(farthest, over_source);
         scratch.clipped.push_back(r);
     }
-    if (highest <= occluders.rounding() || nearest <= piece.thickness) return Hides::nothing;
+    const bool is_in_plane = nearest <= piece.thickness && (!all_the_way || farthest >= -piece.thickness);
+    if (highest <= occluders.rounding() || is_in_plane) return Hides::nothing;
     for (const Vec3& inward : scratch.source_pyramid) {
         double inmost = -HUGE_VAL;
         for (const Vec3& r : scratch.clipped) inmost = std::max(inmost, dot(inward, r));
         if (inmost <= 0) return Hides::nothing;
     }
-    if (farthest < 0) clip_in_place(scratch.clipped, source.plane.n, source_height, scratch);
+    if (farthest < 0 && !all_the_way) clip_in_place(scratch.clipped, source.plane.n, source_height, scratch);
     if (lowest < 0) clip_in_place(scratch.clipped, at.n, 0, scratch);
     if (scratch.clipped.size() < 3) return Hides::nothing;
     const std::size_t first = scratch.planes.size();
@@ -236,9 +238,10 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
+    const bool all_the_way = looks_out_on_faces(occluders, source);
     PieceId& likely = scratch.last_blocker(occluders, source);
     const auto hides_everything = [&](PieceId p) {
-        const bool hides = add_shadow(occluders, at, emitter, p, scratch) == Hides::everything;
+        const bool hides = add_shadow(occluders, at, emitter, all_the_way, p, scratch) == Hides::everything;
         if (hides) likely = p;
         return hides;
     };
@@ -267,8 +270,9 @@ double part_among(const Occluders& occluders, const Receiver& at, PieceId source
     if (candidates.empty()) return finish(at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
+    const bool all_the_way = looks_out_on_faces(occluders, source);
     for (PieceId p : candidates)
-        if (add_shadow(occluders, at, emitter, p, scratch) == Hides::everything) return 0;
+        if (add_shadow(occluders, at, emitter, all_the_way, p, scratch) == Hides::everything) return 0;
     return finish(at.n, 0, scratch, light, fragments);
 }
 

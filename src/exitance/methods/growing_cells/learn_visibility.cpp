@@ -197,8 +197,7 @@ class PassedToCells {
                 const std::vector<std::uint32_t>& there = of_region[behind];
                 const double share = stage.scene.material(p.region).through / (last - first);
                 own_[c] -= share;
-                behind_[c].push_back(
-                    {network.cell_of[*std::min_element(there.begin(), there.end(), farther)], share});
+                behind_[c].push_back({network.cell_of[*std::min_element(there.begin(), there.end(), farther)], share});
             }
         });
     }
@@ -211,8 +210,7 @@ class PassedToCells {
             for (std::size_t q = 0; q < T.size; ++q) T.matrix[c * T.size + q] *= own_[c];
             for (const auto& [other, share] : behind_[c]) {
                 T.first[c] += share * first[other];
-                for (std::size_t q = 0; q < T.size; ++q)
-                    T.matrix[c * T.size + q] += share * matrix[other * T.size + q];
+                for (std::size_t q = 0; q < T.size; ++q) T.matrix[c * T.size + q] += share * matrix[other * T.size + q];
             }
         }
     }

@@ -107,9 +107,8 @@ void Hierarchy::refine_panes_alike() {
         for (std::size_t i = 0; i < ends.size(); ++i) {
             const double area = light.tree.area(ends[i]);
             bool finer = false;
-            passed.visit_behind(i, [&](std::uint32_t j, double) {
-                finer = finer || light.tree.area(ends[j]) < as_small * area;
-            });
+            passed.visit_behind(
+                i, [&](std::uint32_t j, double) { finer = finer || light.tree.area(ends[j]) < as_small * area; });
             if (finer && !light.tree.is_leaf(ends[i])) opened.push_back(ends[i]);
             if (finer && light.tree.is_leaf(ends[i]) && area > 2 * least) cut.push_back(ends[i]);
         }

@@ -14,7 +14,11 @@ void LinkedSystem::set_links(Links near, std::optional<ClusterLinks> far) {
 /// What such elements hold of the light of panes.
 PassedLight LinkedSystem::passed_between(std::span<const ElementId> ends) const {
     const NodalBasis& basis = sites_.basis();
-    return {input_.stage.scene, sites_.tree(), ends, sites_.nodes(), basis.order() - 1,
+    return {input_.stage.scene,
+            sites_.tree(),
+            ends,
+            sites_.nodes(),
+            basis.order() - 1,
             [&](ElementId e, const Point& x, std::span<double> factors) {
                 const Patch frame = sites_.frame(e);
                 basis.interpolate(frame.shape, frame.coordinates(x), factors);
