@@ -178,22 +178,25 @@ class RoomFinder {
     Part part_of(Leaves leaves) const {
         Part part;
         part.leaves = std::move(leaves);
+        std::vector<std::uint8_t> within(flow_.area.size());
+        for (std::uint32_t i : part.leaves) within[i] = 1;
         for (std::uint32_t i : part.leaves) {
             part.area += flow_.area[i];
-            part.volume += flow_.area[i] * height_seen(i);
+            part.volume += flow_.area[i] * height_seen(i, within);
             for (const Point& p : tree_.outline(numbering_.leaves[i])) part.box.add(p);
         }
         return part;
     }
 
-    /// How high the elements that one sees are above its plane, on average over its rays, metres.
-    double height_seen(std::uint32_t i) const {
+    /// How high the elements of a part that one of them sees are above its plane, on average over its rays, metres. Of
+    /// what gaps see through their mouths some is far away, but says nothing of the gaps.
+    double height_seen(std::uint32_t i, const std::vector<std::uint8_t>& within) const {
         const Patch& patch = tree_.patch(numbering_.leaves[i]);
         const Normal n = patch.normal();
         double sum = 0;
         std::size_t met = 0;
         for (std::uint32_t j : flow_.rows.hits(i))
-            if (j != RayRows::missed)
+            if (j != RayRows::missed && within[j])
                 sum += std::max(0.0, dot(n, tree_.patch(numbering_.leaves[j]).centre() - patch.centre())), ++met;
         return met > 0 ? sum / static_cast<double>(met) : std::sqrt(flow_.area[i]);
     }

@@ -70,5 +70,11 @@ TEST(LightRooms, SmallRoomsBelongToTheirNeighbourUnlessThatIsGroundOrSky) {
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {900, 900, 900}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 2u);
 }
 
+TEST(LightRooms, SeveralGapsAreNoRoom) {
+    // Those over the lamp and behind the board see out, and one is far from the other, but both are centimetres high.
+    for (const char* lamp : {"0.01", "0.03"})
+        EXPECT_EQ(rooms_of(built_scene("gaps", {{"lamp", lamp}, {"boxes", "0.02"}})).count(), 0u) << lamp;
+}
+
 }  // namespace
 }  // namespace exitance

@@ -32,11 +32,12 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
         error += known ? stage.counted_area(tree, e) * error_at(e) : 0;
         in_gaps += narrow[e] ? stage.counted_area(tree, e) : 0;
     }
+    constexpr int of_left_out = 10;  // one of so many
     const double mean_error = error / area;
     const double share = calibrated::narrow_points;
     const double of_narrow = in_gaps > 0 ? share / (1 - share) * area / in_gaps : 0;
     const auto density = [&](ElementId e) {
-        const double seldom = stage.is_left_out(tree.region(e)) ? 0.1 : 1;
+        const double seldom = stage.is_left_out(tree.region(e)) ? 1.0 / of_left_out : 1;
         const double expected = mean_error > 0 ? 0.5 + 0.5 * error_at(e) / mean_error : 1.0;
         return seldom * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
     };

@@ -215,7 +215,7 @@ TEST(Certificate, TellsThe99thPercentileWithoutNoise) {
     const double everywhere = planted.error(rough);
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const Certificate told = planted.with_p99(seed);
-        // Few rays read elements that are themselves up or down: that is a tenth of the error, and in its largest more.
+        // What rays read beside the point differs from place to place by half of that at most.
         EXPECT_GT(told.p99, 0.95 * everywhere);
         EXPECT_LT(told.p99, 1.5 * everywhere);
     }

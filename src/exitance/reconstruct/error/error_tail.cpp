@@ -15,12 +15,12 @@ double rms_over_bands(const Spectrum& error) {
     return std::sqrt(squared(error) / static_cast<double>(bands));
 }
 
-double error_below(std::span<const WeightedError> known, WeightedError rest, double share) {
+double error_below(std::span<const WeightedError> known, WeightedError rest, double share, double most) {
     std::vector<WeightedError> falling(known.begin(), known.end());
     std::stable_sort(falling.begin(), falling.end(),
                      [](const WeightedError& a, const WeightedError& b) { return a.error > b.error; });
     const auto above = [&](double t) {
-        if (!(rest.error > 0)) return 0.0;
+        if (!(rest.error > 0) || t >= most) return 0.0;
         return rest.weight * std::erfc(t / (std::numbers::sqrt2 * rest.error));
     };
     // The share above an error grows as that falls: by steps at those that are known, evenly between them.
@@ -56,7 +56,9 @@ double error_below(std::span<const WeightedError> noisy, std::span<const unsigne
         again += noisy[falling[count]].weight, rays_again += rays[falling[count]];
     if (again <= 0) return 0;
     const std::span<const std::size_t> which = std::span(falling).first(count);
-    const auto factor = std::bit_floor(static_cast<unsigned>(std::clamp(0.25 * all_rays / rays_again, 2.0, 64.0)));
+    constexpr int part = 4, most_times = 64;  // of all rays; as many as each had
+    const double times = std::clamp(all_rays / (part * rays_again), 2.0, static_cast<double>(most_times));
+    const auto factor = std::bit_floor(static_cast<unsigned>(times));
     std::vector<TwoErrors> error(count);
     measure(which, factor, error);
     double noise = 0, known_square = 0;
@@ -72,7 +74,7 @@ double error_below(std::span<const WeightedError> noisy, std::span<const unsigne
     }
     const double left = std::max(0.0, all - again);
     const double rest = left > 0 ? std::sqrt(std::max(0.0, mean_square - known_square) / left) : 0;
-    return error_below(known, {rest, left}, share * all);
+    return error_below(known, {rest, left}, share * all, noisy[which.back()].error);
 }
 
 }  // namespace exitance

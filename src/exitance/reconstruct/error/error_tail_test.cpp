@@ -28,6 +28,10 @@ TEST(ErrorTail, CountsTheOthersAboveTheKnown) {
     EXPECT_DOUBLE_EQ(error_below(std::vector<WeightedError>{{1, 0.02}}, {0.1, 0.98}, 0.01), 1);
 }
 
+TEST(ErrorTail, IsNoLargerThanWhatNoneIsAbove) {
+    EXPECT_NEAR(error_below({}, {2, 1}, 0.01, 2.5), 2.5, 1e-9);
+}
+
 TEST(ErrorTail, IsNothingWhereNothingIsWrong) {
     EXPECT_EQ(error_below({}, {0, 1}, 0.01), 0);
     EXPECT_EQ(error_below(std::vector<WeightedError>{{0, 1}}, {0, 0}, 0.01), 0);
@@ -74,14 +78,16 @@ TEST(ErrorTail, IsFoundUnderNoiseAsLargeAsIt) {
     for (const WeightedError& e : planted.measured) size.push_back(e.error);
     std::sort(size.begin(), size.end());
     ASSERT_GT(size[NoisyErrors::count - NoisyErrors::count / 100], 0.21);  // what is measured at first is too large
-    EXPECT_NEAR(planted.told(), 0.2, 0.015);  // half of the rays' noise, a fifth of 0.1 / sqrt(2), in a median
+    // A third of those at 0.2 seem smaller than many others, and are not measured again: of 1.4% of the area that are,
+    // the limit leaves a hundredth above it, half of the noise of four times the rays, 0.025, below 0.2.
+    EXPECT_NEAR(planted.told(), 0.2, 0.03);
 }
 
 TEST(ErrorTail, IsNoNoiseWhereErrorsAreSmall) {
-    NoisyErrors planted(0.01, 0.01, 0.1);
+    NoisyErrors planted(0.01, 0.01, 0.03);
     const double truth = planted.true_p99();
     EXPECT_NEAR(truth, 0.0257, 0.003);
-    // Sixteen times the rays leave noise of 0.0125, which is taken out; the mean square is known to a third by so many.
+    // Four times the rays leave noise of 0.0075, which is taken out, but for its spread.
     EXPECT_NEAR(planted.told(), truth, 0.35 * truth);
 }
 
