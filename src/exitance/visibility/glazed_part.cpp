@@ -129,13 +129,24 @@ class GlazedSum {
         if (is_sliver(corners)) return {};
         if (panes.empty()) return Spectrum(form_factor(corners));
         const Vec3 middle = middle_of(corners);
-        const Spectrum T = transmission_towards(middle, panes);
-        double least = mean(T), most = least;
+        const Spectrum at_middle = transmission_towards(middle, panes);
+        Spectrum least = at_middle, most = at_middle, T;
+        double of_corners = 0;
         for (const Vec3& r : corners) {
-            const double t = mean(transmission_towards(r, panes));
-            least = std::min(least, t), most = std::max(most, t);
+            const Spectrum here = transmission_towards(r, panes);
+            const double weight = kernel(r);
+            for (std::size_t b = 0; b < bands; ++b)
+                least[b] = std::min(least[b], here[b]), most[b] = std::max(most[b], here[b]);
+            T += weight * here, of_corners += weight;
         }
-        if (most - least <= even || depth == deepest) return form_factor(corners) * T;
+        bool is_even = true;
+        for (std::size_t b = 0; b < bands; ++b) is_even = is_even && most[b] - least[b] <= even * most[b];
+        if (is_even || depth == deepest) {
+            // As of a triangle, of whose quadratic functions this is the mean.
+            const double share = 3 * static_cast<double>(corners.size()) * kernel(middle);
+            if (!(of_corners + share > 0)) return {};
+            return form_factor(corners) * ((T + share * at_middle) / (of_corners + share));
+        }
         Vec3 along;
         double widest = -1;
         const std::size_t m = corners.size();
@@ -153,6 +164,11 @@ class GlazedSum {
     }
 
   private:
+    /// What a place of the source's plane weighs, but for a factor.
+    double kernel(const Vec3& r) const {
+        const double squared = squared_norm(r), p = radiance_.is_directed() ? radiance_(-r / std::sqrt(squared)) : 1;
+        return p * std::max(0.0, dot(n_, r)) / (squared * squared);
+    }
     double form_factor(std::span<const Vec3> corners) const {
         return radiance_.is_directed() ? directed_form_factor(n_, corners, radiance_)
                                        : std::max(0.0, contour_sum(n_, corners));

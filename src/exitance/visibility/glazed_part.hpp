@@ -13,8 +13,8 @@ namespace exitance {
 ///     F = integral over the visible part of  T p dF,     T the product over the panes that the way crosses.
 ///
 /// The visible part is cut along the outlines of the panes as seen from the receiver, and cut further until T is even
-/// over each part (to 0.04, which the middle's value leaves 1e-3 of); it is exact. `candidates`: as
-/// of visible_form_factor, or none: all occluders.
+/// over each part, to 0.04 of itself in each band, and its mean is that of the corners and the middle as p dF weighs
+/// them: 1e-3 at most. `candidates`: as of visible_form_factor, or none: all occluders.
 Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
                             std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
                             const PartLight& light);
