@@ -36,7 +36,7 @@ const std::vector<Door> doors{
       "io/solution/hdf5_writer.cpp"}},
     {"libpng", std::regex("png\\.h"), {"io/pictures/png.cpp"}},
     {"libjpeg", std::regex("jpeglib\\.h"), {"io/scenes/textures/jpeg_mean.cpp"}},
-    {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf/gltf.cpp"}},
+    {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf/gltf.cpp", "io/scenes/gltf/gltf_parse.cpp"}},
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view/view_server.cpp"}},

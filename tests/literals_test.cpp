@@ -29,29 +29,18 @@ const std::vector<std::string> apart{"reconstruct/pictures/",
                                      "methods/daylight/",
                                      "methods/classical/",
                                      "methods/growing_cells/",
+                                     "methods/tasks/",
                                      "methods/plan/forecast.cpp"};
 
 /// What has not been gone through. This list shrinks.
-const std::vector<std::string> not_yet{"methods/lines/",
-                                       "methods/tasks/",
-                                       "reconstruct/continuous.cpp",
-                                       "reconstruct/discontinuity/discontinuity_mesh.cpp",
+const std::vector<std::string> not_yet{"reconstruct/discontinuity/discontinuity_mesh.cpp",
                                        "reconstruct/discontinuity/discontinuity_mesh.hpp",
                                        "reconstruct/discontinuity/linear_elements.cpp",
                                        "reconstruct/discontinuity/receiver_curves.cpp",
                                        "reconstruct/discontinuity/receiver_triangles.cpp",
                                        "reconstruct/discontinuity/receiver_triangles.hpp",
-                                       "reconstruct/element_gather.cpp",
                                        "reconstruct/error/certificate.cpp",
-                                       "reconstruct/error/certificate.hpp",
-                                       "reconstruct/error/error_percentile.cpp",
-                                       "reconstruct/error/path_tracer.cpp",
-                                       "reconstruct/gather.cpp",
-                                       "reconstruct/local_pass.cpp",
-                                       "reconstruct/local_pass.hpp",
-                                       "reconstruct/open_points.cpp",
-                                       "reconstruct/surface_light.cpp",
-                                       "reconstruct/unlit_sides.cpp"};
+                                       "reconstruct/error/certificate.hpp"};
 
 bool is_below(const std::vector<std::string>& places, const std::string& file) {
     return std::any_of(places.begin(), places.end(), [&](const std::string& p) { return file.starts_with(p); });

@@ -12,7 +12,7 @@ class ToleranceLaw {
     explicit ToleranceLaw(double exponent) : exponent_(exponent) {}
 
     /// What to multiply the tolerance by that `error` came of; 1 where it is no larger than allowed. Nothing is learnt
-    /// from the first round, which does not know all of the light.
+    /// from the first round, whose light lacks reflections.
     double factor(double error, double allowed);
 
     template <class Archive>

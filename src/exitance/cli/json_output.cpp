@@ -46,9 +46,8 @@ Json to_json(const std::vector<Finding>& findings, Finding::Kind kind) {
     return list;
 }
 
-}  // namespace
-
-std::string statistics_json(const SolveStatistics& s) {
+/// What every phase took; null for parts of phases that were not told apart.
+Json seconds_of(const SolveStatistics& s) {
     Json seconds;
     for (const char* phase : {"total", "read", "mesh", "direct", "link", "visibility", "form_factors", "solve",
                               "gather", "certify", "reconstruct", "write"}) {
@@ -56,6 +55,12 @@ std::string statistics_json(const SolveStatistics& s) {
         const bool is_part = phase == std::string_view("visibility") || phase == std::string_view("form_factors");
         seconds[phase] = at != s.seconds.end() ? Json(at->second) : is_part ? Json(nullptr) : Json(0.0);
     }
+    return seconds;
+}
+
+}  // namespace
+
+std::string statistics_json(const SolveStatistics& s) {
     Json rooms = Json::array();
     for (const RoomError& room : s.rooms)
         rooms.push_back({{"area", room.area}, {"mean", room.mean}, {"error", room.error}});
@@ -91,7 +96,7 @@ std::string statistics_json(const SolveStatistics& s) {
           {"absorbed", s.energy.absorbed},
           {"escaped", s.energy.escaped},
           {"defect", s.energy.defect}}},
-        {"seconds", seconds},
+        {"seconds", seconds_of(s)},
         {"peak_memory_bytes", s.peak_memory_bytes},
         {"link_memory_bytes", s.link_memory_bytes},
         {"bytes_per_link", share(s.link_memory_bytes, s.links)},

@@ -5,23 +5,18 @@
 #include <limits>
 #include <utility>
 
-#include "exitance/cli/discontinuity_arguments.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/solve/classical_solve.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
-#include "exitance/cli/solve/local_pass_check.hpp"
-#include "exitance/cli/solve/task_engine_check.hpp"
+#include "exitance/cli/solve/settle_options.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/io/files/atomic_file.hpp"
-#include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/files/trace_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
@@ -32,29 +27,6 @@
 
 namespace exitance {
 namespace {
-
-/// Found out before the work, not after it: can the result be written?
-Result<void> check_output(const std::string& path) {
-    if (path.empty()) return Error{ErrorCode::usage, "is missing", "-o", "exitance solve room.obj -o room.h5"};
-    const Result<AtomicFile> file = AtomicFile::create(path);
-    return file ? Result<void>() : Result<void>(file.error());
-}
-
-/// A solution is no mesh and no picture.
-Result<void> check_ending(const std::string& path) {
-    for (const char* end : {".vtu", ".vtkhdf", ".hdf", ".glb", ".gltf", ".obj", ".csv", ".png", ".exr", ".hdr"})
-        if (path.ends_with(end)) {
-            const bool picture =
-                std::string_view(end) == ".png" || std::string_view(end) == ".exr" || std::string_view(end) == ".hdr";
-            return Error{ErrorCode::usage,
-                         fmt::format("solve writes a solution (.h5), from which `{}` makes a {}",
-                                     picture ? "render" : "export", end),
-                         "-o",
-                         fmt::format("exitance solve SCENE -o S.h5, then exitance {} S.h5 -o {}",
-                                     picture ? "render" : "export", path)};
-        }
-    return {};
-}
 
 StopRequest::Clock::time_point after(double seconds) {
     using Seconds = std::chrono::duration<double>;
@@ -115,37 +87,6 @@ class Tracing {
     std::optional<TracedProgress> progress_;
 };
 
-/// The points that light is looked at become options.
-Result<void> read_importance(SolveArguments& arguments) {
-    if (arguments.importance.empty()) return {};
-    const Result<ProbePoints> points = load_probe_points(arguments.importance);
-    if (!points) return points.error();
-    if (points->size() == 0)
-        return Error{ErrorCode::bad_input, "holds no points", arguments.importance, "without --importance all counts"};
-    for (std::size_t i = 0; i < points->size(); ++i)
-        arguments.options.importance.push_back({points->points[i], points->normals[i]});
-    return {};
-}
-
-/// The sky that is asked for becomes a part of the scene that is read.
-Result<void> read_sky(SolveArguments& arguments) {
-    if (arguments.sky.empty() && arguments.epw.empty()) return {};
-    if (arguments.sky.empty())
-        return Error{ErrorCode::usage, "a weather file needs a kind of sky and a time", "--epw",
-                     "--sky perez,time=06-21T12:00"};
-    std::optional<Weather> weather;
-    if (!arguments.epw.empty()) {
-        Result<Weather> read = load_epw(arguments.epw);
-        if (!read) return read.error();
-        weather = std::move(*read);
-    }
-    Result<ChosenSky> sky = parse_sky(arguments.sky, weather ? &*weather : nullptr);
-    if (!sky) return sky.error();
-    if (arguments.photometric) sky->photometric = arguments.photometric;
-    arguments.scene.load.sky = std::move(*sky);
-    return {};
-}
-
 /// What a solution depends on.
 CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     CheckpointFacts facts{{"bands", std::to_string(bands)}, {"the scene", scene_fingerprint(scene)}};
@@ -198,55 +139,95 @@ ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) 
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
 }
 
+/// The scene as it is solved; programs that make parts of it end by the time limit.
+CheckedScene read_scene(SolveArguments& arguments, const Stopwatch& run_time) {
+    StopRequest stop;
+    if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
+    LoadOptions& load = arguments.scene.load;
+    load.stop = &stop;
+    load.photometric = arguments.photometric;
+    load.light_groups = arguments.light_groups;
+    CheckedScene checked = load_for_all(arguments.scene);
+    load.stop = nullptr;
+    return checked;
+}
+
+/// What no solve is begun with.
+Result<void> check_scene(const SolveArguments& arguments, const Scene& scene) {
+    if (const auto nonsense = find_nonsense(scene))
+        return Error{ErrorCode::failure, "makes a scene that its solution could not be read with: " + *nonsense,
+                     arguments.scene.files[0], "please report this file"};
+    return {};
+}
+
+/// The light that is asked for. `checkpoint`: the first process's file, where it keeps one.
+Result<Solution> find_light(const SolveArguments& arguments, Scene scene, std::optional<CheckpointFile>& checkpoint,
+                            Progress& progress, const StopRequest& stop) {
+    std::optional<SharedCheckpoints> checkpoints;
+    if (arguments.checkpoint_every || arguments.resume) checkpoints.emplace(checkpoint ? &*checkpoint : nullptr);
+    if (arguments.classical.any()) return run_classical(arguments, scene, progress, stop);
+    return solve_scene(std::move(scene), arguments.options, progress, stop, checkpoints ? &*checkpoints : nullptr);
+}
+
+/// What the solution says of the run so far.
+void record_run(Solution& solution, const SolveArguments& arguments, const std::vector<Finding>& findings,
+                double read_seconds, const Stopwatch& run_time) {
+    SolveStatistics& statistics = solution.statistics;
+    if (!arguments.classical.any()) solution.options = options_json(arguments.options);
+    add_findings(statistics.warnings, findings, solution.scene.file());
+    statistics.seconds["read"] = read_seconds;
+    statistics.seconds["total"] = run_time.seconds();
+    statistics.peak_memory_bytes = peak_memory_bytes();
+    record_processes(statistics);
+}
+
+/// Writes the solution and what stands beside it. `stop`: a solution of a solve that was stopped is not read again.
+Result<void> save(const SolveArguments& arguments, Solution& solution, const LightGroups& groups, Tracing& tracing,
+                  const StopRequest& stop, const Stopwatch& run_time) {
+    tracing.progress().phase("write");
+    Stopwatch writing;
+    if (!is_first_process()) drop_light(solution);
+    const bool reads_back = !stop.requested();
+    if (const Result<void> written =
+            by_first([&] { return write_checked(arguments.output, solution, groups, reads_back); });
+        !written)
+        return written;
+    SolveStatistics& statistics = solution.statistics;
+    statistics.seconds["write"] = writing.seconds();
+    statistics.seconds["total"] = run_time.seconds();
+    statistics.peak_memory_bytes = std::max(statistics.peak_memory_bytes, peak_memory_bytes());
+    return {};
+}
+
+void tell(const SolveArguments& arguments, const Solution& solution, Terminal& terminal) {
+    if (arguments.json) {
+        terminal.print(statistics_json(solution));
+    } else if (!arguments.quiet) {
+        terminal.print(summary(solution.statistics));
+    }
+}
+
 }  // namespace
 
 /// exitance solve SCENE -o SOLUTION
 ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     SolveArguments arguments = given;
-    // The engine of tasks reads the threshold that classical forms read.
-    if (given.options.task_engine)
-        arguments.options.threshold = std::exchange(arguments.classical.threshold, std::nullopt);
-    // Growing cells are delivered as they are where nothing is gathered; their learning has no classical form.
-    if (given.options.method == Method::growing_cells && arguments.classical.gather) {
-        if (!*arguments.classical.gather) arguments.options.smoothing = false;
-        arguments.classical.gather.reset();
-    }
-    if (const Result<void> engine = check_task_engine(arguments); !engine) return terminal.fail(engine.error());
-    if (const Result<void> pass = check_local_pass(arguments); !pass) return terminal.fail(pass.error());
-    if (const Result<void> cuts = check_discontinuity(arguments.options); !cuts) return terminal.fail(cuts.error());
-    if (const Result<void> points = read_importance(arguments); !points) return terminal.fail(points.error());
-    if (const Result<void> sky = read_sky(arguments); !sky) return terminal.fail(sky.error());
-    if (const Result<void> obeyed = check_classical(arguments); !obeyed) return terminal.fail(obeyed.error());
-    if (const Result<void> shared = check_processes(arguments); !shared) return terminal.fail(shared.error());
-    if (const Result<void> kept = check_light_groups(arguments); !kept) return terminal.fail(kept.error());
+    if (const Result<void> settled = settle_options(arguments); !settled) return terminal.fail(settled.error());
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
-    if (const Result<void> ending = check_ending(arguments.output); !ending) return terminal.fail(ending.error());
-    if (const Result<void> output = by_first([&] { return check_output(arguments.output); });
-        !arguments.dry_run && !output)
-        return terminal.fail(output.error());
-    if (!arguments.trace.empty())
-        if (const Result<void> output = check_output(arguments.trace); !output) return terminal.fail(output.error());
     Tracing tracing(arguments.trace, terminal.progress());
 
-    Stopwatch reading;
-    StopRequest reading_stop;  // of programs that make parts of the scene
-    if (arguments.time_limit) reading_stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
-    arguments.scene.load.stop = &reading_stop;
-    arguments.scene.load.photometric = arguments.photometric;
-    arguments.scene.load.light_groups = arguments.light_groups;
-    CheckedScene checked = load_for_all(arguments.scene);
+    const Stopwatch reading;
+    CheckedScene checked = read_scene(arguments, run_time);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     if (const Result<void> few = check_light_groups(arguments, *checked.scene); !few) return terminal.fail(few.error());
     const double read_seconds = reading.seconds();
     if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
-    if (const auto nonsense = find_nonsense(*checked.scene))
-        return terminal.fail({ErrorCode::failure,
-                              "makes a scene that its solution could not be read with: " + *nonsense,
-                              arguments.scene.files[0], "please report this file"});
+    if (const Result<void> sane = check_scene(arguments, *checked.scene); !sane) return terminal.fail(sane.error());
     if (arguments.photometric) checked.scene->declare_photometric(*arguments.photometric);
+
     // From here on there is something to save.
     StopRequest asked, agreed;
     const SignalGuard signals(asked);
@@ -254,57 +235,29 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const StopRequest& stop = processes() > 1 ? agreed : asked;
     if (arguments.time_limit)
         asked.set_deadline(after(time_to_solve(*arguments.time_limit, run_time.seconds(), read_seconds)));
-
     std::optional<CheckpointFile> checkpoint;  // of the first process
     if (const Result<void> opened =
             by_first([&] { return open_checkpoint(arguments, *checked.scene, terminal, checkpoint); });
         !opened)
         return terminal.fail(opened.error());
-    std::optional<SharedCheckpoints> checkpoints;
-    if (arguments.checkpoint_every || arguments.resume) checkpoints.emplace(checkpoint ? &*checkpoint : nullptr);
-    const bool is_classical = arguments.classical.any();
-    Result<Solution> solution = is_classical
-                                    ? run_classical(arguments, *checked.scene, tracing.progress(), stop)
-                                    : solve_scene(std::move(*checked.scene), arguments.options, tracing.progress(),
-                                                  stop, checkpoints ? &*checkpoints : nullptr);
+    Result<Solution> solution = find_light(arguments, std::move(*checked.scene), checkpoint, tracing.progress(), stop);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
     const std::optional<ExitCode> signal = signal_of_any(signals.received());
     if (!solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
-    const Result<LightGroups> kept = keep_light_groups(arguments, *solution, tracing.progress(), stop);
-    if (!kept) return terminal.fail(kept.error());
-    const LightGroups& groups = *kept;
+    const Result<LightGroups> groups = keep_light_groups(arguments, *solution, tracing.progress(), stop);
+    if (!groups) return terminal.fail(groups.error());
+    record_run(*solution, arguments, checked.findings, read_seconds, run_time);
     SolveStatistics& statistics = solution->statistics;
-    if (!is_classical) solution->options = options_json(arguments.options);
-    add_findings(statistics.warnings, checked.findings, solution->scene.file());
-    statistics.seconds["read"] = read_seconds;
-    statistics.seconds["total"] = run_time.seconds();
-    statistics.peak_memory_bytes = peak_memory_bytes();
-    record_processes(statistics);
     // The processes have agreed on a stop, which the first of them knows the reason of.
     if (processes() > 1 && statistics.stopped_by == "interrupt" && !signal) statistics.stopped_by = "time limit";
-
-    tracing.progress().phase("write");
-    Stopwatch writing;
-    if (!is_first_process()) drop_light(*solution);
-    const bool reads_back = !stop.requested();
-    if (const Result<void> written =
-            by_first([&] { return write_checked(arguments.output, *solution, groups, reads_back); });
-        !written)
-        return terminal.fail(written.error());
-    statistics.seconds["write"] = writing.seconds();
-    statistics.seconds["total"] = run_time.seconds();
-    statistics.peak_memory_bytes = std::max(statistics.peak_memory_bytes, peak_memory_bytes());
+    if (const Result<void> saved = save(arguments, *solution, *groups, tracing, stop, run_time); !saved)
+        return terminal.fail(saved.error());
     terminal.progress().finish();
     close_checkpoint(checkpoint, stopped, terminal);
     if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
-
-    if (arguments.json) {
-        terminal.print(statistics_json(*solution));
-    } else if (!arguments.quiet) {
-        terminal.print(summary(statistics));
-    }
+    tell(arguments, *solution, terminal);
     return signal ? *signal : as_first(code_of(statistics, signals));
 }
 

@@ -1,36 +1,7 @@
-#include <algorithm>
-#include <sstream>
-
 #include "exitance/cli/option_kinds.hpp"
 
 namespace exitance {
 namespace {
-
-constexpr std::array<std::pair<Quantity, std::string_view>, 4> quantity_names{{
-    {Quantity::radiosity, "radiosity"},
-    {Quantity::irradiance, "irradiance"},
-    {Quantity::luminance, "luminance"},
-    {Quantity::illuminance, "illuminance"},
-}};
-
-constexpr std::array<std::pair<Palette, std::string_view>, 4> palette_names{{
-    {Palette::viridis, "viridis"},
-    {Palette::inferno, "inferno"},
-    {Palette::turbo, "turbo"},
-    {Palette::grey, "grey"},
-}};
-
-constexpr std::array<std::pair<Projection, std::string_view>, 4> projection_names{{
-    {Projection::perspective, "perspective"},
-    {Projection::orthographic, "orthographic"},
-    {Projection::fisheye, "fisheye"},
-    {Projection::panorama, "panorama"},
-}};
-
-constexpr std::array<std::pair<ToneCurve, std::string_view>, 2> tone_names{{
-    {ToneCurve::filmic, "filmic"},
-    {ToneCurve::linear, "linear"},
-}};
 
 constexpr std::array<std::pair<Component, std::string_view>, 3> component_names{{
     {Component::total, "total"},
@@ -39,73 +10,6 @@ constexpr std::array<std::pair<Component, std::string_view>, 3> component_names{
 }};
 
 constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146"}, {2, "577"}, {4, "2305"}}};
-
-/// "auto", "ex,ey,ez tx,ty,tz fov" (metres and degrees; the last may be left out), or what the scene's cameras are
-/// called.
-void read_camera(const std::string& words, RenderArguments& arguments) {
-    arguments.camera.reset(), arguments.fov.reset(), arguments.camera_name.clear();
-    if (words == "auto") return;
-    if (words.find_first_of(", ") == std::string::npos ||
-        words.find_first_not_of("0123456789.,+-eE ") != std::string::npos) {
-        arguments.camera_name = words;
-        return;
-    }
-    const std::vector<double> n = read_numbers("--camera", words);
-    if (n.size() != 6 && n.size() != 7)
-        throw CLI::ValidationError("--camera", fmt::format("'{}' is not 'ex,ey,ez tx,ty,tz fov'", words));
-    const Camera camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-    if (n.size() == 7) arguments.fov = n[6];
-    if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "looks at where it stands");
-    arguments.camera = camera;
-}
-
-/// "ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]", metres; spacing may be "auto".
-MeasuringPlane read_plane(std::string words) {
-    const std::string given = words;
-    if (const std::size_t at = words.find("auto"); at != std::string::npos) words.replace(at, 4, "0");
-    const std::vector<double> n = read_numbers("--grid", words);
-    const bool automatic = words != given;
-    if ((n.size() != 10 && n.size() != 11) || (automatic ? n[9] != 0 : !(n[9] > 0)))
-        throw CLI::ValidationError("--grid",
-                                   fmt::format("'{}' is not 'ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]'", given));
-    return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n.size() == 11 ? n[10] : 0};
-}
-
-/// "640x400"
-PictureSize read_size(const std::string& words) {
-    std::string blank = words;
-    std::replace(blank.begin(), blank.end(), 'x', ' ');
-    const std::vector<double> n = read_numbers("--size", blank);
-    const bool whole = n.size() == 2 && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1]);
-    if (!whole || std::min(n[0], n[1]) < 1 || std::max(n[0], n[1]) > 16384)
-        throw CLI::ValidationError("--size", fmt::format("'{}' is not a size such as 640x400, at most 16384", words));
-    return {static_cast<int>(n[0]), static_cast<int>(n[1])};
-}
-
-/// "0,500", "log", "1,1000,log"
-void read_scale(std::string words, ScaleChoice& scale) {
-    if (words == "log" || words.ends_with(",log")) {
-        scale.by_ratio = true;
-        words.erase(words.size() > 3 ? words.size() - 4 : 0);
-        if (words.empty()) return;
-    }
-    const std::vector<double> n = read_numbers("--scale", words);
-    if (n.size() != 2 || !(n[0] < n[1]))
-        throw CLI::ValidationError("--scale", fmt::format("'{}' is not 'LO,HI' with LO below HI", words));
-    if (scale.by_ratio && !(n[0] > 0)) throw CLI::ValidationError("--scale", "by ratios begins above 0");
-    scale.range = std::pair(n[0], n[1]);
-}
-
-/// "10" or "smooth"
-void read_bands(const std::string& word, ScaleChoice& scale) {
-    scale.smooth = word == "smooth";
-    if (scale.smooth) return;
-    const double value = read_number("--bands", word);
-    if (value != std::floor(value) || value < 1 || value > 100)
-        throw CLI::ValidationError("--bands",
-                                   fmt::format("must be 'smooth' or a whole number from 1 to 100, not {}", word));
-    scale.bands = static_cast<std::size_t>(value);
-}
 
 }  // namespace
 
@@ -122,31 +26,6 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
     add_count(app, "--reference", arguments.reference_paths, 1,
               "N unbiased paths a point in place of the solution, with their standard errors");
     add_count(app, "--seed", arguments.seed, 0, "Of the paths; default 1");
-    declare_work(app, arguments, arguments.threads);
-}
-
-void declare(CLI::App& app, CompareArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("REFERENCE", arguments.reference, "Probe CSV with E_*, or another solution")->required();
-    app.add_flag("--interpolant", arguments.interpolant, "Measure what export writes, not the full function");
-    app.add_option(
-           "--map", arguments.map,
-           "Picture (.png) of where the error lies: |E - E_ref| in false colours; of a CSV at its nearest point "
-           "on the surface")
-        ->type_name("FILE");
-    app.add_option_function<std::string>(
-           "--camera", [&arguments](const std::string& w) { read_camera(w, arguments.view); },
-           "Of the map; as of render")
-        ->type_name("CAMERA");
-    app.add_option_function<std::string>(
-           "--size", [&arguments](const std::string& w) { arguments.view.size = read_size(w); },
-           "Pixels of the map; default 640x400")
-        ->type_name("WxH");
-    app.add_option_function<std::string>(
-           "--scale", [&arguments](const std::string& w) { read_scale(w, arguments.view.scale); },
-           "Range of the map's colours, W/m^2: 0,5")
-        ->type_name("LO,HI[,log]");
-    declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }
 
@@ -178,75 +57,6 @@ void declare(CLI::App& app, ExportArguments& arguments) {
         ->type_name("ELEMENT");
 }
 
-void declare(CLI::App& app, RenderArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output,
-                   "Picture to write: .png, linear radiance as .exr or .hdr; with --path a video by ffmpeg: .mp4, "
-                   ".mkv, .webm, .gif")
-        ->type_name("FILE")
-        ->required();
-    app.add_option_function<std::string>(
-           "--camera", [&arguments](const std::string& w) { read_camera(w, arguments); },
-           "auto (default): one that shows much; 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal "
-           "angle in degrees (orthographic: width in metres); or a camera of the scene, by name or by number from 1")
-        ->type_name("CAMERA");
-    app.add_option("--path", arguments.path,
-                   "Cameras to take numbered pictures from (P.0001.png, ...): CSV time,ex,ey,ez,tx,ty,tz,fov, as the "
-                   "viewer records them; one exposure for all. A video has 25 pictures a second, between the rows, too")
-        ->type_name("FILE");
-    add_choice(app, "--projection", projection_names, arguments.projection,
-               "Default perspective; fisheye: equidistant; panorama: 360 x 180 degrees");
-    app.add_option_function<std::string>(
-           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 640x400")
-        ->type_name("WxH");
-    add_count(app, "--samples", arguments.samples, 1, "Rays a pixel, at most 1024; default 16")
-        ->check(CLI::Range(1, 1024));
-    add_count(app, "--gather", arguments.gather, 4,
-              "Final gather by so many rays at every sample, in place of the elements' indirect light; a power of two");
-    const auto read_exposure = [&arguments](const std::string& word) {
-        if (word.ends_with('x')) {
-            arguments.exposure_scale = read_number("--exposure", word.substr(0, word.size() - 1));
-            if (!(*arguments.exposure_scale > 0))
-                throw CLI::ValidationError("--exposure", fmt::format("must multiply by more than 0, not {}", word));
-            return;
-        }
-        arguments.exposure = word == "auto" ? 0 : read_number("--exposure", word);
-        if (std::abs(arguments.exposure) > 60)
-            throw CLI::ValidationError("--exposure", fmt::format("must be between -60 and 60 stops, not {}", word));
-    };
-    app.add_option_function<std::string>(
-           "--exposure", read_exposure,
-           "Stops above the automatic exposure: 1 is twice as bright; or 0.02x: radiosity "
-           "times 0.02, the same in every picture; default auto")
-        ->type_name("STOPS|FACTORx|auto")
-        ->group("PNG");
-    add_choice(app, "--tone-map", tone_names, arguments.tone_map, "Default filmic")->group("PNG");
-    add_choice(app, "--false-colour", quantity_names, arguments.false_colour,
-               "Values as colours, with a legend; the last two as the eye weighs the bands")
-        ->group("PNG");
-    const auto of_scale = [&app, &arguments](const char* name, const char* help, const char* type, auto read) {
-        app.add_option_function<std::string>(
-               name, [&arguments, read](const std::string& w) { read(w, arguments.scale), arguments.has_scale = true; },
-               help)
-            ->type_name(type)
-            ->group("PNG");
-    };
-    of_scale("--scale", "Range of the colours and lines: 0,500, or 1,1000,log for equal ratios; log: those alone",
-             "LO,HI[,log]|log", read_scale);
-    of_scale("--bands", "So many colours of equal width, or smooth; default round steps", "N|smooth", read_bands);
-    add_choice(app, "--palette", palette_names, arguments.scale.palette, "Default viridis")
-        ->group("PNG")
-        ->each([&arguments](const std::string&) { arguments.has_scale = true; });
-    app.add_flag("--isolux", arguments.isolux, "Draw lines of equal illuminance, with their values")->group("PNG");
-    declare_unit(app, arguments.unit);
-    app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges; those of a discontinuity mesh coloured by order")
-        ->group("PNG");
-    app.add_flag("--shadow-classes", arguments.shadow_classes,
-                 "Faces of a discontinuity mesh as lit, penumbra and umbra, with a legend")
-        ->group("PNG");
-    declare_work(app, arguments, arguments.threads);
-}
-
 void declare(CLI::App& app, BakeArguments& arguments) {
     LightMapFormat& format = arguments.format;
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
@@ -271,39 +81,6 @@ void declare(CLI::App& app, BakeArguments& arguments) {
         ->excludes(unlit);
     app.add_flag("--light-groups", arguments.light_groups,
                  "Maps of every light group by itself too, undimmed, on the same charts (solve --light-groups)");
-    declare_work(app, arguments, arguments.threads);
-}
-
-void declare(CLI::App& app, ReportArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output,
-                   "Page to write (.html), its numbers beside it (.json); may be left out with --tables")
-        ->type_name("FILE");
-    app.add_option_function<std::vector<std::string>>(
-           "--grid",
-           [&arguments](const std::vector<std::string>& all) {
-               for (const std::string& words : all) arguments.planes.push_back(read_plane(words));
-           },
-           "Plane to measure on, 'ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]': a corner, two edges, the distance of "
-           "points (auto: that of EN 12464-1) and a strip to leave out, metres; light from where u x v points. May be "
-           "given again")
-        ->type_name("PLANE")
-        ->expected(1)
-        ->take_all();
-    app.add_option_function<std::vector<std::string>>(
-           "--camera",
-           [&arguments](const std::vector<std::string>& all) {
-               for (const std::string& words : all) read_camera(words, arguments.views.emplace_back());
-           },
-           "As of render; may be given again. Default: one that shows much, and up to three of the scene's")
-        ->type_name("CAMERA")
-        ->expected(1)
-        ->take_all();
-    app.add_option_function<std::string>(
-           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 960x600")
-        ->type_name("WxH");
-    declare_unit(app, arguments.unit);
-    declare_standards(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }
 

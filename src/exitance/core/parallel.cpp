@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 
 #include "exitance/core/trace.hpp"
@@ -16,6 +17,21 @@ namespace {
 
 std::unique_ptr<tbb::global_control> control;
 Schedule schedule_in_force = Schedule::stealing;
+
+/// What happens before what in a loop: all before the loop before its workers, and all of its workers before what
+/// follows. oneTBB sees to that; it is said in atomics as well, since the thread sanitizer does not see into a library
+/// that was built without it.
+class ForkAndJoin {
+  public:
+    ForkAndJoin() { begun_.store(true, std::memory_order_release); }
+    void begin_worker() const { (void)begun_.load(std::memory_order_acquire); }
+    void end_worker() { ended_.fetch_add(1, std::memory_order_release); }
+    void join() const { (void)ended_.load(std::memory_order_acquire); }
+
+  private:
+    std::atomic<bool> begun_;
+    std::atomic<std::size_t> ended_{0};
+};
 
 /// The ranges of one loop.
 class Loop {
@@ -53,13 +69,17 @@ class Loop {
                 homes[t] = static_cast<std::uint32_t>(work_.polygon_of(t * grain_));
         }
         TaskQueues queues(schedule_in_force, tasks(), workers(), homes);
+        ForkAndJoin order;
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, workers()),
             [&](const tbb::blocked_range<std::size_t>& range) {
+                order.begin_worker();
                 for (std::size_t worker = range.begin(); worker < range.end(); ++worker)
                     for (std::size_t task; (task = queues.next(worker)) != TaskQueues::none;) run_task(task, worker);
+                order.end_worker();
             },
             tbb::simple_partitioner());
+        order.join();
     }
 
     void run_task(std::size_t task, std::size_t worker) {

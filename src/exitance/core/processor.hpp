@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-// Kernels are made twice: for every processor, and with EXITANCE_AVX512 for those that have 512-bit registers. They
-// take along what is EXITANCE_INLINE.
+// Kernels are made for all processors, and again with EXITANCE_AVX512; they take along what is EXITANCE_INLINE.
 #define EXITANCE_INLINE [[gnu::always_inline]] inline
-#ifdef __x86_64__
+#if defined(__x86_64__) && !defined(__clang__)  // which inlines nothing of 512 bits into a function of another target
+#define EXITANCE_HAS_WIDE_KERNELS
 #define EXITANCE_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]]
 #else
 #define EXITANCE_AVX512
@@ -18,7 +18,7 @@ namespace exitance {
 enum class Processor : std::uint8_t { fastest, any };
 
 inline bool has_avx512() {
-#ifdef __x86_64__
+#ifdef EXITANCE_HAS_WIDE_KERNELS
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
 #else

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <utility>
 
 #include "exitance/core/random.hpp"
@@ -168,7 +167,8 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     constexpr double askew = 4;
     Spectrum in_sight, astray;
     for (Source& source : sources_) source.arrived = 0;
-    for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {
+    for (const Rank& rank : ranks_) {
+        const std::uint32_t s = rank.source;
         const Spectrum in_sight_with = in_sight + sources_[s].in_sight;
         const Spectrum astray_with = astray + sources_[s].near * sources_[s].light;
         const double misfit = std::max(misses * power(in_sight_with), askew * power(astray_with));
@@ -181,8 +181,8 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
         add_rays(tree, e, s, for_value.deal(value_rays * sources_[s].share), Purpose::value);
     }
     trace_rays();
-    for (const std::uint32_t s : ranks_ | std::views::transform(&Rank::source)) {
-        const Source& source = sources_[s];
+    for (const Rank& rank : ranks_) {
+        const Source& source = sources_[rank.source];
         if (source.arrived == 0) continue;
         const double expected = source.F * source.rays * std::min(1.0, value_rays * source.share);
         estimate_.weak += source.area * source.arrived / expected * source.light;

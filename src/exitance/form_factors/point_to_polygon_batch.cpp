@@ -103,7 +103,7 @@ struct Kernels {
         {NAME##_points<Rule::narrow_edges>, NAME##_points<Rule::points>, NAME##_points<Rule::edges>}};
 
 EXITANCE_KERNELS(plain, four::Real, )
-#ifdef __x86_64__
+#ifdef EXITANCE_HAS_WIDE_KERNELS
 EXITANCE_KERNELS(wide, EightReals, EXITANCE_AVX512)
 const Kernels& fastest = has_avx512() ? wide : plain;
 #else

@@ -13,7 +13,7 @@ struct ClusterLink {
     float visible = 1;  ///< Share of what passes between them that nothing stops.
 };
 
-/// Elements and clusters as they look from afar: a middle, a ball about it, and vector areas.
+/// Elements and clusters as bodies far away: a middle, a ball about it, and vector areas.
 class Bodies {
   public:
     Bodies(const LinkSites& sites, const ClusterTree& clusters) : sites_(&sites), clusters_(&clusters) {}

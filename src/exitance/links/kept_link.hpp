@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// A link of a hierarchy as it is kept for people to look at.
+/// A link of a hierarchy as a solution's file keeps it, for people.
 struct KeptLink {
     ElementId receiver, source;
     float form_factor = 0;  ///< From the receiver to the source, visibility included; the mean over the receiver.

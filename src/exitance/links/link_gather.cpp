@@ -248,7 +248,9 @@ void Links::Rows::for_each(const ElementTree& tree, const Row& gather_row) const
 /// then in double.
 void Links::gather_constants(const NodalField& b, NodalField& E) const {
     constexpr std::size_t ways = 8, at_a_time = 256, ahead = 512;
-    const auto& [receiver, first, sources, source] = constants_;
+    const std::vector<ElementId>&receiver = constants_.receiver, &sources = constants_.sources;
+    const std::vector<std::size_t>& first = constants_.first;
+    const std::vector<std::uint32_t>& source = constants_.source;
     std::vector<PaddedSpectrum> light(sources.size());
     parallel_for(light.size(), 4096, [&](std::size_t i) {
         const Spectrum mean = b.mean(sources[i]);
@@ -280,7 +282,9 @@ template <class Layout>
 void Links::gather_kernels(const NodalField& b, NodalField& E) const {
     constexpr std::size_t at_a_time = 16, ahead = 3;  // links: in single precision, to fetch
     const double scale = 1 / std::sqrt(sites_->stage().area);
-    const auto& [receiver, first, sources, source] = kernels_;
+    const std::vector<ElementId>&receiver = kernels_.receiver, &sources = kernels_.sources;
+    const std::vector<std::size_t>& first = kernels_.first;
+    const std::vector<std::uint32_t>& source = kernels_.source;
     // Memory that is new is first touched where it is filled, on all threads.
     const auto records = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sources.size());
     parallel_for(sources.size(), 256, [&](std::size_t i) { fill(records[i], *sites_, b, sources[i], scale); });

@@ -68,7 +68,7 @@ std::vector<ElementId> LinkSites::ends() const {
     return out;
 }
 
-/// Is an element cut as NodalBasis knows it?
+/// True if NodalBasis has the filters of the element's cut.
 bool LinkSites::is_regular(ElementId parent) const {
     return !tree_->is_cell(parent) &&
            (tree_->way(parent) == Cut::both || (tree_->way(parent) != Cut::line && tree_->ratio(parent) == 0.5));

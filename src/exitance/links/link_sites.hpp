@@ -19,27 +19,27 @@ struct ElementPart {
     std::vector<ElementId> ends;                ///< Where it ends, in order of their ids.
 };
 
-/// The elements of a tree as links see them: where the nodes of a basis stand, and how functions move between levels.
+/// Link sites place the nodes of a basis on the elements of a tree, and carry functions between its levels.
 ///
-/// A cell (an element whose domain is less than its patch) is seen as the parallelogram that has the cell's area's
-/// first and second moments, so that one kind of rule serves all.
+/// A cell (an element whose domain is less than its patch) is replaced by the parallelogram that has the cell's area
+/// and its first and second moments, so that one kind of rule serves all.
 ///
-/// Functions are held by all elements, or by those alone that links have come to: the roots, and the children of what
-/// was opened. Where the mesh follows direct light far below these ends, nothing is held.
+/// Values are stored (held) for all elements, or only for those that a link uses: the roots, and the children of what
+/// was opened. Where the mesh follows direct light far below these ends, nothing is stored.
 class LinkSites {
   public:
     enum class Held : std::uint8_t { all, roots };
     LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis, Held held = Held::all);
 
-    /// From now on the children of these are held too; of those that are not yet.
+    /// Stores values for the children of these elements, too, from now on.
     void open(std::span<const ElementId> parents);
     std::size_t size() const { return held_.size(); }  ///< Elements that are held.
     bool holds(ElementId e) const { return e.value < place_.size() && place_[e] != none; }
-    /// Are its children held? Not of a leaf.
+    /// True if the element has children whose values are stored.
     bool is_open(ElementId e) const { return !tree_->is_leaf(e) && holds(tree_->children(e).front()); }
-    /// Where what an element holds stands among all that is held.
+    /// The element's row among the stored values.
     std::size_t place(ElementId e) const { return place_[e]; }
-    /// The nearest one that is held: the element itself, or one that it is part of.
+    /// The smallest element with stored values that contains e: e itself, or an ancestor.
     ElementId held_above(ElementId e) const;
     std::vector<ElementId> ends() const;  ///< Those held whose children are not, in order of their ids.
 
@@ -55,9 +55,9 @@ class LinkSites {
     Patch frame(ElementId e) const;
     Point node(ElementId e, std::size_t k) const { return node(frame(e), k); }
     Point node(const Patch& frame, std::size_t k) const { return frame.at(basis_->nodes(frame.shape)[k].at); }
-    /// A point near a cell, drawn into it: beyond its border may be the inside of a box. Of other elements the point.
+    /// Moves a point near a cell into it: beyond its border may be the inside of a box. Other elements keep the point.
     Point within(ElementId e, const Point& x) const;
-    /// Where light is looked at for a node of a receiver.
+    /// The point at which light is evaluated for a node of a receiver.
     Point receiving_node(ElementId e, std::size_t k) const { return within(e, node(e, k)); }
     double weight(ElementId e, std::size_t k) const { return basis_->nodes(tree_->patch(e).shape)[k].weight; }
 
@@ -75,14 +75,14 @@ class LinkSites {
     };
     ChildMatrices matrices(ElementId parent) const;
 
-    /// All elements that are open, by their depth, roots first.
+    /// All elements with stored children, by their depth, roots first.
     const std::vector<std::vector<ElementId>>& inner() const { return inner_; }
-    /// The least part that holds all elements that are marked, by element; which are held. O(elements).
+    /// The least part of the hierarchy that holds all marked elements, which have stored values. O(elements).
     ElementPart part_with(Field<ElementId, std::uint8_t> marked) const;
     std::size_t memory_bytes() const;
     std::vector<std::size_t> count_by_level() const;  ///< How many elements are held at each depth.
 
-    /// What is held, for checkpoints.
+    /// Writes or reads which elements have stored values, for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
         std::vector<ElementId> held = held_;

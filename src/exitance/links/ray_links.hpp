@@ -10,7 +10,7 @@ namespace exitance {
 ///
 ///     F_iq = share of the rays of leaf i that hit element q first,     F_iq rms_q(b - b_q) rho_i sqrt(A_i) <= allowed.
 ///
-/// Form factor and visibility in one; links to where no light comes from are never looked at, so that no pair of
+/// Form factor and visibility in one; links to where no light comes from are never evaluated, so that no pair of
 /// elements is. What a leaf's links bring differs from what its rays do by no more than the unevenness that was allowed
 /// for, and F sums to 1 over the links of a leaf that sees surfaces alone. Source: levels as in [Hanrahan91], form
 /// factors as in [Malley88]. O(rays log rays).

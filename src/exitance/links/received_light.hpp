@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// A link, and what refining needs of it.
+/// A link with what the refinement needs to judge its receiver.
 struct FoundLink {
     FoundLink() = default;
     FoundLink(const LinkDecision& decision, bool is_open);
@@ -15,8 +15,8 @@ struct FoundLink {
     std::array<float, 5> departure{};
     float squared_error = 0, light = 0, undersampling = 0;
     std::uint32_t shadow = none;  ///< Where shadowed light and its variance at the nodes stand in the refiner's pool.
-    bool near = false;            ///< Has it a block?
-    bool open = false;            ///< Is its view certain?
+    bool near = false;            ///< True if it has a block.
+    bool open = false;            ///< True if its view is certainly open.
     bool cuts_receiver = false;   ///< Whatever its other links bring.
 };
 

@@ -139,7 +139,8 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
     const double tolerance = 1e-7 * scene.size();
     std::vector<ConcaveBorders> out(pieces.size());
     for (std::size_t k = 0; k < pieces.size(); ++k) {
-        const auto& [region, patch] = pieces[k];
+        const RegionId region = pieces[k].region;
+        const Patch& patch = pieces[k].patch;
         const Plane& plane = scene.regions()[region].plane;
         const Point inside = patch.centre();
         out[k].assign(static_cast<std::size_t>(patch.corner_count()), false);

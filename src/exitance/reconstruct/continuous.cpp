@@ -51,10 +51,11 @@ class Projection {
     /// nor number of elements [Wathen87], so that a dozen steps give single precision.
     std::vector<Spectrum> solve() const {
         constexpr int most_steps = 60;
-        constexpr double precision = 1e-14;  // of the residual's square
+        constexpr double precision = 1e-14;  // of the residual's square, given by single precision
         const std::size_t count = right_.size();
         std::vector<Spectrum> x(count), r(count), p(count), Mp(count);
-        for (std::size_t i = 0; i < count; ++i) x[i] = right_[i] / std::max(mass_of(i), 1e-300);
+        for (std::size_t i = 0; i < count; ++i)
+            x[i] = right_[i] / std::max(mass_of(i), 1e-300);  // given by rounding: not 0
         multiply(x, Mp);
         Spectrum rz, start;
         for (std::size_t i = 0; i < count; ++i) {

@@ -16,15 +16,15 @@ namespace exitance {
 /// over elements q of a hierarchy [Hanrahan91] with 4 of Gauss's points y_g each (3 on a triangle), K = cos cos / (pi
 /// r^2), and F exact. On an element that is not a leaf b is the linear function nearest to what lies below. Each q is
 /// the largest whose light is so even, or which is so small and far, that it misses less than a share of a first
-/// estimate of E(x), band by band; leaves are cut further where their polynomials ask for it. So dim places are as
+/// estimate of E(x), band by band; leaves are cut further where their polynomials vary too much. So dim places are as
 /// right as bright ones, and no light is missed, however small its solid angle. Some hundred elements a place, 25 ns
-/// each: pieces of an element are looked at four at a time, a lane each.
+/// each: pieces of an element are evaluated four at a time, a lane each.
 class ElementGather {
   public:
     /// `b`: W/m^2. Light of elements that other surfaces lie on is left out: nobody sees it.
     ElementGather(const Stage& stage, const ElementFunction& b);
 
-    /// Is this the way to gather: does nothing stand in between, and are there few enough pieces to begin from?
+    /// True if nothing stands between any two places, and there are few enough pieces to begin from.
     static bool suits(const Stage& stage);
 
     class Workspace;

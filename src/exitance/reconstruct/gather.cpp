@@ -21,10 +21,10 @@ Gathered estimate(QuarterSums quarter, unsigned rays) {
     Gathered out;
     for (Spectrum& q : quarter) {
         q *= 4.0 / rays;
-        out.irradiance += 0.25 * q;
+        out.irradiance += q / 4;
     }
     for (const Spectrum& q : quarter) out.quarters += 1.0 / 12 * ((q - out.irradiance) * (q - out.irradiance));
-    const Spectrum apart = 0.25 * (quarter[0] + quarter[1] - quarter[2] - quarter[3]);
+    const Spectrum apart = 1.0 / 4 * (quarter[0] + quarter[1] - quarter[2] - quarter[3]);
     out.halves = apart * apart;
     return out;
 }

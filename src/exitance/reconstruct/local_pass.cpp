@@ -89,7 +89,7 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
-    const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area asks for no rays
+    const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area counts for no rays
     const unsigned first =
         hopeless ? std::bit_ceil(demand.rays.least) : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
     unsigned rays = std::max({4u, first, before});
@@ -131,9 +131,9 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
     }
     sampled.rays += rays * count;
     const double allowed = allowed_misfit(e, sampled.light, demand);
+    if (!(misfit > allowed * allowed + 3 * noise)) return;
     // Given by five freedoms, as in is_too_rough.
-    if (misfit > allowed * allowed + 3 * noise)
-        sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
+    sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
 }
 
 /// Cuts the elements whose error has too large a share in the whole; returns the new leaves.

@@ -21,7 +21,7 @@ struct LocalPassDemand {
     /// The same b, in parts to be summed over in place of rays, where that suits the scene; and what one element may
     /// miss. Empty: rays.
     std::span<const ElementGather> elements = {};
-    double element_share = 1e-4;
+    double element_share = 0;
     int max_depth = 8;  ///< Rounds of cutting.
     /// The light of every room by the mean light: errors are allowed in proportion. Empty where all is one room.
     std::span<const double> light_in = {};
@@ -76,14 +76,14 @@ class LocalPass {
         ElementGather::Workspace elements;
         std::vector<GrowingGather> growing;  ///< One a place.
         std::vector<Gathered> gathered;
-        std::vector<GatherPlace> short_places;  ///< Those that want more rays,
-        std::vector<GrowingGather*> short_of;   ///< and what they have.
+        std::vector<GatherPlace> short_places;  ///< Places that are short of rays,
+        std::vector<GrowingGather*> short_of;   ///< and the gathers of these places.
     };
 
     /// Sums over all elements sampled so far of their area times what quarters and halves of their rays tell of the
     /// variance, (W/m^2)^2 m^2; to begin with of rays between chance and even light (`Gathered`), of no weight.
     struct Spread {
-        double quarters = 1e-100, halves = 0.85e-100;
+        double quarters = 1e-100, halves = 0.85e-100;  // given by the middle of gain()'s range, at next to no weight
 
         /// The variance of what is gathered in what quarters tell of it. A mean over elements, since one alone has too
         /// few places to tell.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/error/path_tracer.hpp"
 #include "exitance/scene/other_side.hpp"
@@ -12,7 +13,7 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned places = 16;  ///< On a side that are looked at.
+constexpr unsigned places = 16;  ///< Number of places on a side that are tried.
 
 /// The pieces of a region, in one row.
 struct Side {
@@ -61,7 +62,7 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
             if (max(tracer.path({x, n, side.region}, directions(p, 0), directions(p, 1), random)) > 0) return true;
     }
     ClusteredLight::Workspace workspace;
-    constexpr LightAccuracy any_light{.relative = 0.1};
+    constexpr LightAccuracy any_light{.relative = 0.1};  // given by what is asked: is there any?
     return std::any_of(open.begin(), open.end(), [&](const auto& place) {
         return max(stage.clustered.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
     });
@@ -79,7 +80,7 @@ Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t
     const auto look = [&](std::size_t k) {
         if (stop.requested()) return;
         const double share = std::sqrt(sides[k].area / stage.area / static_cast<double>(sides.size()));
-        const double paths = std::clamp(all / places * share, 2.0, 16.0);
+        const double paths = std::clamp(all / places * share, 2.0, calibrated::most_sheet_paths);
         unlit[k] = !is_lit(stage, tracer, sides[k], static_cast<unsigned>(paths), seed);
     };
     shared_ranges(

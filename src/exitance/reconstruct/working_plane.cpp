@@ -10,7 +10,7 @@ namespace exitance {
 namespace {
 
 constexpr double level_tolerance = 1e-3;  ///< Metres: faces nearer to one plane than that lie in it.
-constexpr double upward = 0.999;          ///< Cosine to the vertical of faces that look up.
+constexpr double upward = 0.999;          ///< Cosine to the vertical of faces that point up.
 constexpr double least_share = 0.1;       ///< Of the largest area: what is smaller is no plane to work on.
 constexpr std::size_t most_planes = 32;
 

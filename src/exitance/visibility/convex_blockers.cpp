@@ -190,6 +190,32 @@ class Bodies {
     std::map<std::uint32_t, std::vector<Side>> open_;  ///< Edges with a face on one side only, by group.
 };
 
+/// Of a face's side: a corner, and the one after it.
+using Ends = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The corners of a face, in order, by which comes after each; none unless they make one loop.
+std::vector<std::uint32_t> one_loop(const std::map<std::uint32_t, std::uint32_t>& next) {
+    if (next.size() < 3) return {};
+    std::vector<std::uint32_t> loop;
+    for (auto at = next.begin(); loop.size() < next.size(); at = next.find(at->second)) {
+        if (at == next.end()) return {};
+        loop.push_back(at->first);
+    }
+    return next.at(loop.back()) == loop.front() ? loop : std::vector<std::uint32_t>();
+}
+
+/// Makes the body's edges of its faces' sides; false unless every side has one that goes back, and all of them close.
+bool join_sides(const std::map<Ends, std::int32_t>& left_of, ConvexBlocker& body) {
+    std::size_t sides = 0;
+    for (const auto& loop : body.loops) sides += loop.size();
+    for (const auto& [ends, face] : left_of) {
+        const auto back = left_of.find({ends.second, ends.first});
+        if (back == left_of.end()) return false;
+        if (ends.first < ends.second) body.edges.push_back({ends.first, ends.second, face, back->second});
+    }
+    return 2 * body.edges.size() == sides && body.points.size() + body.faces.size() == body.edges.size() + 2;
+}
+
 }  // namespace
 
 ConvexBlocker make_sheet(std::span<const Point> outline, const Plane& plane) {
@@ -230,7 +256,7 @@ bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, Conv
         return known->second;
     };
     std::map<std::uint32_t, std::uint32_t> border;  // of the new face: from each of its corners to the next
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int32_t> left_of;
+    std::map<Ends, std::int32_t> left_of;
     const auto add_face = [&](const Plane& face, const std::vector<std::uint32_t>& loop) {
         for (std::size_t i = 0; i < loop.size(); ++i)
             left_of[{loop[i], loop[(i + 1) % loop.size()]}] = static_cast<std::int32_t>(part.faces.size());
@@ -253,22 +279,10 @@ bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, Conv
         }
         add_face(body.faces[k], loop);
     }
-    std::vector<std::uint32_t> cap;
-    if (border.size() < 3) return false;
-    for (std::uint32_t at = border.begin()->first; cap.size() < border.size(); at = border[at]) {
-        if (!border.contains(at)) return false;
-        cap.push_back(at);
-    }
-    if (border[cap.back()] != cap.front()) return false;
+    const std::vector<std::uint32_t> cap = one_loop(border);
+    if (cap.empty()) return false;
     add_face({-plane.n, -plane.offset}, cap);
-    std::size_t sides = 0;
-    for (const auto& loop : part.loops) sides += loop.size();
-    for (const auto& [ends, face] : left_of) {
-        const auto back = left_of.find({ends.second, ends.first});
-        if (back == left_of.end()) return false;
-        if (ends.first < ends.second) part.edges.push_back({ends.first, ends.second, face, back->second});
-    }
-    return 2 * part.edges.size() == sides && part.points.size() + part.faces.size() == part.edges.size() + 2;
+    return join_sides(left_of, part);
 }
 
 std::vector<ConvexBlocker> make_convex_blockers(const Occluders& occluders, double slack) {

@@ -2,11 +2,12 @@
 
 #include <cmath>
 
-#ifdef __x86_64__
+#include "exitance/core/processor.hpp"
+#include "exitance/geometry/four.hpp"
+
+#ifdef EXITANCE_HAS_WIDE_KERNELS
 #include <immintrin.h>
 #endif
-
-#include "exitance/geometry/four.hpp"
 
 namespace exitance {
 namespace {
@@ -24,7 +25,7 @@ void look(const SightTables& tables, const double* u, const double* v, std::size
 
 }  // namespace of_four
 
-#ifdef __x86_64__
+#ifdef EXITANCE_HAS_WIDE_KERNELS
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
 namespace of_eight {
@@ -98,7 +99,7 @@ const bool has_eight = has_avx512();
 Views look_from_points(const SightTables& tables, const double* u, const double* v, std::size_t count,
                        [[maybe_unused]] Processor processor) {
     Views views;
-#ifdef __x86_64__
+#ifdef EXITANCE_HAS_WIDE_KERNELS
     if (has_eight && processor == Processor::fastest && count > four::lanes) {
         of_eight::look(tables, u, v, views);
         return views;

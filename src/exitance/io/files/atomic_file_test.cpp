@@ -6,36 +6,28 @@
 #include <fstream>
 #include <sstream>
 
+#include "support/temporary_folder.hpp"
+
 namespace exitance {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// An empty folder of the running test's own, gone afterwards.
 class AtomicFiles : public testing::Test {
   protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "exitance-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder = name;
-    }
-    void TearDown() override { fs::remove_all(folder); }
     std::string read(const fs::path& path) const {
         std::ifstream in(path);
         std::stringstream text;
         text << in.rdbuf();
         return text.str();
     }
-    std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-    }
-    fs::path folder;
+    TemporaryFolder folder;
 };
 
 TEST_F(AtomicFiles, AppearWithTheirContentAndNothingBeside) {
-    ASSERT_TRUE(write_file((folder / "a.txt").string(), "light"));
+    ASSERT_TRUE(write_file(folder / "a.txt", "light"));
     EXPECT_EQ(read(folder / "a.txt"), "light");
-    EXPECT_EQ(files(), 1u);
+    EXPECT_EQ(folder.count(), 1u);
 }
 
 TEST_F(AtomicFiles, LeaveTheOldFileUntilTheyAreWhole) {
@@ -48,11 +40,11 @@ TEST_F(AtomicFiles, LeaveTheOldFileUntilTheyAreWhole) {
         EXPECT_EQ(read(path), "old");
     }
     EXPECT_EQ(read(path), "old");
-    EXPECT_EQ(files(), 1u);
+    EXPECT_EQ(folder.count(), 1u);
 }
 
 TEST_F(AtomicFiles, GatherManySmallPieces) {
-    Result<AtomicFile> file = AtomicFile::create((folder / "a.txt").string());
+    Result<AtomicFile> file = AtomicFile::create(folder / "a.txt");
     ASSERT_TRUE(file);
     std::string all;
     for (int i = 0; i < 100000; ++i) {
@@ -65,13 +57,13 @@ TEST_F(AtomicFiles, GatherManySmallPieces) {
 }
 
 TEST_F(AtomicFiles, SayWhyTheyCannotBeWritten) {
-    const std::string missing = (folder / "no" / "a.txt").string();
+    const std::string missing = folder / "no/a.txt";
     const Result<void> written = write_file(missing, "x");
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::cannot_write);
     EXPECT_NE(written.error().where.find(missing), std::string::npos);
     EXPECT_NE(written.error().message.find("No such file"), std::string::npos);
-    EXPECT_EQ(write_file(folder.string(), "x").error().code, ErrorCode::cannot_write);
+    EXPECT_EQ(write_file(fs::path(folder / "").parent_path().string(), "x").error().code, ErrorCode::cannot_write);
     EXPECT_EQ(write_file("", "x").error().code, ErrorCode::cannot_write);
 }
 
@@ -83,10 +75,10 @@ TEST_F(AtomicFiles, FullDisksAreReported) {
 }
 
 TEST_F(AtomicFiles, WriteThroughLinksAndKeepRights) {
-    ASSERT_TRUE(write_file((folder / "a.txt").string(), "old"));
+    ASSERT_TRUE(write_file(folder / "a.txt", "old"));
     fs::permissions(folder / "a.txt", fs::perms::owner_read | fs::perms::owner_write);
     fs::create_symlink("a.txt", folder / "link");
-    ASSERT_TRUE(write_file((folder / "link").string(), "new"));
+    ASSERT_TRUE(write_file(folder / "link", "new"));
     EXPECT_TRUE(fs::is_symlink(folder / "link"));
     EXPECT_EQ(read(folder / "a.txt"), "new");
     EXPECT_EQ(fs::status(folder / "a.txt").permissions(), fs::perms::owner_read | fs::perms::owner_write);
@@ -98,13 +90,12 @@ TEST_F(AtomicFiles, DevicesAreWrittenToDirectly) {
 }
 
 TEST_F(AtomicFiles, AreRemovedBySignalsBeforeTheyAreWhole) {
-    Result<AtomicFile> file = AtomicFile::create((fs::path(folder) / "a").string());
+    Result<AtomicFile> file = AtomicFile::create(folder / "a");
     ASSERT_TRUE(file);
     const AtomicFile moved = std::move(*file);
-    const auto count = [&] { return std::distance(fs::directory_iterator(folder), fs::directory_iterator()); };
-    EXPECT_EQ(count(), 1);
+    EXPECT_EQ(folder.count(), 1u);
     remove_unfinished_files();
-    EXPECT_EQ(count(), 0);
+    EXPECT_EQ(folder.count(), 0u);
 }
 
 }  // namespace

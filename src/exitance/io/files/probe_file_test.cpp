@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "support/temporary_folder.hpp"
+
 namespace exitance {
 namespace {
 
@@ -13,17 +15,11 @@ namespace fs = std::filesystem;
 
 class ProbeFiles : public testing::Test {
   protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "exitance-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder = name;
-    }
-    void TearDown() override { fs::remove_all(folder); }
     std::string file(const std::string& name, const std::string& content) const {
         std::ofstream(folder / name) << content;
-        return (folder / name).string();
+        return folder / name;
     }
-    fs::path folder;
+    TemporaryFolder folder;
 };
 
 TEST_F(ProbeFiles, HoldColumnsInAnyOrderAmongOthers) {
@@ -85,11 +81,11 @@ TEST_F(ProbeFiles, SayInWhichLineTheyAreWrong) {
         const auto read = load_probe_points(file(c.name, c.text));
         ASSERT_FALSE(read) << c.name;
         EXPECT_EQ(read.error().code, ErrorCode::bad_input);
-        EXPECT_EQ(read.error().where, (folder / c.where).string());
+        EXPECT_EQ(read.error().where, folder / c.where);
         EXPECT_EQ(read.error().message, c.message);
     }
-    EXPECT_EQ(load_probe_points((folder / "none.csv").string()).error().code, ErrorCode::cannot_read);
-    EXPECT_EQ(load_probe_points(folder.string()).error().code, ErrorCode::cannot_read);
+    EXPECT_EQ(load_probe_points(folder / "none.csv").error().code, ErrorCode::cannot_read);
+    EXPECT_EQ(load_probe_points(fs::path(folder / "").parent_path().string()).error().code, ErrorCode::cannot_read);
 }
 
 TEST_F(ProbeFiles, LinesAreNotBoundByTheSizeOfABlock) {
@@ -101,7 +97,7 @@ TEST_F(ProbeFiles, LinesAreNotBoundByTheSizeOfABlock) {
 
 TEST_F(ProbeFiles, ComeBackAsTheyWereWritten) {
     if (bands != 3) return;
-    const std::string path = (folder / "o.csv").string();
+    const std::string path = folder / "o.csv";
     Result<ProbeWriter> writer = ProbeWriter::create(path, {.radiosity = true, .standard_errors = true});
     ASSERT_TRUE(writer);
     Spectrum e, b, se;

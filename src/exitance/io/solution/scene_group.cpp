@@ -86,35 +86,46 @@ std::vector<SceneCamera> read_cameras(Hdf5Reader& file, const std::string& group
     return out;
 }
 
-}  // namespace
+/// Writes columns of a pool, named by what they hold.
+template <class Pool>
+class PoolWriter {
+  public:
+    PoolWriter(Hdf5Writer& file, const std::string& group, const Pool& pool)
+        : file_(file), group_(group), pool_(pool) {}
 
-void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene& scene) {
-    const auto in = [&](const char* name) { return group + "/" + name; };
-    file.make_group(group);
-    file.set_attribute(group, "file", std::string_view(scene.file_));
-    file.set_attribute(group, "photometric", static_cast<std::int64_t>(scene.photometric_));
-    file.write(in("corner"), flat(scene.corners_), 3, {"m", "corners of the faces, one face after the other"});
+    template <class T, class Get>
+    void write(const char* name, const Get& get, const Hdf5Label& label) {
+        file_.write(group_ + "/" + name, column<T>(pool_, get), 1, label);
+    }
 
-    const auto& faces = scene.surfaces_;
-    const auto face = [&]<class T>(const char* name, T, auto get, Hdf5Label label) {
-        file.write(in(name), column<T>(faces, get), 1, label);
-    };
-    face("face_corner_count", std::uint32_t(), [](const Surface& s) { return s.corner_count; },
-         {"1", "corners of a face"});
-    face("face_first_corner", std::uint32_t(), [](const Surface& s) { return s.first_corner; },
-         {"1", "row of a face's first corner"});
-    face("face_material", std::uint32_t(), [](const Surface& s) { return s.material.value; },
-         {"1", "row of a face's material"});
-    face("face_group", std::uint32_t(), [](const Surface& s) { return s.group.value; }, {"1", "row of a face's group"});
-    face("face_region", std::uint32_t(), [](const Surface& s) { return s.region.value; },
-         {"1", "row of a face's region"});
-    face("face_line", std::int32_t(), [](const Surface& s) { return s.line; },
-         {"1", "line of a face in the scene's file"});
-    face("face_area", double(), [](const Surface& s) { return s.area; }, {"m^2", "area of a face"});
-    file.write(in("face_normal"), flat(column<Normal>(faces, [](const Surface& s) { return s.normal; })), 3,
+  private:
+    Hdf5Writer& file_;
+    const std::string& group_;
+    const Pool& pool_;
+};
+
+void write_faces(Hdf5Writer& file, const std::string& group, const Field<SurfaceId, Surface>& faces) {
+    PoolWriter face(file, group, faces);
+    face.write<std::uint32_t>("face_corner_count", [](const Surface& s) { return s.corner_count; },
+                              {"1", "corners of a face"});
+    face.write<std::uint32_t>("face_first_corner", [](const Surface& s) { return s.first_corner; },
+                              {"1", "row of a face's first corner"});
+    face.write<std::uint32_t>("face_material", [](const Surface& s) { return s.material.value; },
+                              {"1", "row of a face's material"});
+    face.write<std::uint32_t>("face_group", [](const Surface& s) { return s.group.value; },
+                              {"1", "row of a face's group"});
+    face.write<std::uint32_t>("face_region", [](const Surface& s) { return s.region.value; },
+                              {"1", "row of a face's region"});
+    face.write<std::int32_t>("face_line", [](const Surface& s) { return s.line; },
+                             {"1", "line of a face in the scene's file"});
+    face.write<double>("face_area", [](const Surface& s) { return s.area; }, {"m^2", "area of a face"});
+    file.write(group + "/face_normal", flat(column<Normal>(faces, [](const Surface& s) { return s.normal; })), 3,
                {"1", "unit normal of a face, towards its front"});
+}
 
-    const auto& materials = scene.materials_;
+void write_materials(Hdf5Writer& file, const std::string& group, const Scene& scene) {
+    const auto& materials = scene.materials();
+    const auto in = [&](const char* name) { return group + "/" + name; };
     file.write_texts(in("material_name"), column<std::string>(materials, [](const Material& m) { return m.name; }),
                      {"1", "names of the materials"});
     file.write(in("material_reflectance"), spectra(materials, [](const Material& m) { return m.reflectance; }), bands,
@@ -124,9 +135,11 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     if (scene.has_diffusing_panes())
         file.write(in("material_through"), column<double>(materials, [](const Material& m) { return m.through; }), 1,
                    {"1", "share of what leaves a surface again that leaves by its other side"});
-    file.write_texts(in("group_name"), {scene.groups_.begin(), scene.groups_.end()}, {"1", "names of the groups"});
+}
 
-    const auto& regions = scene.regions_;
+void write_regions(Hdf5Writer& file, const std::string& group, const Scene& scene) {
+    const auto& regions = scene.regions();
+    const auto in = [&](const char* name) { return group + "/" + name; };
     std::vector<std::uint32_t> members, loop_corners;
     std::vector<Point> loop_points;
     std::vector<double> planes;
@@ -138,26 +151,135 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
         }
         planes.insert(planes.end(), {r.plane.n.x, r.plane.n.y, r.plane.n.z, r.plane.offset});
     }
-    const auto region = [&]<class T>(const char* name, T, auto get, Hdf5Label label) {
-        file.write(in(name), column<T>(regions, get), 1, label);
-    };
-    region("region_material", std::uint32_t(), [](const Region& r) { return r.material.value; },
-           {"1", "row of a region's material"});
-    region("region_area", double(), [](const Region& r) { return r.area; }, {"m^2", "area of a region"});
-    region("region_face_count", std::uint32_t(), [](const Region& r) { return r.surfaces.size(); },
-           {"1", "faces of a region"});
-    region("region_loop_count", std::uint32_t(), [](const Region& r) { return r.loops.size(); },
-           {"1", "border loops of a region"});
+    PoolWriter region(file, group, regions);
+    region.write<std::uint32_t>("region_material", [](const Region& r) { return r.material.value; },
+                                {"1", "row of a region's material"});
+    region.write<double>("region_area", [](const Region& r) { return r.area; }, {"m^2", "area of a region"});
+    region.write<std::uint32_t>("region_face_count", [](const Region& r) { return r.surfaces.size(); },
+                                {"1", "faces of a region"});
+    region.write<std::uint32_t>("region_loop_count", [](const Region& r) { return r.loops.size(); },
+                                {"1", "border loops of a region"});
     if (std::any_of(regions.begin(), regions.end(), [](const Region& r) { return r.level > 0; }))
-        region("region_level", std::uint8_t(), [](const Region& r) { return r.level; },
-               {"1", "regions of the same plane that lie under parts of a region, one on another"});
+        region.write<std::uint8_t>("region_level", [](const Region& r) { return r.level; },
+                                   {"1", "regions of the same plane that lie under parts of a region, one on another"});
     if (scene.has_diffusing_panes())
-        region("region_behind", std::uint32_t(), [](const Region& r) { return r.behind.value; },
-               {"1", "row of the region on a diffusing pane's other side; 4294967295: none"});
+        region.write<std::uint32_t>("region_behind", [](const Region& r) { return r.behind.value; },
+                                    {"1", "row of the region on a diffusing pane's other side; 4294967295: none"});
     file.write(in("region_plane"), planes, 4, {"1", "plane of a region: unit normal n, and n . x in metres"});
     file.write(in("region_face"), members, 1, {"1", "faces of the regions, one region after the other"});
     file.write(in("loop_corner_count"), loop_corners, 1, {"1", "corners of a border loop"});
     file.write(in("loop_corner"), flat(loop_points), 3, {"m", "corners of the border loops, one loop after the other"});
+}
+
+/// Columns of the materials.
+struct MaterialColumns {
+    std::vector<std::string> name;
+    std::vector<double> reflectance, exitance, through;
+
+    MaterialColumns(Hdf5Reader& file, const std::string& group, Columns& in)
+        : name(file.read_texts(group + "/material_name")),
+          reflectance(in.read<double>("material_reflectance", bands, name.size())),
+          exitance(in.read<double>("material_exitance", bands, name.size())),
+          through(name.size()) {
+        if (file.has(group + "/material_through")) through = in.read<double>("material_through", 1, name.size());
+        for (const double share : through)
+            if (!file.failed() && !(share >= 0 && share <= 1))
+                file.fail(group + "/material_through", "holds what is no share");
+    }
+};
+
+/// Columns of the faces, but for their regions.
+struct FaceColumns {
+    std::vector<std::uint32_t> corner_count, first_corner, material, group;
+    std::vector<std::int32_t> line;
+    std::vector<double> area;
+    std::vector<Normal> normal;
+
+    FaceColumns(Columns& in, std::size_t materials, std::size_t groups)
+        : corner_count(in.read<std::uint32_t>("face_corner_count")),
+          first_corner(in.read<std::uint32_t>("face_first_corner", 1, size())),
+          material(in.indices("face_material", materials, size())),
+          group(in.indices("face_group", groups, size())),
+          line(in.read<std::int32_t>("face_line", 1, size())),
+          area(in.read<double>("face_area", 1, size())),
+          normal(in.normals("face_normal", size())) {}
+
+    std::size_t size() const { return corner_count.size(); }
+
+    void check_corners(Hdf5Reader& file, const std::string& in_group, std::size_t corners) const {
+        for (std::size_t i = 0; i < size() && !file.failed(); ++i)
+            if (corner_count[i] < 3 || corner_count[i] > corners || first_corner[i] > corners - corner_count[i])
+                file.fail(in_group + "/face_corner_count",
+                          "names corners that are not there, at face " + std::to_string(i));
+    }
+};
+
+/// Columns of the regions, and of which region every face is a part of.
+struct RegionColumns {
+    std::vector<double> area;
+    std::vector<std::uint32_t> of_face, material;
+    std::vector<double> plane;
+    std::vector<std::uint8_t> level;
+    std::vector<std::uint32_t> behind, members, member_count;
+    std::vector<Point> loop_points;
+    std::vector<std::uint32_t> loop_corners, loop_count;
+
+    RegionColumns(Hdf5Reader& file, const std::string& group, Columns& in, std::size_t faces, std::size_t materials)
+        : area(in.read<double>("region_area")),
+          of_face(in.indices("face_region", size(), faces)),
+          material(in.indices("region_material", materials, size())),
+          plane(in.read<double>("region_plane", 4, size())),
+          level(size()),
+          behind(size(), RegionId::none_value) {
+        if (file.has(group + "/region_level")) level = in.read<std::uint8_t>("region_level", 1, size());
+        if (file.has(group + "/region_behind")) behind = in.read<std::uint32_t>("region_behind", 1, size());
+        members = in.indices("region_face", faces);
+        member_count = in.counts("region_face_count", 1, members.size(), size());
+        loop_points = in.points("loop_corner");
+        loop_corners = in.counts("loop_corner_count", 3, loop_points.size());
+        loop_count = in.counts("region_loop_count", 1, loop_corners.size(), size());
+        for (std::size_t i = 0; i < size() && !file.failed(); ++i)
+            if (behind[i] != RegionId::none_value && (behind[i] >= size() || behind[behind[i]] != i))
+                file.fail(group + "/region_behind", "holds sides that do not belong together");
+    }
+
+    std::size_t size() const { return area.size(); }
+
+    Field<RegionId, Region> regions() const {
+        Field<RegionId, Region> out;
+        std::size_t member = 0, loop = 0, point = 0;
+        for (std::size_t i = 0; i < size(); ++i) {
+            Region region = {MaterialId(material[i]),
+                             {{plane[4 * i], plane[4 * i + 1], plane[4 * i + 2]}, plane[4 * i + 3]},
+                             area[i],
+                             {},
+                             {}};
+            for (std::uint32_t k = 0; k < member_count[i]; ++k) region.surfaces.emplace_back(members[member++]);
+            for (std::uint32_t k = 0; k < loop_count[i]; ++k) {
+                const auto first = loop_points.begin() + static_cast<std::ptrdiff_t>(point);
+                region.loops.emplace_back(first, first + loop_corners[loop]);
+                point += loop_corners[loop++];
+            }
+            region.level = std::min(level[i], most_stacked);
+            if (behind[i] != RegionId::none_value) region.behind = RegionId(behind[i]);
+            out.add(std::move(region));
+        }
+        return out;
+    }
+};
+
+}  // namespace
+
+void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene& scene) {
+    const auto in = [&](const char* name) { return group + "/" + name; };
+    file.make_group(group);
+    file.set_attribute(group, "file", std::string_view(scene.file_));
+    file.set_attribute(group, "photometric", static_cast<std::int64_t>(scene.photometric_));
+    file.write(in("corner"), flat(scene.corners_), 3, {"m", "corners of the faces, one face after the other"});
+    write_faces(file, group, scene.surfaces_);
+    write_materials(file, group, scene);
+    file.write_texts(in("group_name"), {scene.groups_.begin(), scene.groups_.end()}, {"1", "names of the groups"});
+    write_regions(file, group, scene);
     file.write(in("emitter"), column<std::uint32_t>(scene.emitters_, [](SurfaceId s) { return s.value; }), 1,
                {"1", "faces that emit"});
     file.write(in("box"), flat({scene.box_.lo, scene.box_.hi}), 3, {"m", "lower and upper corner of the scene's box"});
@@ -174,81 +296,31 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     scene.file_ = file.text_attribute(group, "file").value_or("");
     scene.photometric_ = file.integer_attribute(group, "photometric").value_or(0) != 0;
     scene.corners_ = in.points("corner");
-
-    const std::vector<std::string> material_names = file.read_texts(group + "/material_name");
-    const std::size_t material_count = material_names.size();
-    const auto reflectance = in.read<double>("material_reflectance", bands, material_count);
-    const auto exitance = in.read<double>("material_exitance", bands, material_count);
+    const MaterialColumns materials(file, group, in);
     const std::vector<std::string> group_names = file.read_texts(group + "/group_name");
-
-    const auto corner_count = in.read<std::uint32_t>("face_corner_count");
-    const std::size_t face_count = corner_count.size();
-    const auto first_corner = in.read<std::uint32_t>("face_first_corner", 1, face_count);
-    const auto material = in.indices("face_material", material_count, face_count);
-    const auto group_of = in.indices("face_group", group_names.size(), face_count);
-    const auto line = in.read<std::int32_t>("face_line", 1, face_count);
-    const auto area = in.read<double>("face_area", 1, face_count);
-    const auto normal = in.normals("face_normal", face_count);
-
-    const auto region_area = in.read<double>("region_area");
-    const std::size_t region_count = region_area.size();
-    const auto region_of = in.indices("face_region", region_count, face_count);
-    const auto region_material = in.indices("region_material", material_count, region_count);
-    const auto plane = in.read<double>("region_plane", 4, region_count);
-    std::vector<std::uint8_t> level(region_count);
-    if (file.has(group + "/region_level")) level = in.read<std::uint8_t>("region_level", 1, region_count);
-    std::vector<double> through(material_count);
-    if (file.has(group + "/material_through")) through = in.read<double>("material_through", 1, material_count);
-    std::vector<std::uint32_t> behind(region_count, RegionId::none_value);
-    if (file.has(group + "/region_behind")) behind = in.read<std::uint32_t>("region_behind", 1, region_count);
-    const auto members = in.indices("region_face", face_count);
-    const auto member_count = in.counts("region_face_count", 1, members.size(), region_count);
-    const auto loop_points = in.points("loop_corner");
-    const auto loop_corners = in.counts("loop_corner_count", 3, loop_points.size());
-    const auto loop_count = in.counts("region_loop_count", 1, loop_corners.size(), region_count);
-    const auto emitters = in.indices("emitter", face_count);
+    const FaceColumns faces(in, materials.name.size(), group_names.size());
+    const RegionColumns regions(file, group, in, faces.size(), materials.name.size());
+    const auto emitters = in.indices("emitter", faces.size());
     const auto box = in.points("box", 2);
     scene.profiles_ = read_profiles(file, group);
-    const std::vector<DirectedEmission> emission = read_emission(file, group, material_count, scene.profiles_.size());
+    const std::vector<DirectedEmission> emission =
+        read_emission(file, group, materials.name.size(), scene.profiles_.size());
     scene.lights_ = read_lights(file, group);
     scene.distant_ = read_sky(file, group);
     scene.panes_ = read_panes(file, group);
     scene.cameras_ = read_cameras(file, group);
-    for (std::size_t i = 0; i < face_count && !file.failed(); ++i)
-        if (corner_count[i] < 3 || corner_count[i] > scene.corners_.size() ||
-            first_corner[i] > scene.corners_.size() - corner_count[i])
-            file.fail(group + "/face_corner_count", "names corners that are not there, at face " + std::to_string(i));
-    for (std::size_t i = 0; i < material_count && !file.failed(); ++i)
-        if (!(through[i] >= 0 && through[i] <= 1)) file.fail(group + "/material_through", "holds what is no share");
-    for (std::size_t i = 0; i < region_count && !file.failed(); ++i)
-        if (behind[i] != RegionId::none_value && (behind[i] >= region_count || behind[behind[i]] != i))
-            file.fail(group + "/region_behind", "holds sides that do not belong together");
+    faces.check_corners(file, group, scene.corners_.size());
     if (file.failed()) return {};
 
-    for (std::size_t i = 0; i < material_count; ++i)
-        scene.materials_.add(
-            {material_names[i], spectrum(reflectance, i), spectrum(exitance, i), emission[i], through[i]});
+    for (std::size_t i = 0; i < materials.name.size(); ++i)
+        scene.materials_.add({materials.name[i], spectrum(materials.reflectance, i), spectrum(materials.exitance, i),
+                              emission[i], materials.through[i]});
     for (const std::string& name : group_names) scene.groups_.add(name);
-    for (std::size_t i = 0; i < face_count; ++i)
-        scene.surfaces_.add({first_corner[i], corner_count[i], MaterialId(material[i]), GroupId(group_of[i]),
-                             RegionId(region_of[i]), line[i], normal[i], area[i]});
-    std::size_t member = 0, loop = 0, point = 0;
-    for (std::size_t i = 0; i < region_count; ++i) {
-        Region region = {MaterialId(region_material[i]),
-                         {{plane[4 * i], plane[4 * i + 1], plane[4 * i + 2]}, plane[4 * i + 3]},
-                         region_area[i],
-                         {},
-                         {}};
-        for (std::uint32_t k = 0; k < member_count[i]; ++k) region.surfaces.emplace_back(members[member++]);
-        for (std::uint32_t k = 0; k < loop_count[i]; ++k) {
-            const auto first = loop_points.begin() + static_cast<std::ptrdiff_t>(point);
-            region.loops.emplace_back(first, first + loop_corners[loop]);
-            point += loop_corners[loop++];
-        }
-        region.level = std::min(level[i], most_stacked);
-        if (behind[i] != RegionId::none_value) region.behind = RegionId(behind[i]);
-        scene.regions_.add(std::move(region));
-    }
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        scene.surfaces_.add({faces.first_corner[i], faces.corner_count[i], MaterialId(faces.material[i]),
+                             GroupId(faces.group[i]), RegionId(regions.of_face[i]), faces.line[i], faces.normal[i],
+                             faces.area[i]});
+    scene.regions_ = regions.regions();
     for (std::uint32_t s : emitters) scene.emitters_.emplace_back(s);
     scene.box_.lo = box[0], scene.box_.hi = box[1];
     if (const std::optional<std::string> wrong = find_nonsense(scene))

@@ -9,6 +9,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "support/sample_solution.hpp"
+#include "support/temporary_folder.hpp"
 
 /// HDF5 1.10 loses some of its own memory when it meets damaged metadata; builds that look for leaks pass over that.
 extern "C" const char* __lsan_default_suppressions() {
@@ -22,13 +23,7 @@ namespace fs = std::filesystem;
 
 class SolutionFiles : public testing::Test {
   protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "exitance-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder = name;
-    }
-    void TearDown() override { fs::remove_all(folder); }
-    std::string path(const std::string& name) const { return (folder / name).string(); }
+    std::string path(const std::string& name) const { return folder / name; }
     std::string bytes(const std::string& name) const {
         std::ifstream in(folder / name, std::ios::binary);
         return {std::istreambuf_iterator<char>(in), {}};
@@ -36,7 +31,7 @@ class SolutionFiles : public testing::Test {
     void put(const std::string& name, const std::string& content) const {
         std::ofstream(folder / name, std::ios::binary) << content;
     }
-    fs::path folder;
+    TemporaryFolder folder;
 };
 
 void expect_same(const Scene& a, const Scene& b) {
@@ -259,7 +254,7 @@ TEST_F(SolutionFiles, HoldManyElements) {
 
 TEST_F(SolutionFiles, ThatAreNoneAreErrors) {
     EXPECT_EQ(load_solution(path("none.h5")).error().code, ErrorCode::cannot_read);
-    EXPECT_EQ(load_solution(folder.string()).error().code, ErrorCode::cannot_read);
+    EXPECT_EQ(load_solution(fs::path(folder / "").parent_path().string()).error().code, ErrorCode::cannot_read);
     put("empty.h5", "");
     put("text.h5", "v 0 0 0\n");
     for (const char* name : {"empty.h5", "text.h5"}) {

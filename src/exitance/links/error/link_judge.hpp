@@ -11,7 +11,7 @@
 
 namespace exitance {
 
-/// A pair of elements on its way to become a link, or several. What may stand in between is known or not.
+/// A pair of elements that is to become a link, or several, with what was found out of what stands in between.
 struct LinkPair {
     ElementId receiver, source;
     View view = View::mixed;
@@ -25,7 +25,7 @@ struct LinkDecision {
     Verdict verdict = Verdict::drop;
     Link link;
     bool near = false;  ///< The kernel stands in block().
-    /// The receiver is to be cut whatever other links bring: by an oracle of strength, or for a peak between nodes.
+    /// True if the receiver is to be cut whatever its other links bring: by an oracle of strength, or for a peak.
     bool cuts_receiver = false;
     double squared_error = 0;  ///< Of rule and visibility: area times squared error, of an accepted link.
     double undersampling = 0;  ///< Error between nodes and check points, in the units of a tolerance.
@@ -88,7 +88,7 @@ class LinkJudge {
     Shaft shaft_;
     std::vector<PieceId> candidates_;
     std::vector<float> block_;
-    bool classified_ = false;  ///< Has the view of the pair at hand been classified?
+    bool classified_ = false;  ///< True once the view of the pair at hand is classified.
 };
 
 }  // namespace exitance

@@ -19,7 +19,7 @@ struct LinkTolerance {
     double systematic = 1;
     /// Weight of what a source's polynomial leaves out, for a receiver as near as the source is large.
     double residual_weight = 0.5;
-    /// When there are more links, sources and receivers are left as they are.
+    /// Largest number of links: beyond it no element is cut.
     std::size_t most_links = std::numeric_limits<std::size_t>::max();
     double least_area = 0;    ///< No element is cut below this, m^2.
     bool fractional = false;  ///< The share of rays that get through, for all nodes of a link; else each its own.
@@ -30,7 +30,7 @@ struct LinkTolerance {
     /// Weight of squared errors on a receiver, by element; null: alike everywhere.
     const Field<ElementId, double>* importance = nullptr;
     bool gives_up = false;  ///< Are pairs dropped once a stop is asked for? Else they are linked as they are.
-    bool triage = true;     ///< Certain visibility is looked for before rays are cast.
+    bool triage = true;     ///< Pairs are classified (all open, none, mixed) before rays are cast.
     LinkOracle oracle = LinkOracle::transport;
     double strongest = 0;  ///< Of the other oracles: form factor or power (W) of a link.
     std::uint64_t seed = 1;

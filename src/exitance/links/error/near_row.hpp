@@ -11,7 +11,7 @@ namespace exitance {
 ///
 ///     K_l(x) = int over q of  cos cos / (pi |y - x|^2)  N_l(y) dA
 ///
-/// with N_l the function that is 1 at node l: boxes that look small from x take Gauss's points, larger ones are cut,
+/// with N_l the function that is 1 at node l: boxes that are small from x take Gauss's points, larger ones are cut,
 /// and the last ones take the exact form factor of the box. In the end all are scaled to the exact form factor of the
 /// whole element, so that even light arrives exactly. O(log(size / distance)) boxes, about 10 ns a point.
 class NearRow {

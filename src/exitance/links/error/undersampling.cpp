@@ -73,7 +73,7 @@ class Undersampling {
                         error(receiver.drawn_in(close, off)));
     }
 
-    /// `allowed`, W/m^2: errors below are not looked for.
+    /// `allowed`, W/m^2: smaller errors are not computed.
     double fall(double allowed) const {
         // A fall counts where the polynomial is at least `least_factor` times what arrives and off by half of
         // the brightest point; it spans about `fall_area` of the receiver.

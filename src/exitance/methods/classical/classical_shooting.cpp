@@ -1,12 +1,11 @@
 #include <cmath>
-#include <map>
 #include <memory>
-#include <tuple>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/methods/classical/classical_input.hpp"
+#include "exitance/methods/classical/element_vertices.hpp"
 #include "exitance/methods/classical/vertex_averages.hpp"
 #include "exitance/solve/shooting.hpp"
 #include "exitance/transport/hemicube_rows.hpp"
@@ -19,31 +18,6 @@ constexpr std::size_t default_visibility_samples = 16;
 constexpr unsigned default_hemicube_cells = 64;
 constexpr std::size_t column_memory = std::size_t{1} << 29;  // bytes of columns that are kept for later shots
 constexpr double default_least_share = 1.0 / 65536;          // of the scene's area: no element is cut smaller
-
-/// Vertices of elements as [Wallace89] has them: one for all leaves of a region that have a corner there.
-struct Vertices {
-    std::vector<Point> at;  ///< Drawn a little into the elements, so that what stands on a border is no blocker.
-    std::vector<RegionId> region;
-    std::vector<std::array<std::uint32_t, 4>> of_leaf;
-    std::map<std::tuple<std::uint32_t, long long, long long, long long>, std::uint32_t> known;
-
-    void update(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves) {
-        constexpr double drawn_in = 1e-4;  // of the way to the middle of the element
-        of_leaf.assign(leaves.size(), {});
-        const double grid = 1e-6 * stage.scene.size();
-        for (std::size_t i = 0; i < leaves.size(); ++i) {
-            const Patch& patch = tree.patch(leaves[i]);
-            for (int k = 0; k < patch.corner_count(); ++k) {
-                const Point p = patch.corner(k);
-                const auto [entry, fresh] = known.try_emplace({tree.region(leaves[i]).value, std::llround(p.x / grid),
-                                                               std::llround(p.y / grid), std::llround(p.z / grid)},
-                                                              static_cast<std::uint32_t>(at.size()));
-                if (fresh) at.push_back(p + drawn_in * (patch.centre() - p)), region.push_back(tree.region(leaves[i]));
-                of_leaf[i][static_cast<std::size_t>(k)] = entry->second;
-            }
-        }
-    }
-};
 
 class Shooting {
   public:
@@ -104,7 +78,7 @@ class Shooting {
     std::vector<double> patch_area_, area_;
     std::vector<std::uint32_t> patch_of_;
     std::vector<Spectrum> sent_, unshot_, reflectance_, direct_, irradiance_, at_vertex_;
-    Vertices vertices_;
+    ElementVertices vertices_;
     std::vector<float> column_, vertex_factors_;
     std::vector<std::vector<float>> kept_, kept_at_vertices_;
     std::size_t kept_bytes_ = 0, shots_ = 0;

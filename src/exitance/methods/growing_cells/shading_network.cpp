@@ -57,12 +57,9 @@ double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::v
     return count > 0 ? sum / count : 0;
 }
 
-}  // namespace
-
-ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw,
-                                    std::size_t units, bool by_edges, double scene_size, std::uint64_t seed,
-                                    const StopRequest& stop) {
-    const double scale = turn_by_size * scene_size;
+/// Units that follow samples of the pool, until there are so many of them.
+GrowingCells grow_units(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw, double scale,
+                        std::size_t units, std::uint64_t seed, const StopRequest& stop) {
     RandomStream random(seed, Stream::mesh, 78);
     const auto sample = [&] {
         const double u = random.uniform(), v = random.uniform();
@@ -87,6 +84,16 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
         if (cells.remove_idle(idle, false) == 0) break;
     }
     cells.refresh();
+    return cells;
+}
+
+}  // namespace
+
+ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw,
+                                    std::size_t units, bool by_edges, double scene_size, std::uint64_t seed,
+                                    const StopRequest& stop) {
+    const double scale = turn_by_size * scene_size;
+    GrowingCells cells = grow_units(pool, draw, scale, units, seed, stop);
     const std::vector<GrowingCells::Unit> won = winners(pool, cells, scale);
     const std::vector<Gathered> gathered = gather(pool, won, cells.complex().unit_end());
     ShadingNetwork out;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
@@ -14,7 +15,7 @@
 namespace exitance {
 namespace {
 
-constexpr double nearness = 2e-8;  // of the scene's size, as curves are arranged
+constexpr double nearness = 2e-8;  // of the scene's size, as curves are arranged: given by rounding
 
 std::vector<Vec2> flat_outline(const Patch& patch, const PlaneFrame& frame) {
     std::vector<Vec2> out;
@@ -267,7 +268,7 @@ void LineHierarchy::pull() {
 /// Gathers over the links, pushes to the leaves and pulls, until little changes.
 void LineHierarchy::relax(const StopRequest& stop) {
     constexpr int most = 200;
-    constexpr double enough = 1e-4;
+    const double enough = calibrated::changed_light_settled;
     std::vector<Spectrum> arriving(tree_.size());
     for (int i = 0; i < most && !stop.requested(); ++i, ++iterations_) {
         parallel_for(tree_.size(), 256, [&](std::size_t n) {

@@ -11,9 +11,9 @@
 namespace exitance {
 
 struct LineHierarchyOptions {
-    double threshold = 1e-4;  ///< BF_eps: what a link may carry, as a share of what the brightest band emits.
-    double min_area = 1e-5;   ///< No node is cut smaller, as a share of the scene's area.
-    std::size_t rays = 16;    ///< A link.
+    double threshold = 0;   ///< BF_eps: what a link may carry, as a share of what the brightest band emits.
+    double min_area = 0;    ///< No node is cut smaller, as a share of the scene's area.
+    std::size_t rays = 16;  ///< A link.
     /// Direct light in a layer of its own: exact means of it on the leaves are what is linked, and primary sources are
     /// not.
     bool layers = false;

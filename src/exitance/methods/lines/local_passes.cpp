@@ -131,7 +131,7 @@ SixNodeMesh take_mesh(const LineHierarchy& h, const BisectionMesh& mesh, const s
 }  // namespace
 
 SixNodeMesh run_local_pass(const LineHierarchy& h, LocalPassRule rule, LocalPassWork& work, const StopRequest& stop) {
-    constexpr double nearness = 2e-8, nudge = 1e-6;  // of the scene's size
+    constexpr double nearness = 2e-8, nudge = 1e-6;  // of the scene's size, given by rounding
     const Stage& stage = h.stage();
     const std::size_t regions = stage.scene.regions().size();
     std::vector<std::vector<std::uint32_t>> leaves(regions);

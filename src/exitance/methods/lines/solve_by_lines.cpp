@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "exitance/accuracy/accuracy.hpp"
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/light/light_functions.hpp"
@@ -21,9 +22,9 @@ namespace {
 
 /// Delivered light on a coarse mesh, for the response of which errors are propagated by.
 GlobalLight coarse_light(const Stage& stage, const ElementFunction& delivered, const SolveOptions& options) {
-    constexpr double coarse = 0.1;
     GlobalLight out;
-    out.tree = stage.make_elements(knobs_for_error(coarse, stage.lit_pieces(), options).solve_mesh);
+    out.tree =
+        stage.make_elements(knobs_for_error(calibrated::coarse_light_error, stage.lit_pieces(), options).solve_mesh);
     out.numbering = LeafNumbering(out.tree);
     const ElementLocator locator(delivered.tree, stage.scene.regions().size());
     for (const ElementId e : out.numbering.leaves) {
@@ -133,10 +134,10 @@ EnergyBalance balance(const Solution& solution, const Stage& stage) {
 
 LineHierarchyOptions line_options(const SolveOptions& options, double error) {
     // Errors of constants fall with the root of the least area, and of what a link carries.
-    constexpr double share = 0.5, area = 0.05;
+    constexpr double share = 0.5;
     LineHierarchyOptions out;
     out.threshold = share * error * error;
-    out.min_area = area * error * error;
+    out.min_area = calibrated::least_line_area * error * error;
     out.rays = options.visibility_samples.value_or(out.rays);
     out.seed = options.seed;
     return out;
@@ -187,7 +188,7 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
             s.stopped_by = attempt == most_attempts ? "iterations" : "time limit";
             break;
         }
-        error *= std::max(finer, 0.8 * *demand / *s.relative_error_estimate);
+        error *= std::max(finer, calibrated::method_aim * *demand / *s.relative_error_estimate);
     }
     s.energy = balance(solution, stage);
     s.seconds["total"] = watch.seconds();

@@ -62,6 +62,7 @@ ErrorPercentile find_error_percentile(const RadiosityFunction& light, std::size_
     level /= n;
     std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.error < b.error; });
     out.median = places[places.size() / 2].error / level;
+    // Given by its name.
     out.p99 = places[std::min(places.size() - 1, static_cast<std::size_t>(0.99 * n))].error / level;
     out.noise = std::sqrt(noise / n) / level;
     return out;

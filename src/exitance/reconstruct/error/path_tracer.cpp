@@ -107,7 +107,7 @@ double PathTracer::shadow_density(const Vertex& y, const Vertex& target) const {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         if (lights_[i].region != target.region) continue;
         const Vec2 uv = lights_[i].patch.coordinates(target.x);
-        constexpr double slack = 1e-6;
+        constexpr double slack = 1e-6;  // given by rounding of hits, in single precision
         const bool inside =
             uv.x >= -slack && uv.y >= -slack &&
             (lights_[i].patch.is_triangle() ? uv.x + uv.y <= 1 + slack : uv.x <= 1 + slack && uv.y <= 1 + slack);
@@ -121,7 +121,7 @@ double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) c
     if (shadow <= 0) return 0;  // also where a ray from a corner meets a light at no distance at all
     const Vec3 w = target.x - y.x;
     const double cosine = dot(y.n, w) / (pi * norm(w));
-    return shadow / (shadow + std::max(cosine, 1e-300));
+    return shadow / (shadow + std::max(cosine, 1e-300));  // given by rounding: not 0
 }
 
 /// Direct light at y by one shadow ray, weighted against the ray that the path takes anyway.

@@ -25,68 +25,66 @@ const FamilyParameter reflectance = {"rho", 0.5, 0, 0.999999, false, "reflectanc
 const FamilyParameter seed = {"seed", 7, 0, 9e15, true, "of what is at random"};
 
 /// Rooms whose light is hard to find.
-std::vector<Recipe> hard_recipes() {
-    return {
-        {{"cove",
-          "a room lit by coves alone: emitters on shelves that look up, behind lips: 20 polygons",
-          {{"x", 5, 1, 1000, false, "across, from shelf to shelf, metres"},
-           {"y", 4, 0.1, 1000, false, "along the shelves"},
-           {"z", 2.8, 0.5, 100, false, "height of the room"},
-           {"at", 2.45, 0.1, 99, false, "height of the shelves' undersides"},
-           {"deep", 0.25, 0.05, 0.45, false, "how far the shelves stand out"},
-           {"thick", 0.05, 0.001, 0.5, false, "of the shelves"},
-           {"lip", 0.1, 0.001, 0.5, false, "height of the lips"},
-           {"lamp", 0.1, 0.001, 0.4, false, "width of the emitters"},
-           {"wall", 0.85, 0, 0.999999, false, "reflectance of walls and shelves"},
-           {"ceiling", 0.9, 0, 0.999999, false, "of the ceiling"},
-           {"floor", 0.5, 0, 0.999999, false, "of the floor"}}},
-         make_cove},
-        {{"blinds",
-          "a room lit by a window behind a blind: 7 + 2 slats polygons",
-          {{"slats", 60, 1, 100000, true, "slats, of no thickness"},
-           {"tilt", 45, -90, 90, false, "of the slats, degrees"},
-           {"deep", 0.025, 0.001, 0.2, false, "width of a slat, metres"},
-           {"away", 0.15, 0.12, 4, false, "of the blind from the wall"}}},
-         make_blinds},
-        {{"clutter",
-          "thin triangles at random under a lamp: 12 + 2 n polygons",
-          {{"n", 1500, 0, 1e6, true, "triangles, which reflect on both sides"},
-           {"thin", 0.05, 1e-4, 1, false, "width of a triangle by its length"},
-           seed}},
-         make_clutter},
-        {{"gaps",
-          "narrow gaps: over a lamp, behind a board, between two boxes: 28 polygons",
-          {{"lamp", 0.01, 1e-5, 0.5, false, "of the lamp below the ceiling, metres"},
-           {"board", 0.01, 1e-5, 0.5, false, "of the board from the wall"},
-           {"boxes", 0.005, 1e-5, 0.5, false, "between the boxes"}}},
-         make_gaps},
-        {{"door",
-          "two rooms that a door joins, a lamp in one of them: 26 polygons",
-          {{"x", 4, 1, 1000, false, "depth of a room, metres"},
-           {"width", 0.9, 0.01, 3.9, false, "of the door"},
-           {"height", 2.1, 0.01, 2.6, false, "of the door"},
-           {"lamp", 0.01, 1e-5, 0.5, false, "of the lamp below the ceiling"}}},
-         make_door},
-        {{"keyhole",
-          "a lit box with a small hole, in a room: 27 polygons",
-          {{"hole", 0.03, 1e-4, 0.8, false, "width and height of the hole, metres"}}},
-         make_keyhole},
-        {{"bright",
-          "a room of one high reflectance with two boxes and a lamp: 22 polygons",
-          {{"rho", 0.97, 0, 0.999999, false, "reflectance of everything"}}},
-         make_bright},
-        {{"tree",
-          "leaves at random on a trunk, under a lamp: 17 + 2 leaves polygons",
-          {{"leaves", 20000, 0, 1e6, true, "triangles, which reflect on both sides"},
-           {"size", 0.08, 1e-3, 1, false, "of a leaf, metres"},
-           seed}},
-         make_tree},
-        {{"lightwell",
-          "a shaft, lit at its top, into a room: 14 polygons",
-          {{"width", 1, 0.01, 3.9, false, "of the shaft, metres"}, {"length", 9, 0.01, 1000, false, "of the shaft"}}},
-         make_lightwell},
-    };
-}
+const std::vector<Recipe> hard_recipes{
+    {{"cove",
+      "a room lit by coves alone: emitters on shelves that look up, behind lips: 20 polygons",
+      {{"x", 5, 1, 1000, false, "across, from shelf to shelf, metres"},
+       {"y", 4, 0.1, 1000, false, "along the shelves"},
+       {"z", 2.8, 0.5, 100, false, "height of the room"},
+       {"at", 2.45, 0.1, 99, false, "height of the shelves' undersides"},
+       {"deep", 0.25, 0.05, 0.45, false, "how far the shelves stand out"},
+       {"thick", 0.05, 0.001, 0.5, false, "of the shelves"},
+       {"lip", 0.1, 0.001, 0.5, false, "height of the lips"},
+       {"lamp", 0.1, 0.001, 0.4, false, "width of the emitters"},
+       {"wall", 0.85, 0, 0.999999, false, "reflectance of walls and shelves"},
+       {"ceiling", 0.9, 0, 0.999999, false, "of the ceiling"},
+       {"floor", 0.5, 0, 0.999999, false, "of the floor"}}},
+     make_cove},
+    {{"blinds",
+      "a room lit by a window behind a blind: 7 + 2 slats polygons",
+      {{"slats", 60, 1, 100000, true, "slats, of no thickness"},
+       {"tilt", 45, -90, 90, false, "of the slats, degrees"},
+       {"deep", 0.025, 0.001, 0.2, false, "width of a slat, metres"},
+       {"away", 0.15, 0.12, 4, false, "of the blind from the wall"}}},
+     make_blinds},
+    {{"clutter",
+      "thin triangles at random under a lamp: 12 + 2 n polygons",
+      {{"n", 1500, 0, 1e6, true, "triangles, which reflect on both sides"},
+       {"thin", 0.05, 1e-4, 1, false, "width of a triangle by its length"},
+       seed}},
+     make_clutter},
+    {{"gaps",
+      "narrow gaps: over a lamp, behind a board, between two boxes: 28 polygons",
+      {{"lamp", 0.01, 1e-5, 0.5, false, "of the lamp below the ceiling, metres"},
+       {"board", 0.01, 1e-5, 0.5, false, "of the board from the wall"},
+       {"boxes", 0.005, 1e-5, 0.5, false, "between the boxes"}}},
+     make_gaps},
+    {{"door",
+      "two rooms that a door joins, a lamp in one of them: 26 polygons",
+      {{"x", 4, 1, 1000, false, "depth of a room, metres"},
+       {"width", 0.9, 0.01, 3.9, false, "of the door"},
+       {"height", 2.1, 0.01, 2.6, false, "of the door"},
+       {"lamp", 0.01, 1e-5, 0.5, false, "of the lamp below the ceiling"}}},
+     make_door},
+    {{"keyhole",
+      "a lit box with a small hole, in a room: 27 polygons",
+      {{"hole", 0.03, 1e-4, 0.8, false, "width and height of the hole, metres"}}},
+     make_keyhole},
+    {{"bright",
+      "a room of one high reflectance with two boxes and a lamp: 22 polygons",
+      {{"rho", 0.97, 0, 0.999999, false, "reflectance of everything"}}},
+     make_bright},
+    {{"tree",
+      "leaves at random on a trunk, under a lamp: 17 + 2 leaves polygons",
+      {{"leaves", 20000, 0, 1e6, true, "triangles, which reflect on both sides"},
+       {"size", 0.08, 1e-3, 1, false, "of a leaf, metres"},
+       seed}},
+     make_tree},
+    {{"lightwell",
+      "a shaft, lit at its top, into a room: 14 polygons",
+      {{"width", 1, 0.01, 3.9, false, "of the shaft, metres"}, {"length", 9, 0.01, 1000, false, "of the shaft"}}},
+     make_lightwell},
+};
 
 /// Rooms and things of studies, and those of the papers.
 std::vector<Recipe> study_recipes() {
@@ -144,8 +142,7 @@ std::vector<Recipe> study_recipes() {
 const std::vector<Recipe>& recipes() {
     static const std::vector<Recipe> all = [] {
         std::vector<Recipe> out = study_recipes();
-        const std::vector<Recipe> hard = hard_recipes();
-        out.insert(out.end(), hard.begin(), hard.end());
+        out.insert(out.end(), hard_recipes.begin(), hard_recipes.end());
         return out;
     }();
     return all;
@@ -223,7 +220,7 @@ Result<FamilyValues> values_of(const SceneFamily& family, const std::map<std::st
     for (const auto& [name, text] : parameters) {
         if (common.contains(name)) continue;
         const auto known = std::find_if(family.parameters.begin(), family.parameters.end(),
-                                        [&](const FamilyParameter& p) { return p.name == name; });
+                                        [name = name](const FamilyParameter& p) { return p.name == name; });
         if (known == family.parameters.end()) {
             std::string names;
             for (const FamilyParameter& p : family.parameters) names += p.name + ", ";

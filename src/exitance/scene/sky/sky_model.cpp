@@ -230,7 +230,8 @@ SkyModel perez_sky(const PerezInput& input, const Normal& direction) {
 
 SkyModel perez_sky_of(const PerezState& state, const Normal& sun) {
     static constexpr std::array<double, 7> bins{1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
-    auto [clearness, brightness] = state;
+    const double clearness = state.clearness;
+    double brightness = state.brightness;
     if (clearness > 1.065 && clearness < 2.8) brightness = std::max(brightness, 0.2);
     const auto bin = static_cast<std::size_t>(std::upper_bound(bins.begin(), bins.end(), clearness) - bins.begin());
     const double zenith = std::acos(std::clamp(sun.z, 0.0, 1.0));
