@@ -185,6 +185,32 @@ TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
     EXPECT_EQ(run.finish().status, 130);
 }
 
+TEST(ProgramView, DimsAndPaintsAsMixDoes) {
+    if (!has_page()) GTEST_SKIP() << "the viewer's page was not built";
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder);
+    ASSERT_EQ(run_program({"solve", scene, "-o", folder / "s.h5", "--error", "0.1", "--light-groups", "-q"}).status, 0);
+    ASSERT_EQ(run_program({"mix", folder / "s.h5", "lamp=0.3", "--reflectance", "grey=0.8,0.6,0.5", "-o",
+                           folder / "m.h5", "-q"})
+                  .status,
+              0);
+    const Result<Solution> mixed = load_solution(folder / "m.h5");
+    ASSERT_TRUE(mixed);
+    const int port = free_port();
+    RunningProgram run({"view", folder / "s.h5", "--port", std::to_string(port)});
+    ASSERT_TRUE(run.wait_for("ends the viewer"));
+    const std::string answer =
+        ask(port,
+            "GET /data/part?layer=exported&part=0&only=light&dim=lamp:0.3&paint=grey:0.8/0.6/0.5 HTTP/1.1\r\nHost: "
+            "127.0.0.1:" +
+                std::to_string(port) + "\r\nConnection: close\r\n\r\n");
+    const std::size_t body = answer.find("\r\n\r\n");
+    ASSERT_NE(body, std::string::npos);
+    EXPECT_EQ(answer.substr(body + 4), viewer_part_light(*mixed, ViewerLayer::exported, 0));
+    run.send(SIGINT);
+    EXPECT_EQ(run.finish().status, 130);
+}
+
 TEST(ProgramRender, TakesNumberedPicturesAlongAPath) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));

@@ -51,6 +51,7 @@ DirectLight::Emitter DirectLight::emitter_of(PieceId p, const Spectrum& exitance
 
 void DirectLight::add_distant_emitters(const Scene& scene) {
     first_distant_ = emitters_.size();
+    if (scene.distant().empty()) return;  // though what the occluders are of may have some: light groups
     const std::vector<DistantFacet> facets = distant_facets(scene.distant());
     std::size_t next = 0;
     for (const PieceId p : occluders_->distant_pieces()) {

@@ -52,8 +52,10 @@ Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution&
     s.seconds["light_groups"] = watch.seconds();
     s.figures["light_groups"] = static_cast<double>(groups->groups.size());
     s.figures["light_group_bytes"] = static_cast<double>(groups->light_bytes());
-    s.figures["repaint_bytes"] = static_cast<double>(groups->repaint_bytes());
-    s.figures["repaint_rays"] = static_cast<double>(groups->met.size());
+    s.figures["repaint_bytes"] = static_cast<double>(groups->transport.bytes());
+    s.figures["repaint_rays"] = static_cast<double>(groups->transport.rays);
+    s.figures["repaint_rows"] = static_cast<double>(groups->transport.receiver.size());
+    s.figures["repaint_entries"] = static_cast<double>(groups->transport.source.size());
     return groups;
 }
 

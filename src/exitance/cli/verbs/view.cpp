@@ -84,7 +84,9 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
         };
     };
     server.get("/groups", with_light([&changes](const Viewed& v, const Parameters&) {
-                   return ViewAnswer{200, "application/json", light_groups_json(changes.groups(), v.solution.scene)};
+                   return changes.read_groups([&](const LightGroups& groups) {
+                       return ViewAnswer{200, "application/json", light_groups_json(groups, v.solution.scene)};
+                   });
                }));
     server.get("/data/scene", with_light([](const Viewed& v, const Parameters&) {
                    return ViewAnswer{200, "application/json", viewer_scene_json(v.solution, v.camera)};

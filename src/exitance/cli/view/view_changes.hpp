@@ -20,7 +20,12 @@ class ViewChanges {
   public:
     explicit ViewChanges(LightGroups groups) : groups_(std::move(groups)) {}
 
-    const LightGroups& groups() const { return groups_; }
+    /// read(groups), while no request changes them.
+    template <class Read>
+    auto read_groups(const Read& read) {
+        const std::lock_guard lock(mutex_);
+        return read(groups_);
+    }
     bool are_asked_for(const ViewServer::Parameters& parameters) const {
         return !view_text(parameters, "dim").empty() || !view_text(parameters, "paint").empty();
     }
@@ -33,10 +38,12 @@ class ViewChanges {
             if (of == words) return viewed;
         const Result<LightChange> change = read_light_change(parameters);
         if (!change) return change.error();
-        LightGroups groups = groups_;
         Solution solution = base.solution;
-        if (const Result<void> changed = change_light(solution, groups, *change); !changed) return changed.error();
-        if (groups_.node.empty()) groups_.node = std::move(groups.node), groups_.node_count = groups.node_count;
+        std::vector<double> factors;
+        for (const LightGroup& group : groups_.groups) factors.push_back(group.factor);
+        const Result<void> changed = change_light(solution, groups_, *change);
+        for (std::size_t g = 0; g < factors.size(); ++g) groups_.groups[g].factor = factors[g];
+        if (!changed) return changed.error();
         auto viewed = std::make_shared<const Viewed>(std::move(solution), base.camera);
         kept_.emplace_back(words, viewed);
         if (kept_.size() > most_kept) kept_.erase(kept_.begin());

@@ -73,14 +73,32 @@ void read_values(Hdf5Reader& file, const std::string& name, std::size_t corners,
     for (std::size_t g = 0; g < groups.size(); ++g) groups[g].*values = part_of(all, g, corners);
 }
 
-/// What the rays of the leaves meet.
-void read_rays(Hdf5Reader& file, const std::string& group, std::size_t leaves, LightGroups& out) {
-    const std::int64_t rays = file.integer_attribute(group, "rays").value_or(-1);
-    if (rays < 0 || rays > 65536) return file.fail(group, "has no number of rays");
-    out.rays = static_cast<std::uint32_t>(rays);
-    out.met = file.read<std::uint32_t>(group + "/met", 1, leaves * out.rays);
-    for (const std::uint32_t leaf : out.met)
-        if (leaf != LightGroups::nothing && leaf >= leaves) return file.fail(group + "/met", "leads nowhere");
+/// Elements of a tree, in order of their ids or not.
+std::vector<std::uint32_t> read_elements(Hdf5Reader& file, const std::string& name, std::size_t count) {
+    std::vector<std::uint32_t> out = file.read<std::uint32_t>(name, 1);
+    for (const std::uint32_t e : out)
+        if (e >= count) return file.fail(name, "leads nowhere"), std::vector<std::uint32_t>();
+    return out;
+}
+
+void read_transport(Hdf5Reader& file, const std::string& group, const Solution& solution, KeptTransport& out) {
+    const auto in = [&](const char* name) { return group + "/transport_" + name; };
+    out.receiver = read_elements(file, in("receiver"), solution.indirect.tree.size());
+    out.source = read_elements(file, in("source"), solution.interpolant.tree.size());
+    if (file.failed() || out.source.empty()) return;
+    out.first = file.read<std::uint32_t>(in("first"), 1, out.receiver.size() + 1);
+    const auto weight = file.read<float>(in("weight"), 4, out.source.size());
+    if (file.failed()) return;
+    if (out.first.front() != 0 || out.first.back() != out.source.size() ||
+        !std::is_sorted(out.first.begin(), out.first.end()))
+        return file.fail(in("first"), "are no rows");
+    if (!std::all_of(weight.begin(), weight.end(), is_light))
+        return file.fail(in("weight"), "holds a number that is not finite");
+    out.weight.resize(out.source.size());
+    for (std::size_t i = 0; i < weight.size(); ++i) out.weight[i / 4][i % 4] = weight[i];
+    out.rays = static_cast<std::size_t>(std::max<std::int64_t>(0, file.integer_attribute(group, "rays").value_or(0)));
+    const auto error = file.read<double>(in("error"), 1, 1);
+    if (!file.failed() && std::isfinite(error[0])) out.error = error[0];
 }
 
 /// What each group is by itself.
@@ -94,6 +112,18 @@ void read_facts(Hdf5Reader& file, const std::string& group, std::vector<LightGro
         groups[g].factor = factor[g], groups[g].reflected = reflected[g];
         if (std::isfinite(error[g])) groups[g].error = error[g];
     }
+}
+
+void write_transport(Hdf5Writer& file, const std::string& group, const KeptTransport& transport) {
+    const auto in = [&](const char* name) { return group + "/transport_" + name; };
+    std::vector<float> weight;
+    for (const auto& w : transport.weight) weight.insert(weight.end(), w.begin(), w.end());
+    file.write(in("receiver"), transport.receiver, 1, {"1", "elements of indirect that light is gathered on"});
+    file.write(in("first"), transport.first, 1, {"1", "where the row of each begins, and one past the last"});
+    file.write(in("source"), transport.source, 1, {"1", "elements of interpolant"});
+    file.write(in("weight"), weight, 4, {"1", "what light of each brings to the corners of the receiver's patch"});
+    file.write(in("error"), std::vector<double>{transport.error}, 1,
+               {"1", "RMS of what it brings of the light of all groups against indirect"});
 }
 
 }  // namespace
@@ -115,7 +145,7 @@ void write_light_groups(Hdf5Writer& file, const std::string& group, const LightG
         if (one.emitters.is_distant) distant.push_back(g);
     }
     file.make_group(group);
-    file.set_attribute(group, "rays", static_cast<std::int64_t>(groups.rays));
+    file.set_attribute(group, "rays", static_cast<std::int64_t>(groups.transport.rays));
     file.write_text(in("names"), names, {"1", "light that is switched together, a line each"});
     file.write(in("factor"), factor, 1, {"1", "by which each is dimmed here"});
     file.write(in("error"), error, 1, {"1", "estimated with it alone; NaN: not known"});
@@ -127,13 +157,11 @@ void write_light_groups(Hdf5Writer& file, const std::string& group, const LightG
                {"W/m^2", "values of indirect, group by group, undimmed"});
     file.write(in("interpolant"), flat(groups.groups, &LightGroup::interpolant), bands,
                {"W/m^2", "values of interpolant, likewise"});
-    file.write(in("direct"), flat(groups.groups, &LightGroup::direct), bands,
-               {"W/m^2", "direct light at the centres of the leaves of indirect, likewise"});
     file.write(in("reflectance"), flat(groups.reflectance), bands, {"1", "of materials, as they were solved"});
     file.write(in("exitance"), flat(groups.exitance), bands, {"W/m^2", "likewise"});
     file.write(in("intensity"), flat(groups.intensity), bands, {"W/sr", "of lights without extent, likewise"});
     file.write(in("distant"), flat(groups.distant), bands, {"W/m^2", "irradiance of domes and discs, likewise"});
-    file.write(in("met"), groups.met, 1, {"1", "the leaves' numbers that the rays of each leaf meet"});
+    write_transport(file, group, groups.transport);
 }
 
 LightGroups read_light_groups(Hdf5Reader& file, const std::string& group, const Solution& solution) {
@@ -144,19 +172,17 @@ LightGroups read_light_groups(Hdf5Reader& file, const std::string& group, const 
     for (std::string name; std::getline(names, name);) out.groups.emplace_back().emitters.name = name;
     if (out.groups.empty() || out.groups.size() > most_light_groups)
         return file.fail(in("names"), "names no light groups, or too many"), LightGroups();
-    const std::size_t leaves = solution.indirect.tree.leaves().size();
     read_facts(file, group, out.groups);
     read_emitters(file, group, scene, out);
     read_values(file, in("indirect"), solution.indirect.values.size(), out.groups, &LightGroup::indirect);
     read_values(file, in("interpolant"), solution.interpolant.values.size(), out.groups, &LightGroup::interpolant);
-    read_values(file, in("direct"), leaves, out.groups, &LightGroup::direct);
     out.reflectance = spectra(file, in("reflectance"), scene.materials().size());
     out.exitance = spectra(file, in("exitance"), scene.materials().size());
     out.intensity = spectra(file, in("intensity"), scene.lights().size());
     out.distant = spectra(file, in("distant"), scene.distant().domes.size() + scene.distant().discs.size());
     for (const Spectrum& rho : out.reflectance)
         if (!(max(rho) < 1)) file.fail(in("reflectance"), "is not below 1");
-    read_rays(file, group, leaves, out);
+    read_transport(file, group, solution, out.transport);
     return file.failed() ? LightGroups() : out;
 }
 

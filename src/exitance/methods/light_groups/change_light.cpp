@@ -3,20 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/mesh/element_locator.hpp"
 #include "exitance/methods/light_groups/light_groups.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/methods/light_groups/reflected_light.hpp"
 #include "exitance/scene/material_name.hpp"
+#include "exitance/solve/relaxation.hpp"
 
 namespace exitance {
 namespace {
-
-/// After how many steps repainting ends in any case.
-constexpr int most_steps = 100;
 
 Error unknown(const std::string& what, const std::string& name, std::vector<std::string> known) {
     std::sort(known.begin(), known.end());
@@ -47,46 +44,6 @@ Result<void> check(const Scene& scene, const LightGroups& groups, const LightCha
     return {};
 }
 
-/// Light on the leaves, as rays carry it from one to the other.
-class LeafLight {
-  public:
-    LeafLight(const Solution& solution, const LightGroups& groups) : groups_(groups) {
-        const ElementTree& tree = solution.indirect.tree;
-        for (const ElementId e : tree.leaves()) material_.push_back(solution.scene.regions()[tree.region(e)].material);
-    }
-
-    /// E of every leaf but for direct light, W/m^2, from `indirect` on; direct light is the groups' by their factors.
-    std::vector<Spectrum> settle(const std::vector<Spectrum>& direct, const std::vector<Spectrum>& reflectance,
-                                 std::vector<Spectrum> indirect) const {
-        const std::size_t n = material_.size();
-        std::vector<Spectrum> reflected(n);
-        for (int step = 0; step < most_steps; ++step) {
-            parallel_for(n, 4096, [&](std::size_t i) {
-                reflected[i] = reflectance[material_[i].value] * (direct[i] + indirect[i]);
-            });
-            std::vector<Spectrum> next(n);
-            parallel_for(n, 256, [&](std::size_t i) {
-                Spectrum sum;
-                const std::uint32_t* met = &groups_.met[i * groups_.rays];
-                for (std::uint32_t r = 0; r < groups_.rays; ++r)
-                    if (met[r] != LightGroups::nothing) sum += reflected[met[r]];
-                next[i] = sum * (1.0 / groups_.rays);
-            });
-            double moved = 0, all = 0;
-            for (std::size_t i = 0; i < n; ++i)
-                for (std::size_t band = 0; band < bands; ++band)
-                    moved += std::abs(next[i][band] - indirect[i][band]), all += next[i][band];
-            indirect = std::move(next);
-            if (moved <= calibrated::changed_light_settled * all) break;
-        }
-        return indirect;
-    }
-
-  private:
-    const LightGroups& groups_;
-    std::vector<MaterialId> material_;
-};
-
 Spectrum spectrum_of(const std::array<float, bands>& v) {
     Spectrum out;
     for (std::size_t band = 0; band < bands; ++band) out[band] = static_cast<double>(v[band]);
@@ -103,103 +60,103 @@ void add_up(const std::vector<LightGroup>& groups, CornerValues LightGroup::*val
     });
 }
 
-/// Corners of leaves that lie at one place of one region are one node.
-void number_nodes(const ElementFunction& f, double scene_size, LightGroups& groups) {
-    const double grid = 1e-6 * scene_size;  // Given by single precision, in which other programs hold corners.
-    std::map<std::array<std::int64_t, 4>, std::uint32_t> nodes;
-    for (const ElementId e : f.tree.leaves()) {
-        const Patch& patch = f.tree.patch(e);
-        for (int i = 0; i < patch.corner_count(); ++i) {
-            const Point p = patch.corner(i);
-            const std::array<std::int64_t, 4> place{f.tree.region(e).value, std::llround(p.x / grid),
-                                                    std::llround(p.y / grid), std::llround(p.z / grid)};
-            groups.node.push_back(nodes.emplace(place, static_cast<std::uint32_t>(nodes.size())).first->second);
-        }
+/// What surfaces reflect more (or less) than they did, on the sources: d of `LightGroups`, W/m^2. `E`: the light that
+/// there is, `was` and `is` the reflectances. Where reflections are counted, as many are followed under both.
+std::vector<Spectrum> change_of_reflected(const KeptOperator& F, const TransportLayout& layout, int bounces,
+                                          const Solution& solution, const std::vector<Spectrum>& E,
+                                          const std::vector<Spectrum>& was, const std::vector<Spectrum>& is) {
+    std::vector<Spectrum> change(E.size());
+    if (bounces < 0) {
+        // (rho' - rho) E as light that comes from outside: b = rho' (D + F b) with rho' D in its place.
+        for (std::size_t i = 0; i < E.size(); ++i) change[i] = (is[i] - was[i]) * E[i];
+        const std::vector<Spectrum> rhs = change;
+        solve_radiosity({F, is, rhs, layout.area}, Relaxation::gmres, change,
+                        {.residual = calibrated::changed_light_settled, .max_iterations = 200});
+        return change;
     }
-    groups.node_count = nodes.size();
-}
-
-/// By corner: the mean of the leaves' values at its node.
-std::vector<Spectrum> averaged_at_corners(const ElementFunction& f, const std::vector<Spectrum>& of_leaf,
-                                          const LightGroups& groups) {
-    std::vector<Spectrum> sum(groups.node_count);
-    std::vector<double> weight(groups.node_count, 0);
-    std::size_t leaf = 0, corner = 0;
-    for (const ElementId e : f.tree.leaves()) {
-        for (int i = 0; i < f.tree.patch(e).corner_count(); ++i, ++corner)
-            sum[groups.node[corner]] += of_leaf[leaf], weight[groups.node[corner]] += 1;
-        ++leaf;
-    }
-    std::vector<Spectrum> out(groups.node.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = sum[groups.node[i]] * (1 / weight[groups.node[i]]);
-    return out;
-}
-
-/// How light on the leaves follows the new reflectances: v becomes growth v + added. Where there was none nothing can
-/// grow.
-struct Repainted {
-    std::vector<Spectrum> growth, added;
-};
-Repainted repainted_leaves(const Solution& solution, const LightGroups& groups,
-                           const std::vector<Spectrum>& reflectance) {
-    const LeafLight light(solution, groups);
-    const std::size_t n = groups.rays > 0 ? groups.met.size() / groups.rays : 0;
-    std::vector<Spectrum> direct(n), held(n);
-    for (const LightGroup& g : groups.groups)
-        for (std::size_t i = 0; i < n; ++i) direct[i] += g.factor * spectrum_of(g.direct[i]);
-    for (std::size_t i = 0; i < n; ++i) held[i] = solution.direct_share * direct[i];
-    const std::vector<Spectrum> before = light.settle(direct, groups.reflectance, std::vector<Spectrum>(n));
-    const std::vector<Spectrum> after = light.settle(direct, reflectance, before);
-    Repainted out{std::vector<Spectrum>(n, Spectrum(1)), std::vector<Spectrum>(n)};
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t band = 0; band < bands; ++band) {
-            const double was = before[i][band] + held[i][band];
-            if (was > 0)
-                out.growth[i][band] = (after[i][band] + held[i][band]) / was;
-            else
-                out.added[i][band] = after[i][band];
-        }
-    return out;
-}
-
-/// What the elements of `indirect` hold is multiplied; what is exported changes by as much light as that.
-void repaint(Solution& solution, LightGroups& groups, const std::vector<Spectrum>& reflectance) {
-    if (groups.node.empty()) number_nodes(solution.indirect, solution.scene.size(), groups);
-    const Repainted fresh = repainted_leaves(solution, groups, reflectance);
-    const std::vector<Spectrum> growth = averaged_at_corners(solution.indirect, fresh.growth, groups);
-    const std::vector<Spectrum> added = averaged_at_corners(solution.indirect, fresh.added, groups);
-    ElementFunction change{solution.indirect.tree, solution.indirect.first_value, solution.indirect.values};
-    parallel_for(growth.size(), 4096, [&](std::size_t i) {
-        for (std::size_t band = 0; band < bands; ++band) {
-            const float old = solution.indirect.values[i][band];
-            const float fresh = static_cast<float>(static_cast<double>(old) * growth[i][band] + added[i][band]);
-            solution.indirect.values[i][band] = fresh, change.values[i][band] = fresh - old;
-        }
-    });
-    const ElementLocator locator(change.tree, solution.scene.regions().size());
+    std::vector<Spectrum> direct = E;
     const ElementTree& tree = solution.interpolant.tree;
-    const std::vector<ElementId> leaves = tree.leaves();
-    parallel_for(leaves.size(), 256, [&](std::size_t k) {
-        const ElementId e = leaves[k];
-        const Patch& patch = tree.patch(e);
-        for (int i = 0; i < patch.corner_count(); ++i) {
-            const Spectrum more = change.at(locator.find(tree.region(e), patch.corner(i)));
-            auto& value =
-                solution.interpolant.values[solution.interpolant.first_value[e] + static_cast<std::uint32_t>(i)];
-            for (std::size_t band = 0; band < bands; ++band)
-                value[band] = std::max(0.0F, value[band] + static_cast<float>(more[band]));
+    const ElementLocator locator(solution.indirect.tree, solution.scene.regions().size());
+    for (std::size_t i = 0; i < E.size(); ++i) {
+        const ElementId e = layout.sources[i];
+        direct[i] -= solution.indirect.at(locator.find(tree.region(e), tree.patch(e).at(tree.centre(e))));
+    }
+    const std::vector<Spectrum> before = reflected_light(F, was, layout.area, direct, bounces);
+    const std::vector<Spectrum> after = reflected_light(F, is, layout.area, direct, bounces);
+    for (std::size_t i = 0; i < E.size(); ++i) change[i] = after[i] - before[i];
+    return change;
+}
+
+/// What arrives of a change, at the values of `indirect`. Where transport has more or less of the light that there is
+/// than the solution, by the noise of its rays or by what its receivers are too large for, it has as much more or less
+/// of the change: `b`, what the sources send now, tells.
+std::vector<Spectrum> arriving_change(const KeptOperator& F, const Solution& solution,
+                                      const std::vector<Spectrum>& change, const std::vector<Spectrum>& b) {
+    constexpr double most = 2;  // beyond, it is no small correction
+    std::vector<Spectrum> out = F.at_corners(F.at_receivers(change));
+    const std::vector<Spectrum> held = F.at_corners(F.at_receivers(b));
+    parallel_for(out.size(), 4096, [&](std::size_t i) {
+        for (std::size_t band = 0; band < bands; ++band) {
+            const double there = static_cast<double>(solution.indirect.values[i][band]);
+            if (there > 0 && held[i][band] > 0) out[i][band] *= std::clamp(there / held[i][band], 1 / most, most);
         }
     });
+    return out;
+}
+
+/// Adds what arrives of a change of what surfaces reflect to both functions of a solution, which is lit as it is to be.
+/// Returns the RMS of what surfaces reflect of it by the mean of what they reflect of all, under the new reflectances.
+double repaint(Solution& solution, LightGroups& groups, const std::vector<Spectrum>& reflectance,
+               const std::vector<double>& factor) {
+    if (groups.transport.empty()) return 0;
+    if (groups.layout.empty()) groups.layout = make_layout(solution, groups.transport.receiver);
+    const TransportLayout& layout = groups.layout;
+    const KeptOperator F(groups.transport, layout, solution.interpolant.tree.size());
+    const std::size_t n = layout.sources.size();
+    std::vector<Spectrum> was(n), is(n), b(n);
+    const std::vector<Spectrum> E = source_means(layout, solution.interpolant.values);
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t m = layout.material[i].value;
+        was[i] = groups.reflectance[m], is[i] = reflectance[m];
+        b[i] = was[i] * E[i] + solution.direct_share * (factor[m] * groups.exitance[m]);
+    }
+    const std::vector<Spectrum> change = change_of_reflected(F, layout, solution.bounces, solution, E, was, is);
+    const std::vector<Spectrum> arrives = arriving_change(F, solution, change, b);
+    parallel_for(arrives.size(), 4096, [&](std::size_t i) {
+        for (std::size_t band = 0; band < bands; ++band)
+            solution.indirect.values[i][band] += static_cast<float>(arrives[i][band]);
+    });
+    parallel_for(solution.interpolant.values.size(), 4096, [&](std::size_t i) {
+        const Spectrum more = layout.interpolant_at[i].of(arrives);
+        for (std::size_t band = 0; band < bands; ++band) {
+            float& value = solution.interpolant.values[i][band];
+            value = std::max(0.0F, value + static_cast<float>(more[band]));
+        }
+    });
+    const std::vector<Spectrum> fresh = source_means(layout, solution.interpolant.values);
+    double squares = 0, light = 0, area = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        squares += layout.area[i] * squared(is[i] * (fresh[i] - E[i])) / static_cast<double>(bands);
+        light += layout.area[i] * mean(is[i] * fresh[i]), area += layout.area[i];
+    }
+    return light > 0 ? std::sqrt(squares * area) / light : 0;
+}
+
+/// By how much every material that emits is dimmed; 1 for others.
+std::vector<double> factors_of_materials(const LightGroups& groups) {
+    std::vector<double> factor(groups.exitance.size(), 1);
+    for (const LightGroup& g : groups.groups)
+        for (const MaterialId m : g.emitters.materials) factor[m.value] = g.factor;
+    return factor;
 }
 
 /// Emission of the scene, by the factors; `reflectance` a material.
 void relight(Scene& scene, const LightGroups& groups, const std::vector<Spectrum>& reflectance) {
-    std::vector<double> factor(scene.materials().size(), 1);
+    const std::vector<double> factor = factors_of_materials(groups);
     std::vector<PunctualLight> lights = scene.lights();
     DistantLight distant = scene.distant();
     double of_distant = 1;
     for (const LightGroup& g : groups.groups) {
-        for (const MaterialId m : g.emitters.materials) factor[m.value] = g.factor;
         for (const std::uint32_t i : g.emitters.lights) lights[i].intensity = g.factor * groups.intensity[i];
         if (g.emitters.is_distant) of_distant = g.factor;
     }
@@ -243,13 +200,15 @@ Result<void> change_light(Solution& solution, LightGroups& groups, const LightCh
         repainted |= reflectance[m].value != groups.reflectance[m].value;
     add_up(groups.groups, &LightGroup::indirect, solution.indirect.values);
     add_up(groups.groups, &LightGroup::interpolant, solution.interpolant.values);
-    if (repainted) repaint(solution, groups, reflectance);
+    const double repaint_share = repainted ? repaint(solution, groups, reflectance, factors_of_materials(groups)) : 0.0;
     relight(solution.scene, groups, reflectance);
     const bool dimmed =
         std::any_of(groups.groups.begin(), groups.groups.end(), [](const LightGroup& g) { return g.factor != 1; });
     SolveStatistics& s = solution.statistics;
     if (repainted || dimmed) {
-        s.relative_error_estimate = repainted ? std::nullopt : error_of(groups);
+        s.relative_error_estimate = error_of(groups);
+        if (repainted && s.relative_error_estimate)
+            *s.relative_error_estimate = std::hypot(*s.relative_error_estimate, groups.transport.error * repaint_share);
         s.relative_error_bound.reset(), s.error_p99.reset(), s.relative_error_estimate_interpolant.reset();
         s.relative_error_estimate_worst_room.reset(), s.rooms.clear();
     }
