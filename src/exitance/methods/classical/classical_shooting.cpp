@@ -4,6 +4,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/mesh/adaptive.hpp"
 #include "exitance/methods/classical/classical_input.hpp"
 #include "exitance/methods/classical/element_vertices.hpp"
 #include "exitance/methods/classical/vertex_averages.hpp"
@@ -65,6 +66,7 @@ class Shooting {
     SolveReport shoot_once();
     ElementFunction irradiance() const;
     Spectrum ambient() const;
+    Spectrum mean_at_vertices(std::size_t leaf) const;
 
     const ClassicalInput& input_;
     bool at_vertices_;
@@ -86,11 +88,16 @@ class Shooting {
     double first_power_ = 0;
 };
 
+/// Into four; cells, which contacts have cut off, across their longest extents.
 void Shooting::cut(ElementId e) {
     const std::uint32_t patch = patch_of_element_[e];
-    tree_.split(e, Cut::both);
+    if (tree_.is_cell(e)) {
+        const IdRange<ElementId> halves = refine_element(tree_, e);
+        for (ElementId half : halves) refine_element(tree_, half);
+    } else {
+        tree_.split(e, Cut::both);
+    }
     patch_of_element_.resize(tree_.size(), patch);
-    for (ElementId child : tree_.children(e)) patch_of_element_[child] = patch;
 }
 
 void Shooting::number_leaves() {
@@ -139,14 +146,11 @@ void Shooting::make_rows() {
 
 /// Exactly towards the polygon, times the share of rays from the vertex that meet nothing [Wallace89].
 float Shooting::factor_at(std::size_t v, std::size_t p) const {
-    const Patch& patch = tree_.patch(patches_[p]);
-    const RegionId own = vertices_.region[v], source = tree_.region(patches_[p]);
+    const ElementId patch = patches_[p];
+    const RegionId own = vertices_.region[v], source = tree_.region(patch);
     if (own == source) return 0;
     const Normal& n = input_.stage.scene.regions()[own].plane.n;
-    std::array<Point, 4> corners;
-    for (int i = 0; i < patch.corner_count(); ++i) corners[static_cast<std::size_t>(i)] = patch.corner(i);
-    const double F =
-        point_to_polygon(vertices_.at[v], n, std::span(corners).first(static_cast<std::size_t>(patch.corner_count())));
+    const double F = point_to_polygon(vertices_.at[v], n, tree_.outline(patch));
     ++form_factors_;
     if (!(F > 0)) return 0;
     RandomStream random(input_.options.seed, Stream::shooting, v, p);
@@ -157,7 +161,7 @@ float Shooting::factor_at(std::size_t v, std::size_t p) const {
         const double step = 1.0 / static_cast<double>(grid);
         const double s = step * (static_cast<double>(i % grid) + random.uniform());
         const double t = step * (static_cast<double>(i / grid % grid) + random.uniform());
-        to[i] = patch.at(uniform_in_shape(patch.shape, s, t));
+        to[i] = tree_.patch(patch).at(tree_.uniform(patch, s, t));
     }
     const std::unique_ptr<bool[]> blocked(new bool[count]);
     rays_ += input_.stage.tracer.occluded(from, to, own, source, {blocked.get(), count});
@@ -169,11 +173,9 @@ void Shooting::vertex_column(std::size_t patch) {
     vertex_factors_.resize(vertices_.at.size());
     parallel_for(vertices_.at.size(), 16, [&](std::size_t v) { vertex_factors_[v] = factor_at(v, patch); });
     for (std::size_t i = 0; i < numbering_.leaves.size(); ++i) {
-        const int corners = tree_.patch(numbering_.leaves[i]).corner_count();
+        const std::vector<std::uint32_t>& around = vertices_.of_leaf[i];
         column_[i] = 0;
-        for (int k = 0; k < corners; ++k)
-            column_[i] +=
-                vertex_factors_[vertices_.of_leaf[i][static_cast<std::size_t>(k)]] / static_cast<float>(corners);
+        for (std::uint32_t v : around) column_[i] += vertex_factors_[v] / static_cast<float>(around.size());
     }
 }
 
@@ -240,7 +242,7 @@ std::size_t Shooting::refine() {
     std::vector<ElementId> steep;
     for (ElementId e : numbering_.leaves) {
         const Patch& patch = tree_.patch(e);
-        if (patch.area() / 4 < least) continue;
+        if (tree_.area(e) / 4 < least) continue;
         Spectrum lo(HUGE_VAL), hi(-HUGE_VAL);
         for (int k = 0; k < patch.corner_count(); ++k) {
             const Spectrum v = f.at({e, patch.corner_uv(k)});
@@ -280,10 +282,8 @@ void Shooting::gather_anew(std::span<const std::uint32_t> fresh) {
     }
     parallel_for(fresh.size(), 4, [&](std::size_t k) {
         const std::uint32_t i = fresh[k];
-        const int corners = tree_.patch(elements[k]).corner_count();
         if (at_vertices_) {
-            for (int c = 0; c < corners; ++c)
-                irradiance_[i] += (1.0 / corners) * at_vertex_[vertices_.of_leaf[i][static_cast<std::size_t>(c)]];
+            irradiance_[i] = mean_at_vertices(i);
             return;
         }
         PatchTransfer::Workspace workspace;
@@ -330,6 +330,14 @@ SolveReport Shooting::run() {
     return report;
 }
 
+/// Of what has arrived around a leaf.
+Spectrum Shooting::mean_at_vertices(std::size_t leaf) const {
+    const std::vector<std::uint32_t>& around = vertices_.of_leaf[leaf];
+    Spectrum sum;
+    for (std::uint32_t v : around) sum += at_vertex_[v];
+    return sum / static_cast<double>(around.size());
+}
+
 /// What is unshot, spread over all surfaces, with all its reflections [Cohen88]: for display.
 Spectrum Shooting::ambient() const {
     Spectrum flux, reflected;
@@ -351,8 +359,11 @@ ElementFunction Shooting::irradiance() const {
     out.first_value.resize(tree_.size(), 0);
     for (std::size_t i = 0; i < numbering_.leaves.size(); ++i) {
         out.first_value[numbering_.leaves[i]] = static_cast<std::uint32_t>(out.values.size());
-        for (int k = 0; k < tree_.patch(numbering_.leaves[i]).corner_count(); ++k)
-            out.add_value(at_vertex_[vertices_.of_leaf[i][static_cast<std::size_t>(k)]] + more);
+        // The corners of a cell are not those of its frame: it is delivered as its mean.
+        const ElementId leaf = numbering_.leaves[i];
+        for (int k = 0; k < tree_.patch(leaf).corner_count(); ++k)
+            out.add_value(more + (tree_.is_cell(leaf) ? mean_at_vertices(i)
+                                                      : at_vertex_[vertices_.of_leaf[i][static_cast<std::size_t>(k)]]));
     }
     return out;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -16,7 +15,7 @@ namespace exitance {
 struct ElementVertices {
     std::vector<Point> at;  ///< Drawn a little into the elements, so that what stands on a border is no blocker.
     std::vector<RegionId> region;
-    std::vector<std::array<std::uint32_t, 4>> of_leaf;  ///< Numbers of the vertices at a leaf's corners.
+    std::vector<std::vector<std::uint32_t>> of_leaf;  ///< Numbers of the vertices around what a leaf covers.
 
     /// Adds the vertices that only these leaves have; the others keep their numbers.
     void update(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves);
