@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "exitance/geometry/triangulation.hpp"
@@ -115,12 +116,17 @@ std::vector<Triangle> triangles_of(const Scene& scene, RegionId r) {
 
 /// The planes of panes that have an edge in a region's plane, where that is not theirs, too: there reveals go on
 /// beyond the pane. Each once.
-std::vector<Plane> planes_across(const Region& region, const std::vector<Pane>& panes, double tolerance) {
+std::vector<Plane> planes_across(const Region& region, const std::vector<Pane>& panes, const Bvh& index,
+                                 double tolerance) {
     Box box;
     for (const auto& loop : region.loops) box.add(box_of(loop));
     box = grown(box, tolerance);
+    std::vector<std::uint32_t> near;
+    index.visit_box(box, [&](std::uint32_t i) { near.push_back(i); });
+    std::sort(near.begin(), near.end());
     std::vector<Plane> out;
-    for (const Pane& pane : panes) {
+    for (const std::uint32_t i_pane : near) {
+        const Pane& pane = panes[i_pane];
         constexpr double parallel = 1e-6;  // sine
         if (norm(cross(pane.n, region.plane.n)) < parallel) continue;
         const std::size_t m = pane.corners.size();
@@ -143,14 +149,14 @@ std::vector<Plane> planes_across(const Region& region, const std::vector<Pane>& 
 }
 
 /// A region, cut where panes stand across it.
-std::vector<BorderedFace> faces_of(const Scene& scene, RegionId r, double tolerance) {
+std::vector<BorderedFace> faces_of(const Scene& scene, RegionId r, const Bvh& panes, double tolerance) {
     using Parts = std::vector<std::vector<Point>>;  // convex
     const Region& region = scene.regions()[r];
     const std::vector<Triangle> triangles = triangles_of(scene, r);
     Parts all;
     for (const Triangle& t : triangles) all.emplace_back(t.begin(), t.end());
     std::vector<Parts> cut{std::move(all)};
-    for (const Plane& plane : planes_across(region, scene.panes(), tolerance)) {
+    for (const Plane& plane : planes_across(region, scene.panes(), panes, tolerance)) {
         std::vector<Parts> finer;
         for (const Parts& whole : cut)
             for (const double side : {1.0, -1.0}) {
@@ -202,10 +208,21 @@ bool face_each_other(const Pane& a, const Pane& b, double slack) {
     return reaches_beyond(a, b) && reaches_beyond(b, a);
 }
 
+/// True, too, where very many stand so that some might.
 bool any_face_each_other(const std::vector<Pane>& windows, double slack) {
-    for (std::size_t i = 0; i < windows.size(); ++i)
+    constexpr std::size_t too_many = 5000;
+    Box box;
+    for (const Pane& window : windows) box.add(box_of(window.corners));
+    std::vector<const Pane*> inner;  // most facades lie on the box
+    for (const Pane& window : windows) {
+        const Point farthest{window.n.x > 0 ? box.lo.x : box.hi.x, window.n.y > 0 ? box.lo.y : box.hi.y,
+                             window.n.z > 0 ? box.lo.z : box.hi.z};
+        if (dot(window.n, farthest - window.corners[0]) < -slack) inner.push_back(&window);
+    }
+    if (inner.size() > too_many) return true;
+    for (std::size_t i = 0; i < inner.size(); ++i)
         for (std::size_t k = 0; k < i; ++k)
-            if (face_each_other(windows[i], windows[k], slack)) return true;
+            if (face_each_other(*inner[i], *inner[k], slack)) return true;
     return false;
 }
 
@@ -227,21 +244,26 @@ bool winds_about(const Scene& scene, RegionId r, const Hull& hull, double slack)
 Enclosure find_enclosure(const Scene& scene) {
     if (scene.panes().empty() || scene.distant().domes.empty()) return {};
     const double tolerance = one_place * scene.size();
+    std::vector<Box> boxes;
+    for (const Pane& pane : scene.panes()) boxes.push_back(box_of(pane.corners));
+    const Bvh index(boxes);
     std::vector<BorderedFace> faces;
-    Hull all;
     for (const RegionId r : scene.regions().ids())
-        for (BorderedFace& face : faces_of(scene, r, tolerance)) {
-            for (const Triangle& t : face.triangles) all.add(t);
-            faces.push_back(std::move(face));
-        }
+        for (BorderedFace& face : faces_of(scene, r, index, tolerance)) faces.push_back(std::move(face));
     const std::size_t first = faces.size();
-    for (const Pane& pane : scene.panes()) {
+    for (const Pane& pane : scene.panes())
         faces.push_back({.loops = {pane.corners}, .triangles = triangles_of(pane.corners, pane.n), .sense = 0});
-        for (const Triangle& t : faces.back().triangles) all.add(t);
-    }
-    all.finish();
     Borders borders(std::move(faces), tolerance);
-    const auto guess = [&](std::size_t f) { return side_of_room(scene.panes()[f - first], all, 2 * tolerance); };
+    std::optional<Hull> all;  // few scenes ask for it
+    const auto guess = [&](std::size_t f) {
+        if (!all) {
+            all.emplace();
+            for (std::size_t k = 0; k < first + scene.panes().size(); ++k)
+                for (const Triangle& t : borders.face(k).triangles) all->add(t);
+            all->finish();
+        }
+        return side_of_room(scene.panes()[f - first], *all, 2 * tolerance);
+    };
     if (!borders.turn_panes(first, guess) || !borders.close(first)) return {};
     Enclosure out;
     for (std::size_t i = 0; i < scene.panes().size(); ++i) {
