@@ -14,7 +14,7 @@
 namespace exitance {
 
 /// The numbers that data sets hold.
-enum class Hdf5Type { uint8, uint16, int32, uint32, int64, float32, float64 };
+enum class Hdf5Type { uint8, int32, uint32, int64, float32, float64, uint16 };
 
 template <class T>
 constexpr Hdf5Type hdf5_type() {
