@@ -45,6 +45,10 @@ void declare_discontinuity(CLI::App& app, SolveOptions& options) {
         "Shape of triangles: as bisection leaves it (rivara, default), or by points added until angles are above "
         "20.7 degrees (delaunay)")
         ->group(group);
+    add_choice(app, "--dm-structure", structure_names, o.structure,
+               "What may hide a source is found by shafts and a tree of boxes (bvh, default), or by orderings of a BSP "
+               "tree (bsp)")
+        ->group(group);
 }
 
 Result<void> check_discontinuity(const SolveOptions& options) {
@@ -54,7 +58,8 @@ Result<void> check_discontinuity(const SolveOptions& options) {
                              : o.three_edges   ? "--eee"
                              : o.triangulation ? "--triangulation"
                              : o.premesh       ? "--premesh"
-                                               : "--dm-quality";
+                             : o.quality       ? "--dm-quality"
+                                               : "--dm-structure";
     if (options.method != Method::discontinuity)
         return Error{ErrorCode::usage, "is obeyed by --method discontinuity alone", name,
                      "exitance solve SCENE -o S.h5 --method discontinuity"};

@@ -160,7 +160,8 @@ Json discontinuity_json(const DiscontinuityChoice& c) {
     Json json{{"eee", name_or_null(three_edge_names, c.three_edges)},
               {"triangulation", name_or_null(triangulation_choices, c.triangulation)},
               {"premesh", name_or_null(premesh_names, c.premesh)},
-              {"dm_quality", name_or_null(mesh_quality_names, c.quality)}};
+              {"dm_quality", name_or_null(mesh_quality_names, c.quality)},
+              {"dm_structure", name_or_null(structure_names, c.structure)}};
     if (c.sources)
         json["dm_sources"] = {{"count", value_or_null(c.sources->count)}, {"power", value_or_null(c.sources->power)}};
     return json;

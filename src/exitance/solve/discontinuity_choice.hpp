@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -14,8 +15,10 @@ namespace exitance {
 enum class ThreeEdgeEvents { automatic, on, off };
 /// In which order a face is cut: all curves at once, those that bound half-shadows first, or a coarse grid before all.
 enum class Premesh { off, penumbra_first, coarse };
+/// By what is found what may hide a source: a scene BSP tree's orderings, or shafts and a tree of boxes.
+enum class OccluderStructure : std::uint8_t { bsp, bvh };
 /// How triangles get their shape: by points that are added for it before light is looked at, or as bisection leaves it.
-enum class MeshQuality { delaunay, rivara };
+enum class MeshQuality : std::uint8_t { delaunay, rivara };
 
 inline constexpr std::array<std::pair<ThreeEdgeEvents, std::string_view>, 3> three_edge_names{{
     {ThreeEdgeEvents::automatic, "auto"},
@@ -26,6 +29,10 @@ inline constexpr std::array<std::pair<Premesh, std::string_view>, 3> premesh_nam
     {Premesh::off, "off"},
     {Premesh::penumbra_first, "penumbra-first"},
     {Premesh::coarse, "coarse"},
+}};
+inline constexpr std::array<std::pair<OccluderStructure, std::string_view>, 2> structure_names{{
+    {OccluderStructure::bsp, "bsp"},
+    {OccluderStructure::bvh, "bvh"},
 }};
 inline constexpr std::array<std::pair<MeshQuality, std::string_view>, 2> mesh_quality_names{{
     {MeshQuality::delaunay, "delaunay"},
@@ -52,8 +59,9 @@ struct DiscontinuityChoice {
     std::optional<TriangulationScheme> triangulation = {};
     std::optional<Premesh> premesh = {};
     std::optional<MeshQuality> quality = {};
+    std::optional<OccluderStructure> structure = {};
 
-    bool any() const { return sources || three_edges || triangulation || premesh || quality; }
+    bool any() const { return sources || three_edges || triangulation || premesh || quality || structure; }
 };
 
 }  // namespace exitance

@@ -72,6 +72,7 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     ask.triangulation = choice.triangulation.value_or(TriangulationScheme::delaunay);
     ask.penumbra_first = choice.premesh == Premesh::penumbra_first;
     ask.premesh = choice.premesh == Premesh::coarse;
+    ask.by_orderings = choice.structure == OccluderStructure::bsp;
     ask.refined = choice.quality == MeshQuality::delaunay;
     if (choice.sources && options.bounces != 0)
         ask.secondary = secondary_sources(stage, solution, locator, *choice.sources);
@@ -89,6 +90,10 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     if (choice.sources) {
         statistics.figures["secondary_sources"] = static_cast<double>(ask.secondary.size());
         statistics.figures["secondary_curves"] = static_cast<double>(report.secondary_curves);
+    }
+    if (ask.by_orderings) {
+        statistics.figures["plane_tests"] = static_cast<double>(report.plane_tests);
+        statistics.figures["fragments"] = static_cast<double>(report.fragments);
     }
     if (report.winged_edge_bytes > 0)
         statistics.figures["winged_edge_bytes"] = static_cast<double>(report.winged_edge_bytes);

@@ -25,6 +25,7 @@ struct DiscontinuityOptions {
     TriangulationScheme triangulation = TriangulationScheme::delaunay;
     bool penumbra_first = false;  ///< Longest curves of half-shadows first; not with Delaunay's triangulation.
     bool premesh = false;         ///< A coarse grid before all curves, likewise.
+    bool by_orderings = false;    ///< What hides sources is found by a BSP tree's orderings, not by a tree of boxes.
     bool refined = false;         ///< Delaunay refinement before light is looked at, with Delaunay's alone.
     std::size_t max_triangles = 2'000'000;
     std::uint64_t seed = 1;             ///< Of the places at which the mesh is tried.
@@ -42,6 +43,7 @@ struct DiscontinuityReport {
     std::size_t secondary_curves = 0;                      ///< Of the curves, those of secondary sources.
     std::size_t winged_edge_bytes = 0;  ///< Of the trees before triangles are made of them; 0 with Delaunay's.
     double candidate_share = 0;         ///< Mean over faces in penumbra of what may hide a source, of all polygons.
+    std::size_t plane_tests = 0, fragments = 0;  ///< With orderings: tests of planes, polygons of the tree.
 };
 
 /// Light on six-node triangles that are cut along the curves across which direct light changes its form: contacts, VE
