@@ -104,6 +104,8 @@ TEST(ProgramUsage, OptionsOfDiscontinuityMeshingElsewhereAreNamed) {
         {"--dm-sources", "3", "--method", "discontinuity", "--bounces", "0"},
         {"--premesh", "coarse", "--method", "discontinuity"},
         {"--dm-quality", "delaunay", "--method", "matrix"},
+        {"--dm-structure", "bsp", "--method", "matrix"},
+        {"--dm-structure", "octree", "--method", "discontinuity"},
         {"--dm-quality", "delaunay", "--triangulation", "shortest", "--method", "discontinuity"},
         {"--dm-element", "clough-tocher", "--method", "matrix"},
         {"--dm-element", "cubic", "--method", "discontinuity"},

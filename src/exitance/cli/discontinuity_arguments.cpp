@@ -49,6 +49,10 @@ void declare_discontinuity(CLI::App& app, SolveOptions& options) {
                "On triangles: quadratic (default), or cubics whose tangent planes agree but across edges where light "
                "jumps or has a kink (clough-tocher)")
         ->group(group);
+    add_choice(app, "--dm-structure", structure_names, o.structure,
+               "What may hide a source is found by shafts and a tree of boxes (bvh, default), or by orderings of a BSP "
+               "tree (bsp)")
+        ->group(group);
     add_switch(app, "--layers", o.layers, "One compressed mesh a source, to be added up, in place of one for all")
         ->group(group);
 }
@@ -62,6 +66,7 @@ Result<void> check_discontinuity(const SolveOptions& options) {
                              : o.premesh       ? "--premesh"
                              : o.quality       ? "--dm-quality"
                              : o.element       ? "--dm-element"
+                             : o.structure     ? "--dm-structure"
                                                : "--layers";
     if (options.method != Method::discontinuity)
         return Error{ErrorCode::usage, "is obeyed by --method discontinuity alone", name,

@@ -165,7 +165,8 @@ Json discontinuity_json(const DiscontinuityChoice& c) {
     Json json{{"eee", name_or_null(three_edge_names, c.three_edges)},
               {"triangulation", name_or_null(triangulation_choices, c.triangulation)},
               {"premesh", name_or_null(premesh_names, c.premesh)},
-              {"dm_quality", name_or_null(mesh_quality_names, c.quality)}};
+              {"dm_quality", name_or_null(mesh_quality_names, c.quality)},
+              {"dm_structure", name_or_null(structure_names, c.structure)}};
     if (c.element) json["dm_element"] = name_in(mesh_element_names, *c.element);
     if (c.layers) json["layers"] = *c.layers;
     if (c.sources)

@@ -330,7 +330,7 @@ void reserve(const std::vector<FoundLeaves>& found, ElementTree& tree, SharedNod
 }  // namespace
 
 SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
-                            const ContactLines& contacts) {
+                            const ContactLines& contacts, const StopRequest* stop) {
     const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(tree, plane);
     const std::size_t planes = leaves.size();
     std::vector<std::vector<RegionId>> regions(planes);
@@ -339,7 +339,7 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
     find_together(
         found, 1,
         [&](std::size_t p) {
-            if (leaves[p].empty()) return FoundLeaves();
+            if (leaves[p].empty() || (stop && stop->requested())) return FoundLeaves();
             double largest = 0;
             for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
             const PlaneNodes nodes(tree, leaves[p],
@@ -353,6 +353,8 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         "nodes");
 
     SharedNodes out;
+    for (std::size_t p = 0; p < planes; ++p)
+        if (!leaves[p].empty() && found[p].leaf.empty()) return out;
     out.first_node.push_back(0);
     reserve(found, tree, out);
     for (std::size_t p = 0; p < planes; ++p) {

@@ -147,11 +147,13 @@ class Projection {
 
 }  // namespace
 
-ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene, const ContactLines& contacts) {
+ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene, const ContactLines& contacts,
+                                   const StopRequest* stop) {
     ElementFunction out;
     out.tree = f.tree;
     const Field<RegionId, std::uint32_t> plane = plane_of_regions(scene);
-    const SharedNodes nodes = make_conforming(out.tree, plane, contacts);
+    const SharedNodes nodes = make_conforming(out.tree, plane, contacts, stop);
+    if (nodes.first_node.empty()) return f;
     share_on_node(out.tree);
     const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(out.tree, plane);
     std::vector<std::vector<Spectrum>> value(leaves.size());

@@ -98,5 +98,16 @@ TEST(Continuous, ConvergesWithTheSquareOfTheSize) {
     EXPECT_NEAR(std::log2(error(3) / error(4)), 2, 0.1);
 }
 
+TEST(Continuous, IsTheFunctionItselfWhereAStopIsAskedFor) {
+    const Scene scene = square();
+    const ElementFunction f = fitted(
+        cut_square(2, 9), [](Point p) { return p.x; }, 0.1);
+    StopRequest stop;
+    stop.interrupt();
+    const ElementFunction out = nearest_continuous(f, scene, ContactLines(scene), &stop);
+    EXPECT_EQ(out.tree.size(), f.tree.size());
+    EXPECT_EQ(out.values, f.values);
+}
+
 }  // namespace
 }  // namespace exitance

@@ -114,7 +114,8 @@ class Interpolation {
                 apart.values.push_back(fitted_[e].corners[static_cast<std::size_t>(i)]);
         }
         // Nodes of a large mesh take their time: what is cut short is delivered with its steps.
-        ElementFunction out = stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts);
+        ElementFunction out =
+            stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts, &stop);
         for (auto& value : out.values)  // all light together is nowhere below zero
             for (float& of_band : value) of_band = std::max(of_band, 0.0f);
         shared_ranges(

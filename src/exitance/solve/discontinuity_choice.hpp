@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -16,8 +17,10 @@ enum class ThreeEdgeEvents { automatic, on, off };
 enum class Premesh { off, penumbra_first, coarse };
 /// The function on a triangle: one quadratic polynomial, or three cubic ones whose tangent planes agree.
 enum class MeshElement { quadratic, clough_tocher };
+/// By what is found what may hide a source: a scene BSP tree's orderings, or shafts and a tree of boxes.
+enum class OccluderStructure : std::uint8_t { bsp, bvh };
 /// How triangles get their shape: by points that are added for it before light is looked at, or as bisection leaves it.
-enum class MeshQuality { delaunay, rivara };
+enum class MeshQuality : std::uint8_t { delaunay, rivara };
 
 inline constexpr std::array<std::pair<ThreeEdgeEvents, std::string_view>, 3> three_edge_names{{
     {ThreeEdgeEvents::automatic, "auto"},
@@ -32,6 +35,10 @@ inline constexpr std::array<std::pair<Premesh, std::string_view>, 3> premesh_nam
 inline constexpr std::array<std::pair<MeshElement, std::string_view>, 2> mesh_element_names{{
     {MeshElement::quadratic, "quadratic"},
     {MeshElement::clough_tocher, "clough-tocher"},
+}};
+inline constexpr std::array<std::pair<OccluderStructure, std::string_view>, 2> structure_names{{
+    {OccluderStructure::bsp, "bsp"},
+    {OccluderStructure::bvh, "bvh"},
 }};
 inline constexpr std::array<std::pair<MeshQuality, std::string_view>, 2> mesh_quality_names{{
     {MeshQuality::delaunay, "delaunay"},
@@ -60,8 +67,11 @@ struct DiscontinuityChoice {
     std::optional<MeshQuality> quality = {};
     std::optional<MeshElement> element = {};
     std::optional<bool> layers = {};  ///< One mesh a source.
+    std::optional<OccluderStructure> structure = {};
 
-    bool any() const { return sources || three_edges || triangulation || premesh || quality || element || layers; }
+    bool any() const {
+        return sources || three_edges || triangulation || premesh || quality || element || layers || structure;
+    }
 };
 
 }  // namespace exitance

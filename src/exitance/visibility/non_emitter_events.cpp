@@ -61,6 +61,8 @@ void ShadowEventFinder::find_non_emitter(const PlaneFrame& receiver, RegionId ow
                                          std::vector<ShadowEvent>& events) {
     if (source.is_point) return;
     set(receiver, own, lo, hi, source, among);
+    lists_ = {};
+    if (bounds_.lists) lists_[0] = bounds_.lists->of_all;
     for (const auto& [number, w] : corners_) {
         if (is_stopped()) return;
         if (frame_->height(w) <= least_ || source.plane.signed_distance(w) <= least_) continue;

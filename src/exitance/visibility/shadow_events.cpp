@@ -136,8 +136,10 @@ void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std:
     const auto visit = [&](PieceId piece) { return all = blank(wedge, normal, piece); };
     // Sight lines that go on beyond the apex have a fan on either side of it.
     const bool both = wedge.beyond || wedge.passes_apex;
+    for (const std::span<const PieceId>& list : lists_)
+        for (std::size_t i = 0; i < list.size() && !all; ++i) ++plane_tests, visit(list[i]);
     for (const double side : {1.0, -1.0}) {
-        if (side < 0 && !both) break;
+        if (bounds_.lists || (side < 0 && !both)) break;
         const ConvexRegion region = fan(wedge, normal, side);
         for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})
             if (!all) occluders_->visit_inner(size, region, visit, {});
@@ -241,16 +243,24 @@ void ShadowEventFinder::set(const PlaneFrame& receiver, RegionId own, Vec2 lo, V
 void ShadowEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
                              std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events) {
     set(receiver, own, lo, hi, source, among);
-    for (const auto& loop : source.loops)
+    std::size_t first = 0;  // number of the loop's first corner
+    const auto list = [&](std::size_t corner) {
+        return bounds_.lists ? std::span<const PieceId>(bounds_.lists->of_corner[corner]) : std::span<const PieceId>();
+    };
+    for (const auto& loop : source.loops) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
+            lists_ = {list(first + i), {}};
             const Point &s = loop[i], &next = loop[(i + 1) % loop.size()];
             const Point& previous = loop[(i + loop.size() - 1) % loop.size()];
             for (std::size_t e = 0; e < among.size() && !is_stopped(); ++e)
                 add_corner_over_edge(s, previous - s, next - s, edges_->edges()[among[e]],
                                      bounds_.gains.empty() ? HUGE_VAL : bounds_.gains[e], events);
             if (source.is_point) continue;
+            lists_[1] = list(first + (i + 1) % loop.size());
             for (std::size_t c = 0; c < corners_.size() && !is_stopped(); ++c) add_edge_over_corner(s, next, c, events);
         }
+        first += loop.size();
+    }
 }
 
 }  // namespace exitance

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -23,11 +24,19 @@ struct ShadowEvent {
     double gain = HUGE_VAL;          ///< What the source may bring beyond the edge at most, as EventBounds tells.
 };
 
+/// What may stand in the lines of sight to a source from its corners, in place of a search: the minimum candidate lists
+/// of a receiver (bsp/minimum_lists.hpp), in front of others first.
+struct WedgeLists {
+    std::vector<std::vector<PieceId>> of_corner;  ///< From each corner of the source; an edge has those of its ends.
+    std::vector<PieceId> of_all;
+};
+
 /// What the source may bring at most beyond each edge of a blocker, and what an event must bring to be looked for.
 struct EventBounds {
     std::span<const double> gains = {};  ///< By edge, as they are numbered in `among`; empty: any.
     double least_bend = 0;               ///< Of events that bend light only (D2).
     const StopRequest* stop = nullptr;   ///< Once it is requested, what is found is not complete.
+    const WedgeLists* lists = nullptr;   ///< By what wedges are clipped; none: by what a tree of boxes finds.
 };
 
 /// The corners and edges of a source, the front of whose plane it shines into. A point alone is a source, too: then
@@ -62,8 +71,9 @@ class ShadowEventFinder {
     void find_non_emitter(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
                           std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events);
 
-    std::size_t wedges = 0;    ///< Looked at so far.
-    std::size_t too_weak = 0;  ///< Wedges of D2 events that were left out for what they may bring.
+    std::size_t wedges = 0;       ///< Looked at so far.
+    std::size_t plane_tests = 0;  ///< Pieces of lists that a wedge's plane was held against.
+    std::size_t too_weak = 0;     ///< Wedges of D2 events that were left out for what they may bring.
 
   private:
     /// A fan of sight lines: from `apex` through base + t along, t in [first, last]; `beyond`: lines end behind the
@@ -112,7 +122,8 @@ class ShadowEventFinder {
     double least_ = 0;  ///< Metres: what is lower over a plane lies in it.
     std::vector<std::pair<double, double>> hidden_;
     EventBounds bounds_;
-    std::size_t asked_ = 0;  ///< How often whether to stop.
+    std::array<std::span<const PieceId>, 2> lists_;  ///< Of the wedge at hand.
+    std::size_t asked_ = 0;                          ///< How often whether to stop.
     std::vector<std::pair<std::uint32_t, Point>> corners_;
     std::vector<double> corner_gains_;                               ///< The most of the edges that end there.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_at_;  ///< Corner, edge; sorted.

@@ -97,6 +97,7 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     ask.triangulation = choice.triangulation.value_or(TriangulationScheme::delaunay);
     ask.penumbra_first = choice.premesh == Premesh::penumbra_first;
     ask.premesh = choice.premesh == Premesh::coarse;
+    ask.by_orderings = choice.structure == OccluderStructure::bsp;
     ask.refined = choice.quality == MeshQuality::delaunay;
     ask.clough_tocher = choice.element == MeshElement::clough_tocher;
     if (choice.sources && options.bounces != 0)
@@ -124,6 +125,10 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     }
     if (report.tree_bytes > 0) statistics.figures["dm_tree_bytes"] = static_cast<double>(report.tree_bytes);
     record_layers(solution, layers);
+    if (ask.by_orderings) {
+        statistics.figures["plane_tests"] = static_cast<double>(report.plane_tests);
+        statistics.figures["fragments"] = static_cast<double>(report.fragments);
+    }
     if (statistics.relative_error_estimate && !report.interrupted)
         statistics.relative_error_estimate_interpolant = std::hypot(report.error, *statistics.relative_error_estimate);
     return report;

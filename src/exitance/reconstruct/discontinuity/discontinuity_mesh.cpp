@@ -13,6 +13,7 @@
 #include "exitance/reconstruct/discontinuity/findable.hpp"
 #include "exitance/reconstruct/discontinuity/mesh_progress.hpp"
 #include "exitance/reconstruct/discontinuity/misfit.hpp"
+#include "exitance/reconstruct/discontinuity/ordered_light.hpp"
 #include "exitance/reconstruct/discontinuity/receiver_triangles.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -34,6 +35,7 @@ class Builder {
         Stopwatch watch;
         resume();
         look_ahead();
+        find_weak_light();
         report_.direct_seconds += watch.restart();
         if (!stop_.requested()) find_curves();
         report_.mesh_seconds += watch.restart();
@@ -66,6 +68,20 @@ class Builder {
         report_.scale = options_.scale > 0 ? options_.scale : places_->mean_light();
         largest_ = options_.scale > 0 ? options_.brightest : places_->largest_light();
         area_ = places_->area();
+    }
+
+    /// Where emitters are many, most matter little wherever one looks.
+    void find_weak_light() {
+        if (options_.by_orderings) ordered_.emplace(stage_.direct);
+        if (stop_.requested() || ordered_ || !WeakLight::pays(stage_.direct)) return;
+        // Of the errors asked for: what is left out changes nothing that can be seen; noise of half of one adds an
+        // eighth to it, where it is as large as it may be. Triangles smaller than a region's share of the area may have
+        // more, as their bisection allows it.
+        constexpr double unseen = 0.02, part = 0.5;
+        const double rms = 0.8 * options_.error * report_.scale, most = options_.largest_error * largest_;
+        const auto regions = static_cast<double>(stage_.scene.regions().size());
+        weak_.emplace(stage_.direct, stage_.tracer,
+                      WeakLight::Asked{unseen * std::min(rms, most), part * rms, part * most, area_ / regions}, stop_);
     }
 
     /// What an earlier run has found, as far as it came.
@@ -106,18 +122,23 @@ class Builder {
 
     void find_curves() {
         const BlockerEdges edges(stage_.occluders);
-        constexpr double unseen = 0.1, tiny = 1e-5;
+        constexpr double tiny = 1e-5;
         // Where light G falls to 0 across w, elements of size h have cubic errors of about G (h/w)^3 / 10, so that the
         // error T leaves h/w = (10 T/G)^(1/3); a bend 2 G/w^2 within one is off by G (h/w)^2 / 8. That is below T where
-        // G is below 5 T: there, D2 lines do no good.
-        constexpr double bent = 5;
+        // G is below 5 T: there, D2 lines do no good. A kink G/w is off by G h/(16 w), which is below T where G is
+        // below 20 T: in buildings, where blockers' edges are countless, there are no lines for less, and none for
+        // bends, whose error is G (h/w)^2 / 32 at closer look, before 300 T.
+        constexpr double bent = 5, kinked = 20, bent_among_many = 300, unseen = 0.1;
+        const double T = options_.largest_error * largest_;
         const CurveFinder finder(stage_, edges,
-                                 {.least_effect = unseen * options_.largest_error * largest_,
+                                 {.least_effect = (weak_ ? kinked : unseen) * T,
                                   .least_area = tiny * area_,
-                                  .least_bend = bent * options_.largest_error * largest_,
+                                  .least_bend = (weak_ ? bent_among_many : bent) * T,
                                   .conics = options_.conics,
                                   .secondary = options_.secondary,
-                                  .stop = &stop_});
+                                  .stop = &stop_,
+                                  .weak = weak_ ? &*weak_ : nullptr,
+                                  .ordered = ordered_ ? &*ordered_ : nullptr});
         const std::size_t regions = stage_.scene.regions().size();
         std::vector<std::optional<ReceiverCurves>> receivers(regions);
         std::vector<ReceiverTriangles> triangles(regions);
@@ -152,10 +173,24 @@ class Builder {
             for (std::size_t f = first; f < first + count; ++f)
                 outlines.faces.push_back(outline(static_cast<std::uint32_t>(f)));
             DirectLight::Workspace workspace;
-            prepare_face_lights(stage_.direct, outlines, receivers[r]->light, std::span(lights_).subspan(first, count),
-                                stop_, workspace);
+            const RegionId region(r);
+            if (weak_)  // what stands before a face is found sooner from the start than among all that the region has
+                for (std::size_t f = 0; f < count && !stop_.requested(); ++f)
+                    stage_.direct.prepare(outlines.faces[f], receivers[r]->frame.n, region, weak_->strong(region),
+                                          lights_[first + f], workspace);
+            else if (ordered_)
+                ordered_->look(outlines, receivers[r]->light, std::span(lights_).subspan(first, count), stop_,
+                               workspace, receivers[r]->ordered);
+            else
+                prepare_face_lights(stage_.direct, outlines, receivers[r]->light,
+                                    std::span(lights_).subspan(first, count), stop_, workspace);
         });
-        std::size_t candidates = 0;
+        std::size_t candidates = 0, listed = 0, listed_faces = 0;
+        for (const auto& receiver : receivers) {
+            listed += receiver->ordered.listed, listed_faces += receiver->ordered.faces;
+            report_.plane_tests += receiver->ordered.plane_tests;
+        }
+        if (ordered_) report_.fragments = ordered_->fragments();
         for (std::uint32_t f = 0; f < lights_.size(); ++f) {
             const ShadowClass c = class_of(f, mesh_.centre(f));
             if (c == ShadowClass::penumbra) candidates += count_different(lights_[f].candidates);
@@ -165,6 +200,9 @@ class Builder {
         }
         if (report_.counts.penumbra > 0)
             report_.candidate_share = static_cast<double>(candidates) / static_cast<double>(report_.counts.penumbra) /
+                                      static_cast<double>(stage_.pieces.size());
+        if (listed_faces > 0)  // before shadow volumes have told what of the lists reaches the faces
+            report_.candidate_share = static_cast<double>(listed) / static_cast<double>(listed_faces) /
                                       static_cast<double>(stage_.pieces.size());
     }
 
@@ -181,7 +219,8 @@ class Builder {
             curves_.push_back({r, receiver.frame.at(c.a), receiver.frame.at(c.b), c.order, c.cause, c.source});
             touched_[r.value] |= c.order == CurveOrder::d0 && c.cause == CurveCause::contact;
         }
-        if (receiver.light.is_dark() || region_.empty() || region_.back() != r) return;
+        const bool is_dark = weak_ ? !weak_->is_reached(r) : receiver.light.is_dark();
+        if (is_dark || region_.empty() || region_.back() != r) return;
         const Point inside = mesh_.centre(static_cast<std::uint32_t>(region_.size() - 1));
         touched_[r.value] |= stage_.occluders.is_covered(inside, receiver.frame.n, r);
     }
@@ -194,7 +233,10 @@ class Builder {
 
     /// `centre`: of the face, or of a triangle of it.
     ShadowClass class_of(std::uint32_t face, const Point& centre) const {
-        return shadow_class(stage_.direct, lights_[face], centre);
+        if (!weak_) return shadow_class(stage_.direct, lights_[face], centre);
+        const RegionId r = region_[face];
+        if (lights_[face].is_dark() && weak_->shines_on(r)) return ShadowClass::penumbra;
+        return shadow_class(stage_.direct, lights_[face], centre, weak_->strong(r));
     }
 
     /// Exact light at the nodes that have none yet. False, and nothing is done, where a request to stop cuts it short.
@@ -209,7 +251,7 @@ class Builder {
             values_.resize(std::min(count, first_node + at_once));
             std::atomic<std::size_t> left = values_.size() - first_node;
             parallel_ranges(values_.size() - first_node, 32, [&](std::size_t first, std::size_t last) {
-                DirectLight::Workspace workspace;
+                WeakLight::Workspace workspace;
                 for (std::size_t i = first_node + first; i < first_node + last && !stop_.requested(); ++i)
                     values_[i] = light(mesh_.nodes()[i], workspace), --left;
             });
@@ -222,12 +264,16 @@ class Builder {
         return true;
     }
 
-    Spectrum light(const BisectionMesh::Node& node, DirectLight::Workspace& workspace) const {
+    Spectrum light(const BisectionMesh::Node& node, WeakLight::Workspace& workspace) const {
         const ReceiverLight& light = lights_[node.face];
         const RegionId r = region_[node.face];
         Spectrum out;
-        if (!light.is_dark() && !(touched_[r.value] && stage_.occluders.is_covered(node.seen_from, light.n, r)))
-            out = options_.direct_weight * stage_.direct.irradiance(light, node.seen_from, workspace);
+        const bool is_dark = light.is_dark() && !(weak_ && weak_->shines_on(r));
+        if (!is_dark && !(touched_[r.value] && stage_.occluders.is_covered(node.seen_from, light.n, r))) {
+            out = weak_ ? weak_->irradiance(light, node.seen_from, workspace)
+                        : stage_.direct.irradiance(light, node.seen_from, workspace.exact);
+            out = options_.direct_weight * out;
+        }
         if (options_.indirect) out += options_.indirect(r, node.seen_from);
         return out;
     }
@@ -290,6 +336,7 @@ class Builder {
 
     /// Triangles far smaller than their faces look for themselves what can stand before the sources.
     void renew_faces() {
+        if (ordered_) return;
         constexpr std::uint8_t deep = 5;
         constexpr std::size_t many = 12;
         std::vector<std::uint32_t> renewed, before;
@@ -365,6 +412,8 @@ class Builder {
     std::vector<Spectrum> values_;       ///< Of nodes.
     MeshProgress found_;                 ///< By an earlier run, and what is kept of this one's curves.
     std::vector<Misfit> misfits_;        ///< Of triangles.
+    std::optional<OrderedLight> ordered_;
+    std::optional<WeakLight> weak_;  ///< Where not all sources are looked at well.
     std::optional<ExactPlaces> places_;
     std::vector<DiscontinuityCurve> curves_;
     double largest_ = 0, area_ = 0;

@@ -25,6 +25,7 @@ struct DiscontinuityOptions {
     TriangulationScheme triangulation = TriangulationScheme::delaunay;
     bool penumbra_first = false;  ///< Longest curves of half-shadows first; not with Delaunay's triangulation.
     bool premesh = false;         ///< A coarse grid before all curves, likewise.
+    bool by_orderings = false;    ///< What hides sources is found by a BSP tree's orderings, not by a tree of boxes.
     bool refined = false;         ///< Delaunay refinement before light is looked at, with Delaunay's alone.
     bool clough_tocher = false;   ///< Elements with tangent planes that agree, in place of quadratic ones.
     /// What both errors are relative to, W/m^2 of rho E; 0: the mean and the largest value at places.
@@ -45,6 +46,7 @@ struct DiscontinuityReport {
     std::size_t secondary_curves = 0;                      ///< Of the curves, those of secondary sources.
     std::size_t tree_bytes = 0;  ///< Of the trees before triangles are made of them; 0 with Delaunay's.
     double candidate_share = 0;  ///< Mean over faces in penumbra of what may hide a source, of all polygons.
+    std::size_t plane_tests = 0, fragments = 0;  ///< With orderings: tests of planes, polygons of the tree.
 };
 
 /// Light on six-node triangles that are cut along the curves across which direct light changes its form: contacts, VE

@@ -25,4 +25,8 @@ void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines
 /// Are the sources that a face's front can see all lit, all hidden, or neither? `centre`: of the face or of a part.
 ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre);
 
+/// The same of these sources alone.
+ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre,
+                         std::span<const DirectLight::SourceName> among);
+
 }  // namespace exitance

@@ -59,14 +59,38 @@ ReceiverCurves CurveFinder::look(RegionId number) const {
     const Region& region = stage_->scene.regions()[number];
     ReceiverCurves out(region);
     DirectLight::Workspace workspace;
-    stage_->direct.prepare(convex_around(region, out), region.plane.n, number, out.light, workspace);
+    if (options_.ordered)
+        out.light = options_.ordered->look(convex_around(region, out), number, workspace, out.ordered);
+    else if (options_.weak)
+        look_at_strong(number, out, workspace);
+    else
+        stage_->direct.prepare(convex_around(region, out), region.plane.n, number, out.light, workspace);
     return out;
+}
+
+/// Of the sources that may have curves there alone.
+void CurveFinder::look_at_strong(RegionId number, ReceiverCurves& out, DirectLight::Workspace& workspace) const {
+    const Region& region = stage_->scene.regions()[number];
+    std::vector<DirectLight::SourceName> sources;
+    for (const DirectLight::SourceName& s : options_.weak->strong(number)) {
+        const DirectLight::Emitter& emitter = stage_->direct.emitters()[s.emitter];
+        const Effect effect{.centre = emitter.centre,
+                            .radius = emitter.radius,
+                            .weight = mean(light_weight(stage_->scene.material(number)) * emitter.exitance)};
+        if (region.area >= options_.least_area &&
+            greatest_effect(number, emitter, s.emitter, effect) >= options_.least_effect)
+            sources.push_back(s);
+        else
+            ++out.left_out;
+    }
+    stage_->direct.prepare(convex_around(region, out), region.plane.n, number, sources, out.light, workspace);
 }
 
 ReceiverCurves CurveFinder::find(RegionId number) const {
     const Region& region = stage_->scene.regions()[number];
     ReceiverCurves out = look(number);
-    if (out.light.is_dark() && options_.secondary.empty()) return out;
+    const bool is_dark = options_.weak ? !options_.weak->is_reached(number) : out.light.is_dark();
+    if (is_dark && options_.secondary.empty()) return out;
     add_contacts(number, out);
     if (region.area >= options_.least_area)
         add_events(number, out), add_secondary(number, out), add_curves_behind(number, out);
@@ -127,6 +151,15 @@ double CurveFinder::greatest_effect(RegionId region, RegionId source, const Effe
     return effect.weight * (area < pi * distance * distance ? area / (pi * distance * distance) : 1);
 }
 
+/// The same of an emitter, of which more may be known.
+double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
+                                    const Effect& effect) const {
+    const double by_distance = greatest_effect(region, emitter.region, effect);
+    if (!options_.weak) return by_distance;
+    const double M = mean(emitter.exitance);
+    return std::min(by_distance, M > 0 ? effect.weight * options_.weak->bound(region, number) / M : 0);
+}
+
 /// The same where lines of sight by an edge may meet the region. From x there to any point s of the source it is at
 /// least as far as d, the edge's distance from the source's centre less three radii: a line of sight that passes the
 /// edge has one of them before it, and two are as far apart as points of the source may be. So E is at most
@@ -163,14 +196,16 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         Effect effect{.centre = emitter.centre,
                       .radius = emitter.radius,
                       .weight = mean(light_weight(stage_->scene.material(region)) * emitter.exitance)};
-        effect.gain = greatest_effect(region, emitter.region, effect);
+        effect.gain = greatest_effect(region, emitter, number, effect);
         if (effect.gain < options_.least_effect) {
             ++out.left_out;
             continue;
         }
         const EventSource source{stage_->scene.regions()[emitter.region].loops, emitter.plane, emitter.region, false,
                                  2 * emitter.radius};
-        add_events(region, source, effect, pieces, out);
+        WedgeLists lists;
+        if (options_.ordered) lists = options_.ordered->wedge_lists(number, region);
+        add_events(region, source, effect, pieces, options_.ordered ? &lists : nullptr, out);
     }
     for (const Beam& beam : out.light.beams) {
         if (beam.count == 0) continue;
@@ -181,12 +216,12 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
                                 ? stage_->scene.box().centre() - (far * stage_->scene.size()) * light.direction
                                 : light.position;
         const EventSource source{{{place}}, Plane{}, RegionId(), true, 0};
-        add_events(region, source, {}, candidates(beam), out);
+        add_events(region, source, {}, candidates(beam), nullptr, out);
     }
 }
 
 void CurveFinder::add_events(RegionId region, const EventSource& source, const Effect& effect,
-                             std::span<const PieceId> blockers, ReceiverCurves& out) const {
+                             std::span<const PieceId> blockers, const WedgeLists* lists, ReceiverCurves& out) const {
     std::vector<std::uint32_t> regions, edges;
     for (const PieceId p : blockers) regions.push_back(stage_->occluders.pieces()[p].region.value);
     std::sort(regions.begin(), regions.end());
@@ -206,10 +241,10 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
     }
     out.left_out += edges.size() - strong.size();
     const FlatBox box(out.loops);
-    ShadowEventFinder finder(stage_->occluders, *edges_, {gains, options_.least_bend, options_.stop});
+    ShadowEventFinder finder(stage_->occluders, *edges_, {gains, options_.least_bend, options_.stop, lists});
     std::vector<ShadowEvent> events;
     finder.find(out.frame, region, box.lo, box.hi, source, strong, events);
-    out.wedges += finder.wedges, out.left_out += finder.too_weak;
+    out.wedges += finder.wedges, out.left_out += finder.too_weak, out.ordered.plane_tests += finder.plane_tests;
     for (const ShadowEvent& e : events)
         out.curves.push_back({e.a, e.b,
                               source.is_point ? CurveOrder::d0
@@ -221,22 +256,23 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
     std::erase_if(edges, [&](std::uint32_t e) {
         return effect_beyond(edges_->edges()[e], source, effect, out) < options_.least_bend;
     });
-    add_non_emitter_events(region, source, effect.gain, edges, out);
+    add_non_emitter_events(region, source, effect.gain, lists, edges, out);
 }
 
 /// NEV and EEE: pairs of blockers' edges, so that where there are very many they are left to bisection.
 void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& source, double gain,
-                                         std::span<const std::uint32_t> edges, ReceiverCurves& out) const {
+                                         const WedgeLists* lists, std::span<const std::uint32_t> edges,
+                                         ReceiverCurves& out) const {
     constexpr std::size_t many = 400;
     if (edges.size() > many) {
         ++out.left_out;
         return;
     }
     const FlatBox box(out.loops);
-    ShadowEventFinder finder(stage_->occluders, *edges_, {.stop = options_.stop});
+    ShadowEventFinder finder(stage_->occluders, *edges_, {.stop = options_.stop, .lists = lists});
     std::vector<ShadowEvent> events;
     finder.find_non_emitter(out.frame, region, box.lo, box.hi, source, edges, events);
-    out.wedges += finder.wedges;
+    out.wedges += finder.wedges, out.ordered.plane_tests += finder.plane_tests;
     for (const ShadowEvent& e : events)
         out.curves.push_back({e.a, e.b, CurveOrder::d2, CurveCause::blocker_edge, source.region, gain});
     if (options_.conics == ConicCurves::none) return;
@@ -278,7 +314,7 @@ void CurveFinder::add_secondary(RegionId region, ReceiverCurves& out) const {
             ++out.left_out;
             continue;
         }
-        add_events(region, {source.loops, source.plane, s.region, false, 2 * radius}, effect, candidates, out);
+        add_events(region, {source.loops, source.plane, s.region, false, 2 * radius}, effect, candidates, nullptr, out);
     }
 }
 

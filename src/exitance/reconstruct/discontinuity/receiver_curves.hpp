@@ -4,6 +4,8 @@
 
 #include "exitance/core/progress.hpp"
 #include "exitance/mesh/discontinuity/curve_arrangement.hpp"
+#include "exitance/reconstruct/discontinuity/ordered_light.hpp"
+#include "exitance/reconstruct/discontinuity/weak_light.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/visibility/blocker_edges.hpp"
 #include "exitance/visibility/shadow_events.hpp"
@@ -19,6 +21,7 @@ struct ReceiverCurves {
     ReceiverLight light;                   ///< What shines on any of it.
     std::vector<FlatCurve> curves;         ///< Ready to be cut along.
     std::size_t wedges = 0, left_out = 0;  ///< Looked at; sources or curves that change too little.
+    OrderedLight::Counts ordered;          ///< What was done by orderings.
 };
 
 /// A surface whose reflected light has shadows, too.
@@ -37,7 +40,9 @@ struct CurveOptions {
     double least_bend = 0;            ///< W/m^2 of rho E: sources that bring less than this have no D2 curves.
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
-    const StopRequest* stop = nullptr;  ///< Once it is requested, what is found is not complete.
+    const StopRequest* stop = nullptr;      ///< Once it is requested, what is found is not complete.
+    const WeakLight* weak = nullptr;        ///< If given, its strong sources alone are looked at.
+    const OrderedLight* ordered = nullptr;  ///< If given, what hides sources is found by it.
 };
 
 /// Finds D0, D1 and D2 curves of primary sources, and of secondary ones that are asked for: where other polygons touch
@@ -57,6 +62,7 @@ class CurveFinder {
     void add_contacts_in_the_dark(RegionId region, ReceiverCurves& out) const;
 
   private:
+    void look_at_strong(RegionId region, ReceiverCurves& out, DirectLight::Workspace& workspace) const;
     void add_contacts(RegionId region, ReceiverCurves& out) const;
     void add_curves_behind(RegionId region, ReceiverCurves& out) const;
     /// What a source brings to a region, W/m^2 of rho E.
@@ -68,12 +74,14 @@ class CurveFinder {
     };
     void add_events(RegionId region, ReceiverCurves& out) const;
     void add_events(RegionId region, const EventSource& source, const Effect& effect, std::span<const PieceId> blockers,
-                    ReceiverCurves& out) const;
+                    const WedgeLists* lists, ReceiverCurves& out) const;
     double effect_beyond(const BlockerEdges::Edge& edge, const EventSource& source, const Effect& effect,
                          const ReceiverCurves& receiver) const;
-    void add_non_emitter_events(RegionId region, const EventSource& source, double gain,
+    void add_non_emitter_events(RegionId region, const EventSource& source, double gain, const WedgeLists* lists,
                                 std::span<const std::uint32_t> edges, ReceiverCurves& out) const;
     void add_secondary(RegionId region, ReceiverCurves& out) const;
+    double greatest_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
+                           const Effect& effect) const;
     double greatest_effect(RegionId region, RegionId source, const Effect& effect) const;
 
     const Stage* stage_;

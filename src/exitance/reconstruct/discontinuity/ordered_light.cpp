@@ -1,0 +1,202 @@
+#include "exitance/reconstruct/discontinuity/ordered_light.hpp"
+
+#include <algorithm>
+
+#include "exitance/visibility/bsp/shadow_volume.hpp"
+
+namespace exitance {
+
+/// What one candidate hides of one source.
+struct OrderedLight::Volume {
+    PieceId piece;
+    ShadowVolume shadow;
+};
+
+OrderedLight::OrderedLight(const DirectLight& direct) : direct_(&direct) {
+    std::vector<Normal> normals;
+    for (std::uint32_t e = 0; e < direct.emitters().size() && !direct.is_distant(e); ++e) {
+        const DirectLight::Emitter& emitter = direct.emitters()[e];
+        std::vector<Point>& corners = corners_.emplace_back();
+        for (const auto& loop : direct.occluders().scene().regions()[emitter.region].loops)
+            corners.insert(corners.end(), loop.begin(), loop.end());
+        normals.push_back(emitter.plane.n);
+    }
+    lists_.emplace(direct.occluders(), corners_, normals);
+}
+
+bool OrderedLight::face_each_other(std::span<const Point> receiver, const Normal& n,
+                                   const DirectLight::SourceName& source) const {
+    const Occluders& occluders = direct_->occluders();
+    const Plane plane{n, dot(n, receiver[0])};
+    const auto rises_over = [&](std::span<const Point> points, const Plane& p) {
+        return std::any_of(points.begin(), points.end(),
+                           [&](const Point& x) { return p.signed_distance(x) > occluders.rounding(); });
+    };
+    return rises_over(receiver, direct_->emitters()[source.emitter].plane) &&
+           rises_over(occluders.corners(source.piece), plane);
+}
+
+/// Bit k: is corner k above the receiver's plane? Of a rectangle in place of the corners, all are asked about.
+std::uint64_t OrderedLight::corners_over(std::uint32_t emitter, std::span<const Point> receiver,
+                                         const Normal& n) const {
+    std::uint64_t out = 0;
+    const std::size_t count = lists_->corner_count(emitter);
+    const bool own = lists_->has_own_corners(emitter);
+    for (std::size_t k = 0; k < count; ++k)
+        if (!own || dot(n, corners_[emitter][k] - receiver[0]) > direct_->occluders().rounding())
+            out |= std::uint64_t(1) << k;
+    return out;
+}
+
+ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region, DirectLight::Workspace& workspace,
+                                 Counts& counts) const {
+    const Occluders& occluders = direct_->occluders();
+    const Scene& scene = occluders.scene();
+    const Normal& n = scene.regions()[region].plane.n;
+    ReceiverLight out;
+    std::vector<DirectLight::SourceName> distant;
+    for (std::uint32_t e = 0; e < direct_->emitters().size(); ++e)
+        if (direct_->is_distant(e) && direct_->shines_on(direct_->emitters()[e], region))
+            for (const PieceId piece : direct_->emitters()[e].pieces) distant.push_back({e, piece});
+    direct_->prepare(outline, n, region, distant, out, workspace);
+    if (!scene.behind(region).is_none()) return out;  // of both sides, as it is
+    if (!direct_->beams().empty()) direct_->beams().prepare(outline, n, region, out.beams, out.candidates);
+    ReceiverLight open = {}, rest = {};
+    open.n = n, open.own = region;
+    for (std::uint32_t e = 0; e < corners_.size(); ++e) {
+        const DirectLight::Emitter& emitter = direct_->emitters()[e];
+        if (!direct_->shines_on(emitter, region)) continue;
+        const MinimumLists::Limits limits = lists_->limits(e, region);
+        const std::uint64_t over = corners_over(e, outline, n);
+        for (const PieceId piece : emitter.pieces) {
+            if (!face_each_other(outline, n, {e, piece})) continue;
+            std::vector<Volume> candidates;
+            std::uint64_t before = 0;
+            for (const PieceId p : occluders.pieces().ids()) {
+                const ConvexPiece& c = occluders.pieces()[p];
+                if (occluders.is_distant(p) || occluders.is_own(c.region, region) || c.region == emitter.region)
+                    continue;
+                const std::uint64_t corners = lists_->stands_before(e, p, limits);
+                if (corners == 0) continue;
+                before |= corners;
+                candidates.push_back({p, ShadowVolume(occluders.corners(piece), emitter.plane, occluders.corners(p),
+                                                      c.plane, occluders.rounding())});
+            }
+            std::erase_if(candidates, [&](const Volume& v) {
+                return v.shadow.is_empty() ||
+                       v.shadow.in_penumbra(outline, counts.plane_tests) == ShadowVolume::Place::outside;
+            });
+            const bool may_be_hidden = (over & ~before) == 0;
+            const bool hidden =
+                may_be_hidden && std::any_of(candidates.begin(), candidates.end(), [&](const Volume& v) {
+                    return v.shadow.has_umbra() &&
+                           v.shadow.in_umbra(outline, counts.plane_tests) == ShadowVolume::Place::inside;
+                });
+            if (hidden) continue;
+            if (candidates.empty()) {
+                open.sources.push_back({e, piece});
+                continue;
+            }
+            rest.sources.push_back({e, piece, static_cast<std::uint32_t>(rest.candidates.size()),
+                                    static_cast<std::uint32_t>(candidates.size())});
+            for (const Volume& v : candidates) rest.candidates.push_back(v.piece);
+        }
+    }
+    // Those that are all visible are laid out for many at once, then come the others.
+    ReceiverLight light;
+    direct_->prepare(outline, open, light, workspace);
+    const auto append = [&](const ReceiverLight& more) {
+        const auto first = static_cast<std::uint32_t>(light.candidates.size());
+        for (ReceiverLight::Source s : more.sources) s.first += first, light.sources.push_back(s);
+        for (Beam b : more.beams) b.first += first, light.beams.push_back(b);
+        light.candidates.insert(light.candidates.end(), more.candidates.begin(), more.candidates.end());
+    };
+    append(rest), append(out);
+    return light;
+}
+
+void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole, std::span<ReceiverLight> lights,
+                        const StopRequest& stop, DirectLight::Workspace& workspace, Counts& counts) const {
+    for (ReceiverLight& light : lights) light.n = whole.n, light.own = whole.own;
+    if (whole.is_dark()) return;
+    const Occluders& occluders = direct_->occluders();
+    std::vector<std::vector<Volume>> volumes;  // of each source
+    // What shafts look at: the sky, lights without extent, all sources, and then those that are all visible.
+    ReceiverLight others, open;
+    others.n = open.n = whole.n, others.own = open.own = whole.own;
+    others.behind = whole.behind, others.through = whole.through;
+    others.beams = whole.beams, others.candidates = whole.candidates;
+    const bool both_sides = !whole.behind.empty();
+    for (const ReceiverLight::Source& s : whole.sources) {
+        std::vector<Volume>& of_source = volumes.emplace_back();
+        if (both_sides || !is_listed(s.emitter) || s.count == 0) {
+            others.sources.push_back(s);
+            continue;
+        }
+        for (const PieceId p : std::span(whole.candidates).subspan(s.first, s.count))
+            of_source.push_back(
+                {p, ShadowVolume(occluders.corners(s.piece), direct_->emitters()[s.emitter].plane, occluders.corners(p),
+                                 occluders.pieces()[p].plane, occluders.rounding())});
+    }
+    for (std::size_t f = 0; f < lights.size() && !stop.requested(); ++f) {
+        const std::span<const Point> face = outlines.faces[f];
+        open = others;
+        std::vector<std::pair<std::size_t, std::vector<PieceId>>> partly;
+        std::vector<PieceId> listed;
+        for (std::size_t k = 0; k < volumes.size(); ++k) {
+            if (volumes[k].empty()) continue;
+            const ReceiverLight::Source& s = whole.sources[k];
+            if (!face_each_other(face, whole.n, {s.emitter, s.piece})) continue;
+            const MinimumLists::Limits limits = lists_->limits(s.emitter, whole.own, face, whole.n);
+            std::uint64_t before = 0;
+            std::vector<const Volume*> candidates;
+            for (const Volume& v : volumes[k]) {
+                const std::uint64_t corners = lists_->stands_before(s.emitter, v.piece, limits);
+                before |= corners;
+                if (corners != 0 && v.shadow.in_penumbra(face, counts.plane_tests) != ShadowVolume::Place::outside)
+                    candidates.push_back(&v);
+            }
+            const bool hidden = (corners_over(s.emitter, face, whole.n) & ~before) == 0 &&
+                                std::any_of(candidates.begin(), candidates.end(), [&](const Volume* v) {
+                                    return v->shadow.has_umbra() &&
+                                           v->shadow.in_umbra(face, counts.plane_tests) == ShadowVolume::Place::inside;
+                                });
+            if (hidden) continue;
+            if (candidates.empty()) {
+                open.sources.push_back({s.emitter, s.piece});
+                continue;
+            }
+            auto& [source, pieces] = partly.emplace_back(k, std::vector<PieceId>());
+            for (const Volume* v : candidates) pieces.push_back(v->piece);
+            for (const PieceId p : occluders.pieces().ids())
+                if (!occluders.is_distant(p) && lists_->stands_before(s.emitter, p, limits) != 0) listed.push_back(p);
+        }
+        ReceiverLight& light = lights[f];
+        direct_->prepare(face, open, light, workspace);
+        for (const auto& [k, pieces] : partly) {
+            const ReceiverLight::Source& s = whole.sources[k];
+            light.sources.push_back({s.emitter, s.piece, static_cast<std::uint32_t>(light.candidates.size()),
+                                     static_cast<std::uint32_t>(pieces.size())});
+            light.candidates.insert(light.candidates.end(), pieces.begin(), pieces.end());
+        }
+        if (listed.empty()) continue;
+        std::sort(listed.begin(), listed.end());
+        counts.listed += static_cast<std::size_t>(std::unique(listed.begin(), listed.end()) - listed.begin());
+        ++counts.faces;
+    }
+}
+
+WedgeLists OrderedLight::wedge_lists(std::uint32_t emitter, RegionId region) const {
+    WedgeLists out;
+    const MinimumLists::Limits limits = lists_->limits(emitter, region);
+    for (std::size_t k = 0; k < limits.size(); ++k) out.of_corner.push_back(lists_->in_order(emitter, k, limits));
+    std::vector<PieceId> all;
+    for (const auto& list : out.of_corner) all.insert(all.end(), list.begin(), list.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    out.of_all = std::move(all);
+    if (!lists_->has_own_corners(emitter)) out.of_corner.assign(corners_[emitter].size(), out.of_all);
+    return out;
+}
+
+}  // namespace exitance

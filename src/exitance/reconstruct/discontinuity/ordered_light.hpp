@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+
+#include "exitance/direct/direct_light.hpp"
+#include "exitance/reconstruct/discontinuity/face_lights.hpp"
+#include "exitance/visibility/bsp/minimum_lists.hpp"
+#include "exitance/visibility/shadow_events.hpp"
+
+namespace exitance {
+
+/// What shines on regions and faces, as DirectLight::prepare finds it by shafts and a tree of boxes, by the thesis's
+/// structures instead: candidates come from the minimum lists of a scene BSP tree; of these, penumbra volumes of wedge
+/// planes keep what reaches a face, and umbra volumes tell what hides all of a source, asked only where bit masks leave
+/// no corner of the source that sees the face. Source: [Gatenby95], [Chin89]. The same light to rounding.
+///
+/// The sky, lights without extent and the two sides of diffusing panes are looked at by shafts all the same.
+class OrderedLight {
+  public:
+    /// It must outlive this. O(emitters x corners x fragments) memory.
+    explicit OrderedLight(const DirectLight& direct);
+
+    /// Work that was done; each thread counts its own.
+    struct Counts {
+        std::size_t plane_tests = 0;        ///< Polygons against planes of shadow volumes.
+        std::size_t listed = 0, faces = 0;  ///< Pieces in the minimum lists of faces in half-shadow, and those faces.
+    };
+
+    ReceiverLight look(std::span<const Point> outline, RegionId region, DirectLight::Workspace& workspace,
+                       Counts& counts) const;
+    /// Faces of one region, of which `whole` tells what shines on all of it.
+    void look(const FaceOutlines& outlines, const ReceiverLight& whole, std::span<ReceiverLight> lights,
+              const StopRequest& stop, DirectLight::Workspace& workspace, Counts& counts) const;
+
+    /// By what wedges of an emitter are clipped on a region.
+    WedgeLists wedge_lists(std::uint32_t emitter, RegionId region) const;
+
+    std::size_t fragments() const { return lists_->tree().fragments().size(); }
+
+  private:
+    struct Volume;
+    bool is_listed(std::uint32_t emitter) const { return !direct_->is_distant(emitter); }
+    bool face_each_other(std::span<const Point> receiver, const Normal& n, const DirectLight::SourceName& source) const;
+    std::uint64_t corners_over(std::uint32_t emitter, std::span<const Point> receiver, const Normal& n) const;
+
+    const DirectLight* direct_;
+    std::vector<std::vector<Point>> corners_;  ///< Of emitters.
+    std::optional<MinimumLists> lists_;
+};
+
+}  // namespace exitance
