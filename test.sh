@@ -1,11 +1,17 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything in Release and runs the whole test suite. With CI set in the environment
-# the suite then runs once more under the address and undefined-behaviour sanitizers.
+# it also checks the layout of the code and runs the suite once more under the address and undefined-behaviour
+# sanitizers.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
 jobs=$(nproc)
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+
+check_layout() {
+    echo "== layout of the code"
+    find src tests bench \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format-14 --dry-run --Werror
+}
 
 run_suite() {  # PRESET FOLDER
     local start=$SECONDS
@@ -14,9 +20,13 @@ run_suite() {  # PRESET FOLDER
     cmake --build "$2" --parallel "$jobs"
     echo "== $1: test (built in $((SECONDS - start)) s)"
     ctest --test-dir "$2" --parallel "$jobs" --output-on-failure --no-tests=error --progress
+    echo "== $1: done in $((SECONDS - start)) s"
 }
 
 scripts/install_dependencies.sh
+if [[ -n ${CI:-} ]]; then
+    check_layout
+fi
 run_suite release build
 if [[ -n ${CI:-} ]]; then
     run_suite asan build-asan

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that building, testing and benchmarking need. Does nothing when all are there.
+# Installs the Debian packages that building, testing and benchmarking need; with CI set in the environment also the
+# formatter. Does nothing when all are there.
 set -euo pipefail
 
 packages=(
@@ -15,6 +16,7 @@ packages=(
 )
 # The viewer's page is built by node and npm, of any origin; without them everything else is built.
 command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
+[[ -z ${CI:-} ]] || packages+=(clang-format-14)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,0 +1,21 @@
+# Under the thread sanitizer: the tests that run on several threads, which are those of the same bits on any number of
+# threads (every parallel loop of the library has one; their names end in "Threads") and those of the queues that deal
+# out tasks. One thread's tests would only take time. A test that is named so comes in by itself.
+
+set(thread_tests "")
+foreach(path IN LISTS unit_tests)
+    file(STRINGS ${path} found REGEX "^TEST(_P)?\\(.*(Threads\\)|TaskQueues,)")
+    if(found)
+        list(APPEND thread_tests ${path})
+    endif()
+endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${thread_tests})
+add_executable(exitance-thread-tests ${thread_tests})
+target_include_directories(exitance-thread-tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+target_compile_options(exitance-thread-tests PRIVATE -Wall -Wextra -Werror)
+target_compile_definitions(exitance-thread-tests PRIVATE
+    EXITANCE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" EXITANCE_SHARED_DIR="${EXITANCE_SHARED_DIR}")
+target_link_libraries(exitance-thread-tests PRIVATE exitance GTest::gtest_main rapidcheck fmt::fmt)
+set(sanitizer_options "suppressions=${CMAKE_CURRENT_SOURCE_DIR}/thread_sanitizer.supp:halt_on_error=1:second_deadlock_stack=1")
+gtest_discover_tests(exitance-thread-tests TEST_FILTER "*Threads:*Threads/*:TaskQueues.*" DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT 600 ENVIRONMENT "TSAN_OPTIONS=${sanitizer_options}")
