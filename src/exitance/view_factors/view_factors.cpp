@@ -12,7 +12,10 @@
 namespace exitance {
 namespace {
 
-constexpr double agreeing = 0.7;  ///< Of the tolerance: rows that differ by less need no second look.
+/// Of the tolerance: rows that differ by less need no second look. Both may err alike. Of the town's pairs that were
+/// within 0.7 of each other one of 120 was off by more than the tolerance, up to 1.5 times as far (2.0 at 1e-4); of
+/// those within 0.3 one of 7,500, up to 1.2 times as far, for which quadrature aims lower.
+constexpr double agreeing = 0.3, aimed_at = 0.8;
 constexpr std::size_t rows_a_step = 64, pairs_a_step = 512;  ///< Between reports.
 
 Error stopped(const std::string& what) {
@@ -91,7 +94,7 @@ class TableMaker {
         for (std::size_t first = 0; first < n; first += rows_a_step) {
             const std::size_t count = std::min(rows_a_step, n - first);
             parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
-                RowWorker worker(pairs_, tolerance_, stop_);
+                RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
                 for (std::size_t i = first + from; i < first + to && !stop_.requested(); ++i)
                     worker.compute(i, std::span(table_.factors).subspan(i * n, n));
             });
@@ -119,7 +122,7 @@ class TableMaker {
             for (std::size_t first = 0; first < pairs.size(); first += pairs_a_step) {
                 const std::size_t count = std::min(pairs_a_step, pairs.size() - first);
                 parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
-                    RowWorker worker(pairs_, tolerance_, stop_);
+                    RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
                     for (std::size_t k = first + from; k < first + to && !stop_.requested(); ++k) {
                         look_again(worker, pairs[k], round.share * tolerance_, round.means);
                     }
