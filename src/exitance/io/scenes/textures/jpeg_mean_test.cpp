@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "exitance/io/scenes/texture_mean.hpp"
+#include "exitance/io/scenes/textures/texture_mean.hpp"
 
 namespace exitance {
 namespace {
