@@ -6,10 +6,10 @@
 
 namespace exitance {
 
-/// How a bound on the sum of squared errors of elements is dealt out where most elements are whole polygons of the scene
-/// that nobody wanted so small: leaves, slats, thin triangles. An even share, bound / elements, is less the more of them
-/// there are, although each errs by next to nothing; walls beside them would be cut for it without end. What small ones
-/// leave over is for the others.
+/// How a bound on the sum of squared errors of elements is dealt out where most elements are whole polygons of the
+/// scene that nobody wanted so small: leaves, slats, thin triangles. An even share, bound / elements, is less the more
+/// of them there are, although each errs by next to nothing; walls beside them would be cut for it without end. What
+/// small ones leave over is for the others.
 struct ErrorShare {
     /// Below so many elements shares are even; those of a crowd are those of so many at most.
     static constexpr std::size_t most_even = 4000, least_count = 1000;

@@ -97,9 +97,8 @@ CrowdedLight::Crowd CrowdedLight::take_crowded(ReceiverLight& light, const Point
 }
 
 /// Rays `first` to `last` of every place, whose points are those from its number times `block` on.
-void CrowdedLight::cast(const ReceiverLight& light, const ReceiverLight::Source& source,
-                        std::span<const Point> places, unsigned first, unsigned last, unsigned block,
-                        std::span<Sums> sums) const {
+void CrowdedLight::cast(const ReceiverLight& light, const ReceiverLight::Source& source, std::span<const Point> places,
+                        unsigned first, unsigned last, unsigned block, std::span<Sums> sums) const {
     constexpr std::size_t together = 64;
     std::array<SurfacePoint, together> from, to;
     std::array<double, together> kernel, s, t;
@@ -112,8 +111,8 @@ void CrowdedLight::cast(const ReceiverLight& light, const ReceiverLight::Source&
     const bool is_far = direct_->looks_far(source.emitter);
     const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c); };
     const Point& name = places[0];
-    const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::direct), bits(name.x), bits(name.y),
-                                     bits(name.z), source.piece.value));
+    const ScrambledSobol points(
+        hash(static_cast<std::uint64_t>(Stream::direct), bits(name.x), bits(name.y), bits(name.z), source.piece.value));
     std::size_t count = 0;
     const auto trace = [&] {
         tracer_->occluded(std::span(from).first(count), std::span(to).first(count), std::span(blocked).first(count));
@@ -160,8 +159,8 @@ std::vector<CrowdedLight::Estimate> CrowdedLight::at(const ReceiverLight& light,
         for (const Point& x : places) {
             const auto& [source, factor] = crowd.sources[k];
             const Receiver at = direct_->receiver(x, light.n, light.own);
-            level[i++] = direct_->looks_far(source.emitter) ? factor
-                                                            : unblocked(at, {source.emitter, source.piece}, scratch);
+            level[i++] =
+                direct_->looks_far(source.emitter) ? factor : unblocked(at, {source.emitter, source.piece}, scratch);
         }
     std::vector<Estimate> out;
     unsigned rays = std::max(least_rays, crowd.rays / 4);

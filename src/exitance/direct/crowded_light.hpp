@@ -14,9 +14,9 @@ namespace exitance {
 ///     E = M F sum over rays of  K_i V_i / sum over rays of  K_i,    K = cos cos / (pi r^2),
 ///
 /// from a place to places of the source (times its relative radiance), F as if nothing stood in between. The rays of a
-/// receiver's places are parts of one scrambled net on the source, so that their mean is better than any of them. Whether
-/// a source is crowded is decided without finding all that stands before it: the search ends where exactness is seen to
-/// cost more than rays.
+/// receiver's places are parts of one scrambled net on the source, so that their mean is better than any of them.
+/// Whether a source is crowded is decided without finding all that stands before it: the search ends where exactness is
+/// seen to cost more than rays.
 class CrowdedLight {
   public:
     using SourceName = DirectLight::SourceName;
@@ -31,8 +31,8 @@ class CrowdedLight {
             double factor = 0;  ///< F at the middle of the receiver; of the sky the same everywhere on it.
         };
         std::vector<Source> sources;
-        unsigned rays = 0;       ///< Of a place and source, at most: a power of two that a half-hidden source needs.
-        double allowed = 0;      ///< Variance of a value, (W/m^2)^2.
+        unsigned rays = 0;   ///< Of a place and source, at most: a power of two that a half-hidden source needs.
+        double allowed = 0;  ///< Variance of a value, (W/m^2)^2.
         bool empty() const { return sources.empty(); }
     };
     struct Estimate {

@@ -144,7 +144,8 @@ std::string view3d_text(const Scene& scene, double eps) {
     for (const SurfaceId s : scene.surfaces().ids()) {
         const std::span<const Point> outline = scene.outline(s);
         const std::size_t first = vertex + 1;
-        for (const Point& p : outline) vertices += fmt::format("V {} {:.12g} {:.12g} {:.12g}\n", ++vertex, p.x, p.y, p.z);
+        for (const Point& p : outline)
+            vertices += fmt::format("V {} {:.12g} {:.12g} {:.12g}\n", ++vertex, p.x, p.y, p.z);
         const Normal& n = scene.surfaces()[s].normal;
         if (is_convex_quadrangle(outline, n))
             pieces.push_back({{first, first + 1, first + 2, first + 3}, s});

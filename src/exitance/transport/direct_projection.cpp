@@ -55,8 +55,8 @@ NoisyFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, do
                     DirectLight::Workspace& workspace, const std::vector<DirectLight::SourceName>* named = nullptr) {
     const RegionId region = tree.region(e);
     const double w = mean(light_weight(stage.scene.material(region)));
-    const CrowdedLight::Crowd crowd = stage.crowded.prepare(
-        tree.outline(e), stage.scene.regions()[region].plane.n, region, allowed / (w * w), light, workspace, named);
+    const CrowdedLight::Crowd crowd = stage.crowded.prepare(tree.outline(e), stage.scene.regions()[region].plane.n,
+                                                            region, allowed / (w * w), light, workspace, named);
     if (light.is_dark() && crowd.empty()) return {};
     std::vector<CrowdedLight::Estimate> by_rays;
     if (!crowd.empty()) {
@@ -327,7 +327,8 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
     // Noise of small elements is small by itself, and that of large ones not to be less the more of those there are.
     const bool is_crowd = stage.rooms.count() == 0 && ErrorShare::is_crowd(active.size(), stage.pieces.size());
     const auto noise_on = [&](ElementId e) {  // (W/m^2)^2
-        const double of_area = share * std::min(1.0, stage.area / (ErrorShare::most_even * out.tree.area(e))) / mean_area;
+        const double of_area =
+            share * std::min(1.0, stage.area / (ErrorShare::most_even * out.tree.area(e))) / mean_area;
         return is_crowd ? std::max(allowed_on(e) / out.tree.area(e), of_area) : allowed_on(e) / out.tree.area(e);
     };
     std::vector<NoisyFit> found;

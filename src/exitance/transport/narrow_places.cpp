@@ -24,9 +24,8 @@ bool is_narrow(const Stage& stage, const ElementTree& tree, ElementId e, double 
     }
     stage.tracer.nearest(x, up, region, hits);
     const double width = std::sqrt(tree.area(e));
-    return std::any_of(hits.begin(), hits.end(), [&](const RayHit& hit) {
-        return hit.front && hit.distance > touching && hit.distance < width;
-    });
+    return std::any_of(hits.begin(), hits.end(),
+                       [&](const RayHit& hit) { return hit.front && hit.distance > touching && hit.distance < width; });
 }
 
 }  // namespace

@@ -113,9 +113,9 @@ class Solver {
     Certificate certificate_;
     int attempt_ = 1;
     Step step_ = Step::project;
-    bool fresh_ = true;             ///< Does the method find new light in this attempt?
-    bool becomes_linear_ = false;   ///< What the method `matrix` takes for granted.
-    Spectrum share_;                ///< c of that light, see find_direct_share.
+    bool fresh_ = true;               ///< Does the method find new light in this attempt?
+    bool becomes_linear_ = false;     ///< What the method `matrix` takes for granted.
+    Spectrum share_;                  ///< c of that light, see find_direct_share.
     std::vector<double> light_in_;    ///< Of every room by the mean light; empty where all is one room.
     std::vector<double> allowed_in_;  ///< What errors rooms may have, in proportion (`allowed_by_room`).
     std::string resumed_phase_;

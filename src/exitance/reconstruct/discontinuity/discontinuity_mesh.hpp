@@ -19,7 +19,7 @@ struct DiscontinuityOptions {
     double largest_error = 0.03;
     /// Light on top of what is direct, at a place of a region; empty: none.
     std::function<Spectrum(RegionId, const Point&)> indirect = {};
-    Spectrum direct_weight = Spectrum(1.0);  ///< What direct light is to be multiplied by.
+    Spectrum direct_weight = Spectrum(1.0);       ///< What direct light is to be multiplied by.
     std::vector<SecondarySource> secondary = {};  ///< Cut along their shadows, too.
     ConicCurves conics = ConicCurves::at_umbras;
     TriangulationScheme triangulation = TriangulationScheme::delaunay;

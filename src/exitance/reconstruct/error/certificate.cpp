@@ -100,7 +100,8 @@ struct Certifier::Content {
     RayRows H;  ///< Between the leaves of `light`.
     std::size_t looks = 0;
     std::vector<Sample> samples;  ///< Of all looks.
-    std::vector<Spectrum> late;   ///< The smooth part of the error, by leaf number of the coarse mesh, as of the last one.
+    std::vector<Spectrum>
+        late;  ///< The smooth part of the error, by leaf number of the coarse mesh, as of the last one.
     Field<ElementId, std::uint8_t> narrow;  ///< Leaves of the delivered function.
 
     Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
@@ -337,8 +338,7 @@ Spectrum Certifier::Content::residual_by_rays(const Sample& sample, unsigned ray
     const Point x = indirect.tree.patch(sample.place.element).at(sample.place.uv);
     const Region& region = stage.scene.regions()[sample.region];
     cast_gather(stage, x, region.plane.n, sample.region, rays, key, workspace);
-    return stage.scene.material(sample.region).reflectance *
-           (read_gather(b, workspace).irradiance - sample.delivered);
+    return stage.scene.material(sample.region).reflectance * (read_gather(b, workspace).irradiance - sample.delivered);
 }
 
 void Certifier::Content::tell_p99(Certificate& out) {
@@ -367,8 +367,8 @@ void Certifier::Content::tell_p99(Certificate& out) {
                 for (std::size_t k = begin; k < end; ++k) {
                     const Sample& s = samples[which[k]];
                     for (std::uint64_t half = 0; half < 2; ++half) {
-                        const std::uint64_t key = hash(
-                            options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);
+                        const std::uint64_t key =
+                            hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);
                         error[k][half] = late[s.leaf] + residual_by_rays(s, rays_at(which[k]), key, workspace);
                     }
                 }

@@ -44,10 +44,10 @@ struct PictureOptions {
 /// there, certainly hidden, or have something in between (DirectLight::prepare). Where nothing is in between, light is
 /// smooth, and one evaluation serves a pixel as long as it looks small from the emitters. Elsewhere it serves a pixel
 /// that differs from none of its neighbours by more than a hundredth; of the others four samples are evaluated, and if
-/// these differ by more than a hundredth, all. Where something stands before more than 24 emitters, rays find their light
-/// (SharedRays) to 0.4% of what the pixel or a quarter of the median pixel shows, and it is interpolated where it is
-/// even. The same bits on any number of threads. A stop leaves the rest of the picture empty. About 0.1 us a sample and
-/// 1-2 us a pixel and emitter that something stands before.
+/// these differ by more than a hundredth, all. Where something stands before more than 24 emitters, rays find their
+/// light (SharedRays) to 0.4% of what the pixel or a quarter of the median pixel shows, and it is interpolated where it
+/// is even. The same bits on any number of threads. A stop leaves the rest of the picture empty. About 0.1 us a sample
+/// and 1-2 us a pixel and emitter that something stands before.
 Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
                      const StopRequest& stop);
 
