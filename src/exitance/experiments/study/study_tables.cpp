@@ -13,6 +13,7 @@
 #include "exitance/experiments/study/study_scene.hpp"
 #include "exitance/experiments/task_schedules.hpp"
 #include "exitance/experiments/thesis/thesis_studies.hpp"
+#include "exitance/experiments/view_factor_programs.hpp"
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 
@@ -117,7 +118,8 @@ Result<StudyTables> cie171_tables(const Study&, const StudyOptions& options, Pro
     return StudyTables{{"results", std::move(table)}, {"summary", std::move(summary)}};
 }
 
-/// Calls use(name, value, scene) for the scenes of a study, values in their order.
+/// Calls use(name, scene, path of its file), with the value in the name of a scene that has one, for the scenes of a
+/// study, values in their order.
 template <class Use>
 Result<void> for_scenes(const Study& study, const StudyOptions& options, Progress& progress, const StopRequest& stop,
                         const Use& use) {
@@ -133,7 +135,8 @@ Result<void> for_scenes(const Study& study, const StudyOptions& options, Progres
             const CheckedScene checked = load_scene({stage->path}, {});
             if (!checked.scene) return checked.scene.error();
             progress.advance(0, stage->words);
-            use(scene.name, value, *checked.scene);
+            const bool varies = scene.generate.find("{value}") != std::string::npos;
+            use(varies ? fmt::format("{} {:g}", scene.name, value) : scene.name, *checked.scene, stage->path);
         }
     return {};
 }
@@ -150,10 +153,10 @@ Result<StudyTables> scene_tables(std::span<const SceneStudy> known, const Study&
     for (const SceneStudy& part : known) {
         if (part.name != study.table) continue;
         text.print("%s\n", std::string(part.header).c_str());
-        const Result<void> done =
-            for_scenes(study, options, progress, stop, [&](const std::string& name, double value, const Scene& scene) {
-                part.run(fmt::format("{} {:g}", name, value).c_str(), scene, text);
-            });
+        const Result<void> done = for_scenes(study, options, progress, stop,
+                                             [&](const std::string& name, const Scene& scene, const std::string&) {
+                                                 part.run(name.c_str(), scene, text);
+                                             });
         if (!done) return done.error();
     }
     Result<Table> table = parse_csv(text.text(), study.table);
@@ -177,10 +180,10 @@ Result<StudyTables> kernel_tables(const Study& study, const StudyOptions& option
     if (options.quick) asked = {.seeds = 2, .counts = {16, 64, 256}, .pairs = 20'000};
     CsvText text;
     text.print("%s\n", kernel_error_header);
-    const Result<void> done =
-        for_scenes(study, options, progress, stop, [&](const std::string& name, double, const Scene& scene) {
-            measure_kernel_error(name, scene, asked, text, stop);
-        });
+    const Result<void> done = for_scenes(study, options, progress, stop,
+                                         [&](const std::string& name, const Scene& scene, const std::string&) {
+                                             measure_kernel_error(name, scene, asked, text, stop);
+                                         });
     if (!done) return done.error();
     Result<Table> table = parse_csv(text.text(), study.table);
     if (!table) return table.error();
@@ -197,15 +200,40 @@ Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& opti
     ScheduleStudy asked{given("threshold_W"), given("min_area_m2"), 1, argument(study, "error", 0.02)};
     if (!options.quick) asked.repeats = static_cast<int>(argument(study, "repeats", 3));
     ScheduleTables tables;
-    const Result<void> done =
-        for_scenes(study, options, progress, stop, [&](const std::string& name, double value, const Scene& scene) {
-            measure_schedules(fmt::format("{} {:g}", name, value), scene, asked, tables, stop);
-        });
+    const Result<void> done = for_scenes(study, options, progress, stop,
+                                         [&](const std::string& name, const Scene& scene, const std::string&) {
+                                             measure_schedules(name, scene, asked, tables, stop);
+                                         });
     if (!done) return done.error();
     return StudyTables{{"results", std::move(tables.runs)},
                        {"graphs", std::move(tables.graphs)},
                        {"iterations", std::move(tables.iterations)},
                        {"phases", std::move(tables.phases)}};
+}
+
+/// View factors by several programs; `reference` is the tolerance of the matrix that all are compared with.
+Result<StudyTables> view_factor_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                       const StopRequest& stop) {
+    const std::filesystem::path work = std::filesystem::path(options.folder) / "work";
+    std::error_code failed;
+    std::filesystem::create_directories(work, failed);
+    if (failed) return Error{ErrorCode::cannot_write, failed.message(), work, ""};
+    const ViewFactorProgramOptions asked{.program = options.program,
+                                         .folder = work,
+                                         .tolerances = {1e-2, 1e-3, 1e-4},
+                                         .convergence = {1e-3, 1e-4, 1e-5, 1e-6},
+                                         .reference_tolerance = argument(study, "reference", 1e-5),
+                                         .time_limit = options.quick ? study.quick_time_limit : study.time_limit};
+    Table table;
+    Result<void> compared;
+    const Result<void> done = for_scenes(
+        study, options, progress, stop, [&](const std::string& name, const Scene& scene, const std::string& path) {
+            if (compared) compared = compare_view_factor_programs(name, path, scene, asked, table, stop);
+        });
+    std::filesystem::remove_all(work, failed);
+    if (!done) return done.error();
+    if (!compared) return compared.error();
+    return StudyTables{{"results", std::move(table)}};
 }
 
 /// Joins tables of several scenes; their first column names the scene.
@@ -228,14 +256,13 @@ Result<StudyTables> local_pass_tables(const Study& study, const StudyOptions& op
         const Result<void> added = csv ? append_csv(tables, name, *csv) : Result<void>(csv.error());
         if (!added && !failure) failure = added.error();
     };
-    const Result<void> done =
-        for_scenes(study, options, progress, stop, [&](const std::string& name, double value, const Scene& scene) {
-            const std::string scene_name = fmt::format("{} {:g}", name, value);
+    const Result<void> done = for_scenes(
+        study, options, progress, stop, [&](const std::string& name, const Scene& scene, const std::string&) {
             const auto passes = run_local_pass_study(scene, asked, progress, stop);
-            add("results", passes ? Result<std::string>(local_pass_csv(scene_name, *passes)) : passes.error());
+            add("results", passes ? Result<std::string>(local_pass_csv(name, *passes)) : passes.error());
             const auto links =
                 run_link_threshold_study(scene, {0, 0.01, 0.03, 0.1, 0.3, 1}, medium, asked, progress, stop);
-            add("thresholds", links ? Result<std::string>(link_threshold_csv(scene_name, *links)) : links.error());
+            add("thresholds", links ? Result<std::string>(link_threshold_csv(name, *links)) : links.error());
         });
     if (!done) return done.error();
     if (failure && !stop.requested()) return *failure;
@@ -246,10 +273,18 @@ Result<StudyTables> local_pass_tables(const Study& study, const StudyOptions& op
 
 std::span<const StudyTableMaker> study_table_makers() {
     static constexpr StudyTableMaker makers[] = {
-        {"candidates", visibility_tables}, {"cie171", cie171_tables},         {"flatland", flatland_tables},
-        {"kernel", kernel_tables},         {"local-pass", local_pass_tables}, {"layers", mesh_tables},
-        {"premesh", mesh_tables},          {"rays", visibility_tables},       {"schedules", schedule_tables},
-        {"triangulation", mesh_tables},    {"volumes", visibility_tables},
+        {"candidates", visibility_tables},
+        {"cie171", cie171_tables},
+        {"flatland", flatland_tables},
+        {"kernel", kernel_tables},
+        {"local-pass", local_pass_tables},
+        {"layers", mesh_tables},
+        {"premesh", mesh_tables},
+        {"rays", visibility_tables},
+        {"schedules", schedule_tables},
+        {"triangulation", mesh_tables},
+        {"view-factors", view_factor_tables},
+        {"volumes", visibility_tables},
     };
     return makers;
 }
