@@ -152,7 +152,8 @@ std::vector<Spectrum> late_response(const Solution& solution, const LightGroups&
         rhs[i] = of_region[region] / (count[region] + 4);  // a mean of few is mostly noise
     }
     std::vector<Spectrum> out = rhs;
-    solve_radiosity({F, rho, rhs, layout.area}, Relaxation::gmres, out, {.residual = 0.02, .max_iterations = 200});
+    solve_radiosity({F, rho, rhs, layout.area}, Relaxation::gmres, out,
+                    {.residual = 0.02, .max_iterations = 200});  // given by Certifier
     for (std::size_t i = 0; i < out.size(); ++i) out[i] -= rhs[i];
     return out;
 }
@@ -201,8 +202,9 @@ void estimate_group_errors(const Stage& stage, const Solution& solution,
     std::vector<Spectrum> rho;
     for (const MaterialId m : groups.layout.material) rho.push_back(groups.reflectance[m.value]);
     // Rays as a certificate takes them; then as many as the noisiest group needs, within reason.
-    const double wanted = 0.09 / (0.2 * error * error * std::sqrt(static_cast<double>(points)));
-    unsigned rays = std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, 16.0, 4096.0)));
+    const double share = 0.2 * error * error;  // given by Certifier, as the rays' noise and their limits are
+    const double wanted = 0.09 / (share * std::sqrt(static_cast<double>(points)));           // given by it
+    unsigned rays = std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, 16.0, 4096.0)));  // given by it
     constexpr double most_more = 8;
     std::vector<SquaredError> squares(groups.groups.size());
     for (int look = 0; look < 2; ++look) {
