@@ -44,8 +44,7 @@ void strips_into_gap(const Point& p, const Point& q, const Vec3& inwards, double
 /// Where a gap opens along an edge: of a face that hovers over the plane of a region, to the side on which that face
 /// is; or of the region itself, where another face hovers over it there, inwards.
 void gap_along_edge(const Scene& scene, const Bvh& faces, const std::pair<Point, Point>& edge, RegionId of_edge,
-                    RegionId own, double gap, double tolerance, std::vector<Segment>& out) {
-    const double least = 10 * tolerance;
+                    RegionId own, double least, double gap, double tolerance, std::vector<Segment>& out) {
     if (gap <= least) return;
     const Plane& plane = scene.regions()[own].plane;
     const Normal& n = scene.regions()[of_edge].plane.n;
@@ -194,12 +193,15 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
             contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, segments);
     });
     // Strips lie beside the edge that they begin at, over parts that others have cut off from it, too.
+    // They are worth their number where all together they are a noticeable part of an element.
+    constexpr double noticeable = 0.1;  // of its width
+    const double lowest = std::max(10 * tolerance_, noticeable / deepest_strip * std::sqrt(area_before_contacts(tree, e)));
     const double reach = deepest_strip * gap;
     Box around = box;
     around.lo -= Vec3{reach, reach, reach}, around.hi += Vec3{reach, reach, reach};
     borders_.visit_box(around, [&](std::uint32_t i) {
         const auto& [a, b, region] = edges_[i];
-        gap_along_edge(*scene_, faces_, {a, b}, region, tree.region(e), gap, tolerance_, segments);
+        gap_along_edge(*scene_, faces_, {a, b}, region, tree.region(e), lowest, gap, tolerance_, segments);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);

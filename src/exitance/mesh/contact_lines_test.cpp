@@ -72,18 +72,18 @@ std::vector<double> ends_under_board(const ElementTree& tree, double from, doubl
 }
 
 TEST(ContactLines, AGapHasStripsThatWidenFromItsMouthInwards) {
-    const Scene scene = floor_under_board(0.02);
+    const Scene scene = floor_under_board(0.06);
     const ContactLines contacts(scene);
     ElementTree floor;
     floor.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
     cut_along_contacts(floor, {ElementId(0)}, contacts);
-    EXPECT_EQ(ends_under_board(floor, 0, 0.02), (std::vector<double>{0, 1, 3, 7}));
+    EXPECT_EQ(ends_under_board(floor, 0, 0.06), (std::vector<double>{0, 1, 3, 7}));
     // The board itself, from its own border on; beyond it there is nothing.
     ElementTree board;
-    board.add_root(RegionId(1), {{1, 1, 0.02}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
+    board.add_root(RegionId(1), {{1, 1, 0.06}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
     cut_along_contacts(board, {ElementId(0)}, contacts);
     for (double height : {1.0, 3.0, 7.0}) {
-        const double at = height * 0.02;
+        const double at = height * 0.06;
         EXPECT_NE(board.leaf_at(ElementId(0), {0.5, at - 1e-6}).element,
                   board.leaf_at(ElementId(0), {0.5, at + 1e-6}).element)
             << height;
