@@ -100,12 +100,9 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
     const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area counts for no rays
-    // Of a crowd each has so small a share in the light that its noise alone tells how many rays it needs.
-    constexpr unsigned least_rays = 4;
-    const unsigned first = is_crowd_  ? least_rays
-                           : hopeless ? std::bit_ceil(demand.rays.least)
-                                      : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
-    unsigned rays = std::max({least_rays, first, before});
+    const unsigned first =
+        hopeless ? std::bit_ceil(demand.rays.least) : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
+    unsigned rays = std::max({4u, first, before});
     w.growing.assign(places.size(), {});
     for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
         const unsigned cast = gather_at(e, places, b, rays, more, demand, w);

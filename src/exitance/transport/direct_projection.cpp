@@ -32,27 +32,20 @@ DirectFit fit_at_places(const Stage& stage, const ElementTree& tree, ElementId e
     return out;
 }
 
-/// A fit, and how much of its misfit is noise that it keeps, (W/m^2)^2: more rays would help, smaller elements would
-/// not.
-struct NoisyFit {
-    DirectFit fit;
-    double noise = 0;
-};
-
 /// Leaves noise in a fit to values whose noise has the mean square `noise`, by weight w: it has as many freedoms as the
 /// element has corners, as much of the noise stays in it, and the rest looks like misfit.
-NoisyFit count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit fit) {
+void count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit& fit) {
     const double places = static_cast<double>(element_rule(tree, e, RuleOrder::fine).size());
     const double kept = std::min(1.0, tree.patch(e).corner_count() / places);
     constexpr double seldom = 2;  // of noise alone, the squares of a few freedoms are seldom more than this
     fit.misfit_squared = std::max(0.0, fit.misfit_squared - seldom * (1 - kept) * noise) + kept * noise;
-    return {fit, kept * noise};
 }
 
 /// Exact, but where rays find what is hidden for less (`CrowdedLight`). `allowed`: mean square of w (E - polynomial)
 /// that noise may leave; 0: exact. `named`: the sources to look at; none: all, and beams.
-NoisyFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, ReceiverLight& light,
-                    DirectLight::Workspace& workspace, const std::vector<DirectLight::SourceName>* named = nullptr) {
+DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, ReceiverLight& light,
+                     DirectLight::Workspace& workspace,
+                     const std::vector<DirectLight::SourceName>* named = nullptr) {
     const RegionId region = tree.region(e);
     const double w = mean(light_weight(stage.scene.material(region)));
     const CrowdedLight::Crowd crowd = stage.crowded.prepare(tree.outline(e), stage.scene.regions()[region].plane.n,
@@ -67,15 +60,15 @@ NoisyFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, do
     }
     double noise = 0;
     std::size_t next = 0;
-    const DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
+    DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
         const Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
         if (crowd.empty()) return E;
         const CrowdedLight::Estimate& more = by_rays[next++];
         noise += more.variance, parallel += more.parallel;
         return E + more.irradiance;
     });
-    if (noise <= 0) return {out};
-    return count_noise(tree, e, w * w * noise / static_cast<double>(next), out);
+    if (noise > 0) count_noise(tree, e, w * w * noise / static_cast<double>(next), out);
+    return out;
 }
 
 /// What clusters of emitters may miss at one place of an element that an error of `allowed` is left to.
@@ -85,21 +78,22 @@ LightAccuracy accuracy_on(const Stage& stage, RegionId region, double allowed) {
     return {at_least, of_error * std::sqrt(allowed) / mean(light_weight(stage.scene.material(region)))};
 }
 
-NoisyFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
-                      ClusteredLight::Workspace& workspace) {
+DirectFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
+                       ClusteredLight::Workspace& workspace) {
     const RegionId region = tree.region(e);
     const Normal& n = stage.scene.regions()[region].plane.n;
     const LightAccuracy accuracy = accuracy_on(stage, region, allowed);
     double noise = 0, places = 0;
     const bool parallel_light = !stage.direct.beams().empty();
-    const DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
+    DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
         const ClusteredLight::Estimate at = stage.clustered.by_clusters(x, n, region, accuracy, workspace);
         noise += at.variance, ++places;
         if (parallel_light) stage.direct.beams().irradiance({x, n, region}, &parallel);
         return at.irradiance;
     });
     const double w = mean(light_weight(stage.scene.material(region)));
-    return count_noise(tree, e, w * w * noise / places, out);
+    count_noise(tree, e, w * w * noise / places, out);
+    return out;
 }
 
 /// Would clusters do at the middle of an element?
@@ -111,22 +105,18 @@ bool suits_clusters(const Stage& stage, const ElementTree& tree, ElementId e, do
                                 accuracy_on(stage, region, allowed), workspace);
 }
 
-NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, DirectFitRoom& room) {
+}  // namespace
+
+DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
+                           DirectFitRoom& room) {
     if (suits_clusters(stage, tree, e, allowed, room.clustered))
         return fit_clusters(stage, tree, e, allowed, room.clustered);
     return fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
 }
 
-}  // namespace
-
-DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
-                           DirectFitRoom& room) {
-    return fit_all_light(stage, tree, e, allowed, room).fit;
-}
-
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace) {
-    return fit_values(stage, tree, e, 0, light, workspace).fit;
+    return fit_values(stage, tree, e, 0, light, workspace);
 }
 
 namespace {
@@ -168,10 +158,10 @@ constexpr unsigned rays_an_element = 16;  ///< For weak sources; more on element
 constexpr std::size_t few_strong = 24;  ///< Sources of which exact visible parts cost no more than clusters do.
 
 /// The same where there are many elements: sources that do not count on this one are left to rays.
-NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, unsigned rays,
-                          SampledLight& sampled, DirectFitRoom& room) {
+DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, unsigned rays,
+                           SampledLight& sampled, DirectFitRoom& room) {
     const RegionId region = tree.region(e);
-    if (!stage.scene.behind(region).is_none()) return fit_all_light(stage, tree, e, allowed, room);
+    if (!stage.scene.behind(region).is_none()) return fit_direct_light(stage, tree, e, allowed, room);
     // Each source is looked at, if only roughly: where they are too many even for that, clusters are first.
     constexpr std::size_t too_many = 10000;
     const bool clusters_first = stage.clustered.tree().sources().size() > too_many;
@@ -180,11 +170,11 @@ NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId
     const SampledLight::Estimate& of = sampled(tree, e, light_weight(stage.scene.material(region)), allowed, rays);
     if (of.strong.size() > few_strong && suits_clusters(stage, tree, e, allowed, room.clustered))
         return fit_clusters(stage, tree, e, allowed, room.clustered);
-    NoisyFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact, &of.strong);
-    for (Spectrum& corner : out.fit.corners) corner += of.weak;
-    out.fit.mean += of.weak;
+    DirectFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact, &of.strong);
+    for (Spectrum& corner : out.corners) corner += of.weak;
+    out.mean += of.weak;
     // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
-    out.fit.misfit_squared = std::max(out.fit.misfit_squared, of.misfit_squared);
+    out.misfit_squared = std::max(out.misfit_squared, of.misfit_squared);
     return out;
 }
 
@@ -274,15 +264,10 @@ std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& l
     return out;
 }
 
-/// The squared error of an element that smaller ones would not have, (W/m^2)^2 m^2. `noise`: see `NoisyFit`.
-double error_of_shape(const DirectProjection& light, const Field<ElementId, double>& noise, ElementId e) {
-    return light.tree.area(e) * std::max(0.0, light.fit[e].misfit_squared - noise[e]);
-}
-
 /// Of a bound on the sum of the leaves' squared errors, (W/m^2)^2 m^2.
-double share_in_crowd(const DirectProjection& light, const Field<ElementId, double>& noise, double bound) {
+double share_in_crowd(const DirectProjection& light, double bound) {
     std::vector<double> errors;
-    for (ElementId e : light.tree.leaves()) errors.push_back(error_of_shape(light, noise, e));
+    for (ElementId e : light.tree.leaves()) errors.push_back(light.tree.area(e) * light.fit[e].misfit_squared);
     return share_of_crowd(std::move(errors), bound);
 }
 
@@ -331,10 +316,8 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
             share * std::min(1.0, stage.area / (ErrorShare::most_even * out.tree.area(e))) / mean_area;
         return is_crowd ? std::max(allowed_on(e) / out.tree.area(e), of_area) : allowed_on(e) / out.tree.area(e);
     };
-    std::vector<NoisyFit> found;
-    Field<ElementId, double> noise;
     for (int depth = 0; !active.empty(); ++depth) {
-        found.assign(active.size(), {});
+        out.fit.resize(out.tree.size());
         shared_ranges(
             active.size(), 8,
             [&](std::size_t begin, std::size_t end) {
@@ -343,32 +326,28 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
                 SampledLight sampled(stage.direct, stage.tracer, options.seed);
                 for (std::size_t i = begin; i < end; ++i) {
                     const ElementId e = active[i];
-                    NoisyFit& fit = found[i];
+                    DirectFit& fit = out.fit[e];
                     if (stop.requested() && depth > 0)
-                        fit.fit = inherited_fit(out.tree, e, out.fit[out.tree.parent(e)]);
-                    else if (stop.requested() && stop.seconds_overdue() < time_for_rays)
-                        fit.fit = fit_by_rays(stage, out.tree, e, sampled);
-                    else if (stop.requested())
-                        continue;  // dark, where even rays would take too long
+                        fit = inherited_fit(out.tree, e, out.fit[out.tree.parent(e)]);
+                    else if (stop.requested())  // dark, where even rays would take too long
+                        fit = stop.seconds_overdue() < time_for_rays ? fit_by_rays(stage, out.tree, e, sampled)
+                                                                     : DirectFit();
                     else if (many)
                         fit = fit_strong_light(stage, out.tree, e, noise_on(e), rays_of(e), sampled, room);
                     else
-                        fit = fit_all_light(stage, out.tree, e, noise_on(e), room);
+                        fit = fit_direct_light(stage, out.tree, e, noise_on(e), room);
                 }
             },
-            [&](std::size_t i) -> NoisyFit& { return found[i]; },
+            [&](std::size_t i) -> DirectFit& { return out.fit[active[i]]; },
             {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
-        out.fit.resize(out.tree.size()), noise.resize(out.tree.size());
-        for (std::size_t i = 0; i < active.size(); ++i)
-            out.fit[active[i]] = found[i].fit, noise[active[i]] = is_crowd ? found[i].noise : 0;
         if (options.may_give_up && stop.requested()) return {};
         if (depth == 0 && !many) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
         if (depth == 0) share_in = shares_by_room(stage, out, active, options.tolerance);
         if (depth == options.max_depth || stop.requested()) break;
-        const double least = is_crowd ? share_in_crowd(out, noise, share * stage.area / mean_area) : 0;
+        const double least = is_crowd ? share_in_crowd(out, share * stage.area / mean_area) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            if (error_of_shape(out, noise, e) <= std::max(least, allowed_on(e))) continue;
+            if (out.tree.area(e) * out.fit[e].misfit_squared <= std::max(least, allowed_on(e))) continue;
             if (options.least_area && out.tree.area(e) < 2 * *options.least_area) continue;
             for (ElementId child : refine_element(out.tree, e)) fresh.push_back(child);
         }
