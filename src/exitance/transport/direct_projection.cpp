@@ -1,7 +1,6 @@
 #include "exitance/transport/direct_projection.hpp"
 
 #include "exitance/basis/element_fit.hpp"
-#include "exitance/core/error_share.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/direct/sampled_light.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -264,13 +263,6 @@ std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& l
     return out;
 }
 
-/// Of a bound on the sum of the leaves' squared errors, (W/m^2)^2 m^2.
-double share_in_crowd(const DirectProjection& light, double bound) {
-    std::vector<double> errors;
-    for (ElementId e : light.tree.leaves()) errors.push_back(light.tree.area(e) * light.fit[e].misfit_squared);
-    return share_of_crowd(std::move(errors), bound);
-}
-
 }  // namespace
 
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
@@ -309,13 +301,6 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         const double relative = stage.rooms.importance(out.tree, e) / stage.rooms.weight(out.tree, e);
         return share_in[stage.rooms.of(out.tree, e)] / relative;
     };
-    // Noise of small elements is small by itself, and that of large ones not to be less the more of those there are.
-    const bool is_crowd = stage.rooms.count() == 0 && ErrorShare::is_crowd(active.size(), stage.pieces.size());
-    const auto noise_on = [&](ElementId e) {  // (W/m^2)^2
-        const double of_area =
-            share * std::min(1.0, stage.area / (ErrorShare::most_even * out.tree.area(e))) / mean_area;
-        return is_crowd ? std::max(allowed_on(e) / out.tree.area(e), of_area) : allowed_on(e) / out.tree.area(e);
-    };
     for (int depth = 0; !active.empty(); ++depth) {
         out.fit.resize(out.tree.size());
         shared_ranges(
@@ -333,9 +318,10 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
                         fit = stop.seconds_overdue() < time_for_rays ? fit_by_rays(stage, out.tree, e, sampled)
                                                                      : DirectFit();
                     else if (many)
-                        fit = fit_strong_light(stage, out.tree, e, noise_on(e), rays_of(e), sampled, room);
+                        fit = fit_strong_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), rays_of(e),
+                                               sampled, room);
                     else
-                        fit = fit_direct_light(stage, out.tree, e, noise_on(e), room);
+                        fit = fit_direct_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), room);
                 }
             },
             [&](std::size_t i) -> DirectFit& { return out.fit[active[i]]; },
@@ -344,10 +330,9 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         if (depth == 0 && !many) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
         if (depth == 0) share_in = shares_by_room(stage, out, active, options.tolerance);
         if (depth == options.max_depth || stop.requested()) break;
-        const double least = is_crowd ? share_in_crowd(out, share * stage.area / mean_area) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            if (out.tree.area(e) * out.fit[e].misfit_squared <= std::max(least, allowed_on(e))) continue;
+            if (out.tree.area(e) * out.fit[e].misfit_squared <= allowed_on(e)) continue;
             if (options.least_area && out.tree.area(e) < 2 * *options.least_area) continue;
             for (ElementId child : refine_element(out.tree, e)) fresh.push_back(child);
         }
