@@ -149,15 +149,16 @@ TEST(DistantLight, BehindACrowdRaysFindWhatExactLightDoes) {
     DirectLight::Workspace room;
     ReceiverLight light;
     stage.direct.prepare(scene.regions()[own].loops[0], n, own, light, room);
-    ReceiverLight rest;
-    const CrowdedLight::Crowd crowd = stage.crowded.prepare(scene.regions()[own].loops[0], n, own, 20, rest, room);
-    ASSERT_FALSE(crowd.empty());
+    ReceiverLight rest = light;
+    unsigned rays = 0;
+    const auto crowded = stage.crowded.take_crowded(rest, {0, 0, 0}, 20, room, rays);
+    ASSERT_FALSE(crowded.empty());
     double sum = 0, squares = 0, variance = 0;
     for (double x = -2; x < 2; x += 0.23)
         for (double y = -2; y < 2; y += 0.31) {
-            const Point place{x, y, 0};
-            const CrowdedLight::Estimate more = stage.crowded.at(rest, crowd, std::span(&place, 1), room)[0];
-            EXPECT_EQ(more.irradiance, more.parallel);
+            Spectrum from_outside;
+            const CrowdedLight::Estimate more = stage.crowded.at(rest, crowded, {x, y, 0}, rays, room, &from_outside);
+            EXPECT_EQ(more.irradiance, from_outside);
             const Spectrum by_rays = more.irradiance + stage.direct.irradiance(rest, {x, y, 0}, room);
             const Spectrum exact = stage.direct.irradiance(light, {x, y, 0}, room);
             const double error = mean(by_rays) - mean(exact);

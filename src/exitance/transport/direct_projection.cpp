@@ -41,32 +41,24 @@ void count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit& 
 }
 
 /// Exact, but where rays find what is hidden for less (`CrowdedLight`). `allowed`: mean square of w (E - polynomial)
-/// that noise may leave; 0: exact. `named`: the sources to look at; none: all, and beams.
+/// that noise may leave; 0: exact.
 DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, ReceiverLight& light,
-                     DirectLight::Workspace& workspace,
-                     const std::vector<DirectLight::SourceName>* named = nullptr) {
-    const RegionId region = tree.region(e);
-    const double w = mean(light_weight(stage.scene.material(region)));
-    const CrowdedLight::Crowd crowd = stage.crowded.prepare(tree.outline(e), stage.scene.regions()[region].plane.n,
-                                                            region, allowed / (w * w), light, workspace, named);
-    if (light.is_dark() && crowd.empty()) return {};
-    std::vector<CrowdedLight::Estimate> by_rays;
-    if (!crowd.empty()) {
-        std::vector<Point> places;
-        for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::fine))
-            places.push_back(tree.patch(e).at(place.uv));
-        by_rays = stage.crowded.at(light, crowd, places, workspace);
-    }
-    double noise = 0;
-    std::size_t next = 0;
+                     DirectLight::Workspace& workspace) {
+    if (light.is_dark()) return {};
+    const double w = mean(light_weight(stage.scene.material(tree.region(e))));
+    unsigned rays = 0;
+    const std::vector<CrowdedLight::Source> crowded =
+        stage.crowded.take_crowded(light, tree.patch(e).at(tree.centre(e)), allowed / (w * w), workspace, rays);
+    double noise = 0, places = 0;
     DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
-        const Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
-        if (crowd.empty()) return E;
-        const CrowdedLight::Estimate& more = by_rays[next++];
-        noise += more.variance, parallel += more.parallel;
-        return E + more.irradiance;
+        Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
+        if (!crowded.empty()) {
+            const CrowdedLight::Estimate more = stage.crowded.at(light, crowded, x, rays, workspace, &parallel);
+            E += more.irradiance, noise += more.variance, ++places;
+        }
+        return E;
     });
-    if (noise > 0) count_noise(tree, e, w * w * noise / static_cast<double>(next), out);
+    if (noise > 0) count_noise(tree, e, w * w * noise / places, out);
     return out;
 }
 
@@ -110,11 +102,16 @@ DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementI
                            DirectFitRoom& room) {
     if (suits_clusters(stage, tree, e, allowed, room.clustered))
         return fit_clusters(stage, tree, e, allowed, room.clustered);
+    const RegionId region = tree.region(e);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, room.light,
+                         room.clustered.exact);
     return fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
 }
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace) {
+    const RegionId region = tree.region(e);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, light, workspace);
     return fit_values(stage, tree, e, 0, light, workspace);
 }
 
@@ -169,7 +166,9 @@ DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementI
     const SampledLight::Estimate& of = sampled(tree, e, light_weight(stage.scene.material(region)), allowed, rays);
     if (of.strong.size() > few_strong && suits_clusters(stage, tree, e, allowed, room.clustered))
         return fit_clusters(stage, tree, e, allowed, room.clustered);
-    DirectFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact, &of.strong);
+    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, of.strong, room.light,
+                         room.clustered.exact);
+    DirectFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
     for (Spectrum& corner : out.corners) corner += of.weak;
     out.mean += of.weak;
     // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
