@@ -41,7 +41,7 @@ double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDeman
     const double share =
         demand.tolerance * light_near(e, demand) * std::sqrt(mean_area_ / stage_.counted_area(tree_, e));
     if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
-    return std::min(share, std::max(demand.relative_tolerance * light, calibrated::dim_light_share * demand.tolerance));
+    return std::min(share, std::max(demand.relative_tolerance * light, calibrated::minor_misfit * demand.tolerance));
 }
 
 bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
@@ -152,7 +152,7 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
     const std::vector<StraightLeaf> straight = add_straight(
         out, tree_.leaves(), [&](ElementId e) -> const SampledElement& { return sampled_[e]; },
         [&](ElementId e) { return stage_.scene.material(tree_.region(e)).reflectance; },
-        [&](ElementId e) { return calibrated::straightening_share * allowed_misfit(e, sampled_[e].light, demand); });
+        [&](ElementId e) { return calibrated::minor_misfit * allowed_misfit(e, sampled_[e].light, demand); });
     report.leaves.resize(out.tree.size());
     for (const auto [leaf, of] : straight) {
         const SampledElement& s = sampled_[of];

@@ -204,12 +204,12 @@ TEST(Classical, ShootingCutsPatchesThatContactsHaveCut) {
     // Boxes stand on the floor: their outlines cut it into cells, which are no parallelograms.
     const Scene scene = built_scene("cornell");
     const ClassicalOptions aligned = carried_raw(false);
-    SolveOptions o{.method = Method::matrix, .mesh_size = 0.1, .residual = 1e-3, .min_area = 1e-3};
+    SolveOptions o{.method = Method::matrix, .mesh_size = 0.1, .residual = 1e-3};
     const Solution matrix = solve(scene, o, aligned).solution;
     const std::vector<ProbePoint> places{
         {{0.45, 0.5, 0}, {0, 0, 1}}, {{0.04, 0.2, 0}, {0, 0, 1}}, {{0.5, 0.05, 0}, {0, 0, 1}}};
     const std::vector<Light> expected = RadiosityFunction(matrix).at(places);
-    o.method = Method::substructuring;
+    o.method = Method::substructuring, o.min_area = 1e-3;
     for (const ShootingReceivers receivers : {ShootingReceivers::middle, ShootingReceivers::vertex}) {
         ClassicalOptions c = aligned;
         c.receivers = receivers, c.refine_gradient = 5;

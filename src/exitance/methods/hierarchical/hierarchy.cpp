@@ -98,7 +98,7 @@ void Hierarchy::refine_panes_alike() {
     const Scene& scene = input.stage.scene;
     if (!scene.has_diffusing_panes()) return;
     NodalField* const also[] = {&reflected_direct};
-    constexpr double as_small = 0.75;  // of the area of an element behind
+    constexpr double as_small = 0.75;  // of the area behind; given by cuts, which leave half or less
     const double least = input.options.min_area.value_or(calibrated::least_link_area * input.stage.area);
     while (!input.stop.requested()) {
         const std::vector<ElementId> ends = sites.ends();

@@ -74,7 +74,7 @@ void Solver::project_direct() {
 
 void Solver::project_coarsely() {
     const Knobs fine =
-        std::exchange(knobs_, knobs_for_error(calibrated::coarse_light_error, stage_.lit_pieces(), options_));
+        std::exchange(knobs_, knobs_for_error(calibrated::interrupted_error, stage_.lit_pieces(), options_));
     project_direct();
     knobs_ = fine;
 }

@@ -23,8 +23,10 @@ std::array<Vec2, value_count> places_of_values(std::size_t longest) {
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec2 a = corner[i], b = corner[(i + 1) % 3];
         out[i] = a, out[3 + i] = 0.5 * (a + b);
+        // Given by halving edges twice.
         out[6 + 2 * i] = 0.75 * a + 0.25 * b, out[7 + 2 * i] = 0.25 * a + 0.75 * b;
     }
+    // Given by the halving of the line that bisects the longest edge.
     out[12] = 0.25 * (corner[longest] + corner[(longest + 1) % 3]) + 0.5 * corner[(longest + 2) % 3];
     return out;
 }
@@ -85,8 +87,9 @@ struct SectorSlopes {
         for (std::size_t b = 0; b < bands; ++b) right[b] = right[b] + slope[b] * d;
     }
     void factor() {
-        constexpr double rounding = 1e-14;  // slivers say nothing across themselves
-        const double least = rounding * (xx + yy) + 1e-300;
+        // Both given by the rounding of doubles: slivers say nothing across themselves.
+        constexpr double rounding = 1e-14, smallest = 1e-300;
+        const double least = rounding * (xx + yy) + smallest;
         l_xx = std::sqrt(xx + least), l_xy = xy / l_xx;
         l_yy = std::sqrt(std::max(yy + least - l_xy * l_xy, least));
     }
@@ -116,7 +119,7 @@ void add_agreement(Rows& rows, std::span<const SectorSlopes> sectors, std::size_
             for (std::size_t i = 0; i < row.size(); ++i) product += row[i] * other[i];
             for (std::size_t i = 0; i < row.size(); ++i) row[i] -= product * other[i];
         }
-    constexpr double dependent = 1e-7;
+    constexpr double dependent = 1e-7;  // given by rounding: the root of that of slopes
     const double after = norm_of();
     if (!(after > dependent * before)) return;
     for (double& x : row) x /= after;

@@ -200,7 +200,10 @@ TEST(DiscontinuityMesh, CloughAndTochersElementsHoldTheErrorAskedFor) {
         const MeshError error = error_of(s);
         EXPECT_LE(error.rms, 0.003);
         EXPECT_LE(error.largest, 0.006);
-        EXPECT_LT(s.statistics.energy.defect, 0.01);
+        // The scene is open, and what escapes is told by few rays: flux is compared with that of quadratic elements.
+        options.discontinuity.element = MeshElement::quadratic;
+        const double quadratic = solved(built_scene(name), options).statistics.energy.absorbed;
+        EXPECT_NEAR(s.statistics.energy.absorbed, quadratic, 0.003 * quadratic);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/discontinuity/exact_places.hpp"
 
@@ -81,7 +82,7 @@ std::array<LayerTriangles, bands> flat_triangles(const SixNodeMesh& mesh, std::s
 
 /// Light of one colour: that and its mean over the bands.
 bool join_bands(std::array<LayerTriangles, bands>& of_band, Spectrum& colour) {
-    constexpr double rounding = 1e-6;  // of 32-bit floats
+    constexpr double rounding = 1e-6;  // given by 32-bit floats
     Spectrum sum;
     double largest = 0;
     const auto for_all = [&](const auto& visit) {
@@ -156,12 +157,12 @@ std::size_t winged_edge_bytes(const SixNodeMesh& mesh) {
 
 LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& options, LayersReport& report,
                               const StopRequest& stop) {
-    constexpr double share = 0.9;  // what is measured at places is not all of it
-    constexpr double rounding_of_halves = 1.0 / 2048, negligible = 0.25;
+    const double share = calibrated::layers_share;
+    constexpr double rounding_of_halves = 1.0 / 2048;
     const ExactPlaces places(stage, options.direct_weight, options.indirect, options.seed, stop);
     const std::vector<LayerSource> sources = sources_of(stage);
     const LightLayer::Form form =
-        rounding_of_halves <= negligible * options.error ? LightLayer::Form::halves : LightLayer::Form::floats;
+        4 * rounding_of_halves <= options.error ? LightLayer::Form::halves : LightLayer::Form::floats;
     Stage alone(stage.scene);
     const double together = std::sqrt(static_cast<double>(std::max<std::size_t>(1, sources.size())));
     DiscontinuityOptions one = options;
@@ -191,7 +192,7 @@ LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& op
         });
         report.error = places.mean_light() > 0 ? error / places.mean_light() : 0;
         if (report.error <= share * options.error || attempt == most_attempts) return out;
-        one.error *= 0.7 * share * options.error / report.error;
+        one.error *= calibrated::attempt_aim * share * options.error / report.error;
     }
 }
 
