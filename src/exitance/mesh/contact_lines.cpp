@@ -195,7 +195,8 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree,
     // Strips lie beside the edge that they begin at, over parts that others have cut off from it, too.
     // They are worth their number where all together they are a noticeable part of an element.
     constexpr double noticeable = 0.1;  // of its width
-    const double lowest = std::max(10 * tolerance_, noticeable / deepest_strip * std::sqrt(area_before_contacts(tree, e)));
+    const double lowest =
+        std::max(10 * tolerance_, noticeable / deepest_strip * std::sqrt(area_before_contacts(tree, e)));
     const double reach = deepest_strip * gap;
     Box around = box;
     around.lo -= Vec3{reach, reach, reach}, around.hi += Vec3{reach, reach, reach};
