@@ -38,6 +38,13 @@ TEST(ProgramUsage, OptionsOfGrowingCellsAreErrorsWithOtherMethods) {
     }
 }
 
+TEST(ProgramUsage, OptionsThatAMethodDoesNotObeyNameTheMethodsThatDo) {
+    const Finished run = run_program({"solve", "room.obj", "--method", "hierarchical", "--overshooting", "-o", "s.h5"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("--overshooting"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("progressive, substructuring"), std::string::npos) << run.err;
+}
+
 TEST(ProgramUsage, SolvingIntoAMeshOrAPictureNamesTheVerbThatMakesIt) {
     for (const auto& [name, verb] : {std::pair{"s.vtu", "export"}, {"s.glb", "export"}, {"s.png", "render"}}) {
         const Finished run = run_program({"solve", "room.obj", "-o", name});

@@ -13,6 +13,7 @@
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
+#include "exitance/methods/plan/obedience.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
@@ -82,6 +83,17 @@ void share_options(SolveArguments& arguments) {
         if (!*arguments.classical.gather) arguments.options.smoothing = false;
         arguments.classical.gather.reset();
     }
+    // Exact visible parts within links are a classical form, whether or not another of its options is given.
+    const SolveOptions& o = arguments.options;
+    if (o.visibility == VisibilityKind::exact && !o.task_engine && !o.local_pass && !arguments.classical.any())
+        arguments.classical.direct = ClassicalDirect::apart;
+}
+
+/// Forms with a path of their own have checks of their own.
+Result<void> check_methods(const SolveArguments& arguments) {
+    const bool of_its_own = arguments.classical.any() || arguments.options.task_engine ||
+                            arguments.options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
+    return of_its_own ? Result<void>() : check_obedience(arguments.options);
 }
 
 }  // namespace
@@ -94,6 +106,7 @@ Result<void> settle_options(SolveArguments& arguments) {
     if (settled) settled = read_importance(arguments);
     if (settled) settled = read_sky(arguments);
     if (settled) settled = check_classical(arguments);
+    if (settled) settled = check_methods(arguments);
     if (settled) settled = check_processes(arguments);
     if (settled) settled = check_light_groups(arguments);
     if (settled) settled = check_ending(arguments.output);

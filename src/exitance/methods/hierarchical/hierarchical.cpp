@@ -28,12 +28,6 @@ LinkSites::Held held_by(const MethodInput& input, HierarchyBasis kind) {
     return wants_clusters(input) || has_means ? LinkSites::Held::all : LinkSites::Held::roots;
 }
 
-/// Does what was asked for say how links are to be found or judged, or deliver what they hold?
-bool asks_for_judged_links(const SolveOptions& o) {
-    return o.basis || o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing ||
-           !o.triage || o.visibility != VisibilityKind::automatic || o.clusters || o.min_area;
-}
-
 /// Are links alone asked for, or do polynomials give the light as exactly as it has to be? That the scene decides, not
 /// how far its links are refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather) are
 /// surer where surfaces meet, unless very little error is asked for.
@@ -85,6 +79,11 @@ GlobalLight solve_over_links(const MethodInput& input, HierarchyBasis kind) {
 }
 
 }  // namespace
+
+bool asks_for_judged_links(const SolveOptions& o) {
+    return o.basis || o.epsilon || o.oracle != LinkOracle::transport || !o.importance.empty() || o.smoothing ||
+           !o.triage || o.visibility != VisibilityKind::automatic || o.clusters || o.min_area;
+}
 
 bool links_outgrow_memory(std::size_t pieces, const SolveOptions& options) {
     constexpr double see_each_other = 0.5;

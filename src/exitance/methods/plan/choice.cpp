@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/methods/plan/obedience.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/transport/distributed.hpp"
 
@@ -46,12 +47,19 @@ bool runs_over_processes(Relaxation relaxation) {
 }
 
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
-    if (options.method == Method::automatic && stage.scene.has_diffusing_panes()) {
+    const bool is_free = options.method == Method::automatic;
+    if (is_free && stage.scene.has_diffusing_panes() && obeys_all(Method::matrix, options)) {
         MethodChoice choice{options, "counts both sides of diffusing panes"};
         choice.options.method = Method::matrix;
         return choice;
     }
     MethodChoice choice = choose_alone(stage, options);
+    const Method other = first_that_obeys(options);
+    if (is_free && other != Method::automatic && !obeys_all(choice.options.method, options)) {
+        choice.options = options;
+        choice.options.method = other;
+        choice.why = "obeys all options that were given";
+    }
     if (processes() == 1 || choice.options.method == Method::matrix) return choice;
     choice.why = fmt::format("{} would be the choice ({}), but does not run over processes",
                              name_in(method_names, choice.options.method), choice.why);
