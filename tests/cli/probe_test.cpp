@@ -89,6 +89,20 @@ TEST_F(ProgramProbe, PathsGiveTheLightThatTheSolutionGivesWithTheirStandardError
     EXPECT_NEAR(field(lines[1], 6) / field(own, 6), 1, 0.15);
 }
 
+TEST_F(ProgramProbe, PartsOfTheSolutionAreUsageErrorsBesideWhatHasNone) {
+    const std::vector<std::vector<std::string>> pairs{{"--reference", "4", "--component", "direct"},
+                                                      {"--reference", "4", "--interpolant"},
+                                                      {"--interpolant", "--component", "indirect"},
+                                                      {"--seed", "2"}};
+    for (const std::vector<std::string>& pair : pairs) {
+        std::vector<std::string> words{"probe", solution(), "--points", "-"};
+        words.insert(words.end(), pair.begin(), pair.end());
+        const Finished run = run_program(words, points);
+        EXPECT_EQ(run.status, 2) << pair.front();
+        EXPECT_EQ(run.out, "");
+    }
+}
+
 TEST_F(ProgramProbe, ABadPointIsBadInputWithItsLine) {
     const Finished run =
         run_program({"probe", solution(), "--points", "-"}, "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n1,oops,0,0,0,1\n");

@@ -33,6 +33,8 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
     EXPECT_EQ(run.status, 2);
     EXPECT_NE(run.err.find(".jpg"), std::string::npos) << run.err;
     EXPECT_EQ(run_program({"render", solution, "-o", folder / "room.exr", "--isolux"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", folder / "room.exr", "--exposure", "1"}).status, 2);
+    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--mesh=all"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--gather", "5"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1,1 2,2,2 175"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1 2,2"}).status, 2);
@@ -42,6 +44,23 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--size", "0x25"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--samples", "100000"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", folder / "absent/room.png", "--size", "4x4"}).status, 5);
+}
+
+TEST(ProgramRender, DrawsTheMethodsOwnElementsOrThoseOfExport) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const auto render = [&](const std::string& name, std::vector<std::string> mesh) {
+        std::vector<std::string> words = {"render", "-o", folder / name, "--size", "80x50", "--samples", "1", "-q"};
+        words.insert(words.end(), mesh.begin(), mesh.end());
+        const Finished run = run_program(words);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return read_text(folder / name);
+    };
+    const std::string none = render("a.png", {solution}), own = render("a.png", {"--mesh", solution}),
+                      exported = render("a.png", {solution, "--mesh", "export"});
+    EXPECT_NE(none, own);
+    EXPECT_NE(own, exported) << "exported elements follow direct light, too";
 }
 
 TEST(ProgramRender, ShowsOrdersOfEdgesAndShadowClassesOfADiscontinuityMesh) {

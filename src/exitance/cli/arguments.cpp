@@ -37,6 +37,17 @@ Error usage_error(const CLI::App& app, const std::string& what) {
     return error;
 }
 
+/// "--mesh export" as one word: what follows a flag is its value only where it says so.
+std::vector<std::string> with_flag_values(const std::vector<std::string>& words) {
+    std::vector<std::string> out;
+    for (const std::string& word : words)
+        if (word == "export" && !out.empty() && out.back() == "--mesh")
+            out.back() += "=export";
+        else
+            out.push_back(word);
+    return out;
+}
+
 template <class Arguments>
 Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words) {
     Arguments arguments;
@@ -44,7 +55,9 @@ Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words) 
     declare_common(app, arguments);
     app.allow_extras();
     try {
-        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+        std::vector<std::string> backwards = with_flag_values(words);
+        std::reverse(backwards.begin(), backwards.end());
+        app.parse(std::move(backwards));
     } catch (const CLI::CallForHelp&) {
         return Parsed(Information{app.help()});
     } catch (const CLI::ParseError& error) {

@@ -104,7 +104,8 @@ struct RenderArguments : CommonArguments {
     bool isolux = false;
     std::size_t samples = 16;  ///< Rays a pixel.
     std::size_t gather = 0;    ///< Rays of a final gather at each of them.
-    bool mesh = false;         ///< With the elements' edges.
+    /// Elements whose edges are drawn: "export": those that export writes; "true": the method's own; empty: none.
+    std::string mesh;
     bool shadow_classes = false;
     std::string path;  ///< A camera a row, for numbered pictures; empty: one picture.
     int threads = 0;

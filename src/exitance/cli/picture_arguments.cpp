@@ -193,7 +193,11 @@ void declare(CLI::App& app, RenderArguments& arguments) {
               "Final gather by so many rays at every sample, in place of the elements' indirect light; a power of two");
     declare_display(app, arguments);
     declare_unit(app, arguments.unit);
-    app.add_flag("--mesh", arguments.mesh, "Draw the elements' edges; those of a discontinuity mesh coloured by order")
+    app.add_flag(
+           "--mesh", arguments.mesh,
+           "Draw the edges of the method's own elements, those of a discontinuity mesh coloured by order; '--mesh "
+           "export': of those that export writes")
+        ->check(CLI::IsMember({"true", "export"}).description(""))
         ->group("PNG");
     app.add_flag("--shadow-classes", arguments.shadow_classes,
                  "Faces of a discontinuity mesh as lit, penumbra and umbra, with a legend")

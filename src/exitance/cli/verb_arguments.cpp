@@ -21,11 +21,12 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
     app.add_option("-o,--output", arguments.output, "CSV with E_* and B_*; default - for standard output")
         ->type_name("FILE");
     app.add_flag("--interpolant", arguments.interpolant, "Evaluate what export writes, not the full function");
-    add_choice(app, "--component", component_names, arguments.component, "Default total");
+    add_choice(app, "--component", component_names, arguments.component, "Of the full function; default total");
     declare_unit(app, arguments.unit);
-    add_count(app, "--reference", arguments.reference_paths, 1,
-              "N unbiased paths a point in place of the solution, with their standard errors");
-    add_count(app, "--seed", arguments.seed, 0, "Of the paths; default 1");
+    CLI::Option* const reference =
+        add_count(app, "--reference", arguments.reference_paths, 1,
+                  "N unbiased paths a point in place of the solution, with their standard errors");
+    add_count(app, "--seed", arguments.seed, 0, "Of the paths; default 1")->needs(reference);
     declare_work(app, arguments, arguments.threads);
 }
 
@@ -47,7 +48,8 @@ void declare(CLI::App& app, MixArguments& arguments) {
 
 void declare(CLI::App& app, ExportArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output, "By ending: .glb, .hdf or .vtkhdf, .vtu, .obj, .csv")
+    app.add_option("-o,--output", arguments.output,
+                   "By ending: .glb, .hdf or .vtkhdf, .vtu, .obj, .csv; .curves.csv: curves of a discontinuity mesh")
         ->type_name("FILE")
         ->required();
     app.add_option(

@@ -57,10 +57,23 @@ Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene
     return writer.commit();
 }
 
+/// Options that would be read by nothing.
+std::optional<Error> find_misuse(const ProbeArguments& a) {
+    const bool is_part = a.component != Component::total;
+    const auto usage = [](const char* where, const char* message) {
+        return Error{ErrorCode::usage, message, where, "leave one of them out"};
+    };
+    if (a.reference_paths > 0 && a.interpolant) return usage("--interpolant", "is of the solution, --reference is not");
+    if (a.reference_paths > 0 && is_part) return usage("--component", "is of the solution; paths bring all light");
+    if (a.interpolant && is_part) return usage("--component", "is of the full function; export writes all light");
+    return std::nullopt;
+}
+
 }  // namespace
 
 /// exitance probe SOLUTION --points POINTS -o LIGHT
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
+    if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     const StopRequest stop;  // signals end the program at once
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);

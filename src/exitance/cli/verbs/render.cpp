@@ -41,9 +41,13 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
         return usage("has nothing to colour", "--scale, --bands, --palette", "they go with --false-colour or --isolux");
     if (a.unit.choice != UnitChoice::scene && !a.false_colour && !a.isolux)
         return usage("has no numbers to tell", "--unit", "it goes with --false-colour or --isolux");
-    if (end != ".png" && !films && (a.false_colour || a.isolux || a.mesh || a.shadow_classes))
-        return usage(fmt::format("{} holds radiance, and nothing is drawn into it", end), a.output,
-                     "--false-colour, --isolux, --mesh and --shadow-classes go with .png");
+    const bool is_drawn = a.false_colour || a.isolux || !a.mesh.empty() || a.shadow_classes;
+    const bool is_toned = a.exposure != 0 || a.exposure_scale || a.tone_map != ToneCurve::filmic;
+    if (end != ".png" && !films && (is_drawn || is_toned))
+        return usage(fmt::format("{} holds radiance, and nothing is drawn into it or toned", end), a.output,
+                     "--false-colour, --isolux, --mesh, --shadow-classes, --exposure and --tone-map go with .png");
+    if (is_toned && (a.false_colour || a.shadow_classes))
+        return usage("have no part in false colours and classes", "--exposure, --tone-map", "leave them out");
     if (a.false_colour && a.shadow_classes)
         return usage("shows classes, --false-colour values, and a pixel has one colour", "--shadow-classes",
                      "make a picture of each");
@@ -78,6 +82,12 @@ Image develop(const RenderArguments& arguments, const Picture& picture, ImageTex
     return display_image(picture, tones);
 }
 
+/// Elements of the method, or those that `export` writes; where direct light is all, there are no others.
+const ElementTree& shown_elements(const RenderArguments& arguments, const Solution& solution) {
+    const bool of_export = arguments.mesh == "export" || solution.bounces == 0;
+    return of_export ? solution.interpolant.tree : solution.indirect.tree;
+}
+
 Result<void> write_display(const RenderArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                            const Picture& picture, Terminal& terminal) {
     ImageTexts texts{{"Software", "exitance"}, {"Camera", describe(camera)}};
@@ -88,17 +98,18 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     const Picture shown = is_converted ? in_unit(picture, unit) : picture;
     MeshView view;
     std::vector<KeyEntry> key;
-    if (!mesh.empty() && (arguments.mesh || arguments.shadow_classes))
+    if (!mesh.empty() && (!arguments.mesh.empty() || arguments.shadow_classes))
         view = view_mesh(mesh, scene, light.stage().tracer, camera, arguments.size);
     if (arguments.shadow_classes) key = shadow_class_key();
     Image image = arguments.shadow_classes
                       ? shadow_class_image(mesh, scene, view)
                       : develop(arguments, arguments.false_colour ? shown : picture, texts, terminal);
-    if (arguments.mesh && !mesh.empty()) {
+    if (!arguments.mesh.empty() && !mesh.empty()) {
         draw_ordered_edges(image, mesh_edges(mesh, view));
         for (const KeyEntry& entry : edge_order_key()) key.push_back(entry);
-    } else if (arguments.mesh)
-        draw_edges(image, element_edges(light.solution(), light.stage().tracer, camera, arguments.size));
+    } else if (!arguments.mesh.empty())
+        draw_edges(image, element_edges(shown_elements(arguments, light.solution()), scene, light.stage().tracer,
+                                        camera, arguments.size));
     if (!key.empty()) draw_key(image, key);
     if (arguments.isolux)
         draw_isolux(image, shown, make_colour_scale(shown, Quantity::illuminance, arguments.scale),

@@ -28,7 +28,7 @@ Result<void> export_solution(const Solution& solution, const std::string& path) 
         known += std::string(known.empty() ? "" : ", ") + format.ending;
     }
     return Error{ErrorCode::usage, "the ending of " + path + " names no format to export to", path,
-                 "endings known: " + known};
+                 "endings known: " + known + ", .curves.csv"};
 }
 
 }  // namespace exitance

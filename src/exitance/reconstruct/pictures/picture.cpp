@@ -205,9 +205,9 @@ Picture take_picture(const RadiosityFunction& light, const PictureOptions& optio
     return picture;
 }
 
-std::vector<bool> element_edges(const Solution& solution, const RayTracer& tracer, const Camera& camera,
-                                PictureSize size) {
-    const ElementLocator locator(solution.interpolant.tree, solution.scene.regions().size());
+std::vector<bool> element_edges(const ElementTree& tree, const Scene& scene, const RayTracer& tracer,
+                                const Camera& camera, PictureSize size) {
+    const ElementLocator locator(tree, scene.regions().size());
     const CameraRays rays(camera, size);
     std::vector<ElementId> seen(size.pixels());
     const auto width = static_cast<std::size_t>(size.width);

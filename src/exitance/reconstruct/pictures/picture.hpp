@@ -51,8 +51,8 @@ struct PictureOptions {
 Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
                      const StopRequest& stop);
 
-/// Marks the pixels at which one element of the solution's interpolant ends and the next one begins.
-std::vector<bool> element_edges(const Solution& solution, const RayTracer& tracer, const Camera& camera,
-                                PictureSize size);
+/// Marks the pixels at which one element of a tree over the scene's regions ends and the next one begins.
+std::vector<bool> element_edges(const ElementTree& tree, const Scene& scene, const RayTracer& tracer,
+                                const Camera& camera, PictureSize size);
 
 }  // namespace exitance
