@@ -47,8 +47,8 @@ constexpr const char* square = "echo $1 polygon $2 0 0 12 0 0 0 1 0 0 1 1 0 0 1 
 }  // namespace
 
 TEST_F(ScenePrograms, AreGivenTheirInputAndSayWhyTheyFail) {
-    make("genbox", "cat; echo \"$1 and $2\"\n");
-    const auto printed = run_scene_program({"genbox", "a b", "*"}, "first\n", "", never_);
+    make("genprism", "cat; echo \"$1 and $2\"\n");
+    const auto printed = run_scene_program({"genprism", "a b", "*"}, "first\n", "", never_);
     ASSERT_TRUE(printed) << printed.error().message;
     EXPECT_EQ(*printed, "first\na b and *\n") << "no shell has a hand in it";
     make("genrev", "echo 'it is Monday' >&2; echo more >&2; exit 3\n");
@@ -75,8 +75,8 @@ TEST_F(ScenePrograms, EndWhenAStopIsAskedFor) {
 
 TEST_F(ScenePrograms, RunOnlyWhereTheyAreAskedFor) {
     const std::string mark = folder_ / "mark";
-    make("genbox", std::string("touch ") + mark + "\n" + square);
-    const std::string text = std::string(grey) + "!genbox grey box 1 2 3\nlamp polygon l 0 0 9 0 0 1 1 0 1 0 1 1\n";
+    make("genprism", std::string("touch ") + mark + "\n" + square);
+    const std::string text = std::string(grey) + "!genprism grey box 1 2 3\nlamp polygon l 0 0 9 0 0 1 1 0 1 0 1 1\n";
     const CheckedScene refused = load(text, false);
     ASSERT_FALSE(refused.scene);
     EXPECT_NE(refused.scene.error().hint.find("--run-commands"), std::string::npos);
@@ -89,19 +89,19 @@ TEST_F(ScenePrograms, RunOnlyWhereTheyAreAskedFor) {
 }
 
 TEST_F(ScenePrograms, WhatTheyPrintGoesThroughXform) {
-    make("genbox", square);
+    make("genprism", square);
     const CheckedScene s = load(std::string(grey) +
-                                    "!genbox grey box 1 2 3 | xform -n two -t 0 0 1 -a 2 -t 5 0 0 | xform -s 2\n"
+                                    "!genprism grey box 1 2 3 | xform -n two -t 0 0 1 -a 2 -t 5 0 0 | xform -s 2\n"
                                     "lamp polygon l 0 0 9 0 0 9 1 0 9 0 1 9\n",
                                 true);
     ASSERT_TRUE(s.scene) << s.scene.error().message;
     ASSERT_EQ(s.scene->surfaces().size(), 5u);
     EXPECT_EQ(s.scene->outline(SurfaceId(2))[0], (Point{10, 0, 2}));
     EXPECT_EQ(s.scene->groups()[GroupId(0)], "two.box");
-    make("genbox", "echo grey polygon p 0 0 x\n");
-    const CheckedScene broken = load(std::string(grey) + "!genbox grey box 1 2 3\n", true);
+    make("genprism", "echo grey polygon p 0 0 x\n");
+    const CheckedScene broken = load(std::string(grey) + "!genprism grey box 1 2 3\n", true);
     ASSERT_FALSE(broken.scene);
-    EXPECT_EQ(broken.scene.error().where, std::string(folder_ / "s.rad") + ":3: '!genbox':1");
+    EXPECT_EQ(broken.scene.error().where, std::string(folder_ / "s.rad") + ":3: '!genprism':1");
 }
 
 TEST_F(ScenePrograms, SeveralFilesMakeAScene) {

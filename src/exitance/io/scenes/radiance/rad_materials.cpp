@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "exitance/io/files/text_lines.hpp"
 
@@ -26,6 +27,22 @@ std::size_t numbers_of(const std::string& type) {
     if (is_one_of(type, {"plastic", "metal"})) return 5;
     if (is_one_of(type, {"plastic2", "metal2", "glow"})) return 4;
     return 3;
+}
+
+/// Materials whose gloss a function or a table tells, as the plain ones that have the same diffuse parts; empty for
+/// others, and where numbers are missing. Of BRTDfunc the front counts, for both sides.
+std::optional<RadPrimitive> without_function(const RadPrimitive& p) {
+    RadPrimitive plain = p;
+    const bool passes = is_one_of(p.type, {"transfunc", "transdata"}), is_brtd = p.type == "BRTDfunc",
+               is_ashik = p.type == "ashik2";
+    const bool reflects = is_one_of(p.type, {"plasfunc", "plasdata", "metfunc", "metdata"});
+    const std::size_t least = passes ? 6 : is_brtd ? 9 : is_ashik ? 8 : 4;
+    if ((!passes && !is_brtd && !is_ashik && !reflects) || p.numbers.size() < least) return std::nullopt;
+    const std::vector<double>& n = p.numbers;
+    plain.type = passes ? "trans" : "plastic";
+    plain.numbers = {n[0], n[1], n[2], is_brtd || is_ashik ? 0 : n[3], 0};
+    if (passes) plain.numbers.insert(plain.numbers.end(), {n[4], n[5]});
+    return plain;
 }
 
 }  // namespace
@@ -81,6 +98,10 @@ void RadMaterials::add_glass(const RadPrimitive& p, const std::string& file) {
 /// Materials by their diffuse parts; false if the primitive is none.
 bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file) {
     const RadPlace at{file, p.line};
+    if (const std::optional<RadPrimitive> plain = without_function(p)) {
+        findings_.note(fmt::format("what a {} says beyond diffuse reflection", p.type), at);
+        return take_material(*plain, file);
+    }
     const bool reflects = is_one_of(p.type, {"plastic", "metal", "plastic2", "metal2", "trans", "trans2"});
     const bool emits = is_one_of(p.type, {"light", "glow", "illum", "spotlight"});
     const bool clear =

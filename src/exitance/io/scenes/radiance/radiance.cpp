@@ -12,6 +12,7 @@
 #include "exitance/io/files/scene_program.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/radiance/rad_box_command.hpp"
 #include "exitance/io/scenes/radiance/rad_command.hpp"
 #include "exitance/io/scenes/radiance/rad_emission.hpp"
 #include "exitance/io/scenes/radiance/rad_shapes.hpp"
@@ -29,6 +30,7 @@ struct Call {
     const std::string* name;  ///< Of the file; of a command's output what it came from.
     Affine to_world;
     std::string prefix;
+    std::string material;  ///< Of all its surfaces, in place of their own; empty: their own.
     int first_line = 0;    ///< SceneLines of its file.
     int command_line = 0;  ///< Of the command that printed it, in the same count; 0 for files.
     std::size_t depth = 0;
@@ -53,12 +55,13 @@ class RadianceReader {
   private:
     void read_text(std::string_view text, const Call& call);
     void run_command(const std::string& command, int line, const Call& call);
+    void read_copies(const std::vector<CommandWords>& stages, int line, const Call& call);
     /// A text and the transforms of its copies.
     struct Copied {
         const std::string* name = nullptr;
         const std::string* text = nullptr;
         int first_line = 0, command_line = 0;
-        std::string prefix;
+        std::string prefix, material;
         std::vector<Affine> copies{1};
     };
     Result<Copied> copied_by(const std::vector<CommandWords>& stages, int line, const Call& call);
@@ -186,8 +189,10 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
 }
 
 void RadianceReader::take(RadPrimitive p, const Call& call) {
-    if (is_rad_shape(p.type)) return take_surface(p, call);
-    if (p.type == "source") return take_source(p, call);
+    if (const bool is_surface = is_rad_shape(p.type); is_surface || p.type == "source") {
+        if (!call.material.empty()) p.modifier = call.material;
+        return is_surface ? take_surface(p, call) : take_source(p, call);
+    }
     materials_.take(std::move(p), *call.name, call.to_world);
 }
 
@@ -215,7 +220,7 @@ Result<void> RadianceReader::add_file(const std::string& name, Copied& out) {
 
 /// What a row of programs prints, each reading what the one before it prints.
 Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out) {
-    const bool is_known = is_sky_command(stages[0]) && stages.size() == 1;
+    const bool is_known = (is_sky_command(stages[0]) || is_box_command(stages[0])) && stages.size() == 1;
     if (!options_.run_commands && !is_known)
         return Error{
             ErrorCode::bad_input, fmt::format("the command '!{}' is not run", shown(stages[0][0])), "",
@@ -225,7 +230,7 @@ Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, in
     std::string text;
     for (const CommandWords& words : stages) {
         Result<std::string> printed =
-            is_known ? sky_command_output(words)
+            is_known ? is_box_command(words) ? box_command_output(words) : sky_command_output(words)
                      : run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
         // Options that are not read here are left to the program, where that may be run.
         if (is_known && !printed && options_.run_commands)
@@ -251,20 +256,21 @@ Result<RadianceReader::Copied> RadianceReader::copied_by(const std::vector<Comma
             for (const Affine& before : out.copies) copies.push_back(after * before);
         out.copies = std::move(copies);
         if (!xform.name.empty()) out.prefix = shown(xform.name) + "." + out.prefix;
+        if (!xform.material.empty()) out.material = xform.material;
     };
     std::size_t run = stages.size();
     std::vector<Xform> last;
     for (; run > 0 && stages[run - 1][0] == "xform"; --run) {
         Result<Xform> xform = parse_xform({stages[run - 1].begin() + 1, stages[run - 1].end()}, most_copies);
         if (!xform) return xform.error();
-        if (xform->file.empty() != (run > 1))
+        if (xform->files.empty() != (run > 1))
             return Error{ErrorCode::bad_input,
                          run > 1 ? "xform is given a file and what a command prints" : "xform is given no file", "",
                          ""};
         last.push_back(std::move(*xform));
     }
     const Result<void> added =
-        run > 0 ? add_output(std::span(stages).first(run), line, call, out) : add_file(last.back().file, out);
+        run > 0 ? add_output(std::span(stages).first(run), line, call, out) : add_file(last.back().files[0], out);
     if (!added) return added.error();
     std::size_t copies = 1;
     for (const Xform& xform : last) copies = std::min(2 * most_copies, copies * xform.copies.size());
@@ -280,11 +286,26 @@ void RadianceReader::run_command(const std::string& command, int line, const Cal
     if (call.depth >= deepest) return findings_.error(at, fmt::format("files call each other {} deep", deepest));
     const Result<std::vector<CommandWords>> stages = parse_command(command);
     if (!stages) return findings_.error(at, stages.error().message, stages.error().hint);
-    const Result<Copied> copied = copied_by(*stages, line, call);
-    if (!copied) return findings_.error(at, copied.error().message, copied.error().hint);
+    const CommandWords& first = stages->front();
+    const Result<Xform> xform =
+        first[0] == "xform" ? parse_xform({first.begin() + 1, first.end()}, most_copies) : Result<Xform>(Xform());
+    if (!xform || xform->files.size() < 2) return read_copies(*stages, line, call);
+    for (const std::string& file : xform->files) {
+        std::vector<CommandWords> of_one = *stages;
+        of_one.front() = {"xform"};
+        of_one.front().insert(of_one.front().end(), xform->options.begin(), xform->options.end());
+        of_one.front().push_back(file);
+        read_copies(of_one, line, call);
+    }
+}
+
+void RadianceReader::read_copies(const std::vector<CommandWords>& stages, int line, const Call& call) {
+    const Result<Copied> copied = copied_by(stages, line, call);
+    if (!copied) return findings_.error({*call.name, line}, copied.error().message, copied.error().hint);
     for (const Affine& copy : copied->copies) {
         if (findings_.failed()) return;  // once is enough to say what is wrong with a file
-        read_text(*copied->text, {copied->name, call.to_world * copy, call.prefix + copied->prefix, copied->first_line,
+        read_text(*copied->text, {copied->name, call.to_world * copy, call.prefix + copied->prefix,
+                                  call.material.empty() ? copied->material : call.material, copied->first_line,
                                   copied->command_line, call.depth + 1});
     }
 }
@@ -352,7 +373,7 @@ ReadScene RadianceReader::read() {
             break;
         }
         bytes_ += text->size();
-        read_text(*text, {&path, {}, "", first_line(path, *text), 0, 0});
+        read_text(*text, {&path, {}, "", "", first_line(path, *text), 0, 0});
         if (findings_.failed()) break;  // what it defines is missed by those that follow
     }
     if (!findings_.failed()) open_up();

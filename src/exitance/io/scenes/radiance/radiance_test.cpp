@@ -128,6 +128,43 @@ TEST_F(RadianceFiles, CommandsOfXformAreDoneHere) {
     EXPECT_EQ(mirrored.surfaces()[SurfaceId(0)].normal, (Normal{0, 0, -1}));
 }
 
+TEST_F(RadianceFiles, XformTakesSeveralFilesAndAMaterialForAll) {
+    ASSERT_TRUE(write_file(folder_ / "part.rad", std::string("lamp ") + square));
+    ASSERT_TRUE(
+        write_file(folder_ / "other.rad", "void plastic own 0 0 5 .1 .1 .1 0 0\n!xform -m own -t 5 0 0 part.rad\n"));
+    const Scene s = scene("!xform -m lamp -t 0 0 3 part.rad other.rad\n!xform -m grey part.rad\n");
+    ASSERT_EQ(s.surfaces().size(), 4u);  // what reflects does so on both sides
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_GT(mean(s.material(SurfaceId(i)).exitance), 0) << "the material of the outer command";
+        EXPECT_EQ(s.outline(SurfaceId(i))[0].z, 3);
+    }
+    EXPECT_EQ(mean(s.material(SurfaceId(2)).exitance), 0);
+}
+
+TEST_F(RadianceFiles, GlossByFunctionsLeavesTheDiffusePart) {
+    const Scene s = scene(
+        "void plasfunc a 2 f f.cal 0 4 .5 .4 .3 .2\na polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"
+        "void BRTDfunc b 10 0 0 0 0 0 0 0 0 0 . 0 9 .1 .2 .3 .1 .2 .3 0 0 0\nb polygon q 0 0 9 0 0 1 1 0 1 0 1 1\n"
+        "void transfunc c 2 f f.cal 0 6 .5 .5 .5 .1 .5 0\nc polygon r 0 0 9 0 0 2 1 0 2 0 1 2\n"
+        "void ashik2 d 4 0 0 1 . 0 8 .6 .6 .6 .1 .1 .1 9 9\nd polygon t 0 0 9 0 0 3 1 0 3 0 1 3\n");
+    ASSERT_EQ(s.surfaces().size(), 8u);
+    EXPECT_NEAR(s.material(SurfaceId(0)).reflectance[0], 0.8 * 0.5, 1e-15);
+    EXPECT_NEAR(s.material(SurfaceId(2)).reflectance[2], 0.3, 1e-15);
+    EXPECT_EQ(s.material(SurfaceId(6)).reflectance[1], 0.6);
+}
+
+TEST_F(RadianceFiles, PlainBoxesAreMadeHere) {
+    const Scene out = scene("!genbox lamp box 1 2 3\n"), in = scene("!genbox lamp box 1 2 3 -i | xform -t 5 0 0\n");
+    ASSERT_EQ(out.surfaces().size(), 6u);
+    ASSERT_EQ(in.surfaces().size(), 6u);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const SurfaceId id(i);
+        EXPECT_GT(dot(out.surfaces()[id].normal, centroid(out.outline(id)) - Point{0.5, 1, 1.5}), 0);
+        EXPECT_LT(dot(in.surfaces()[id].normal, centroid(in.outline(id)) - Point{5.5, 1, 1.5}), 0);
+    }
+    EXPECT_EQ(out.groups()[GroupId(0)], "box.1540");
+}
+
 TEST(Xform, ArraysMakeGridsAndIterationsRepeat) {
     const auto parsed = parse_xform({"-a", "2", "-t", "1", "0", "0", "-a", "3", "-t", "0", "1", "0", "f"}, 100);
     ASSERT_TRUE(parsed);
@@ -142,10 +179,11 @@ TEST(Xform, ArraysMakeGridsAndIterationsRepeat) {
 }
 
 TEST_F(RadianceFiles, OtherCommandsAreRefusedWithAWayOut) {
-    const CheckedScene s = load("!genbox grey box 1 2 3\n");
+    const CheckedScene s = load("!genbox grey box 1 2 3 -r 0.1\n");
     ASSERT_FALSE(s.scene);
     EXPECT_EQ(s.scene.error().where, folder_ / "s.rad:4");
     EXPECT_NE(s.scene.error().message.find("genbox"), std::string::npos);
+    EXPECT_NE(first_error("!genbox grey box 1 -2 3\n").find("'-2'"), std::string::npos);
     EXPECT_NE(s.scene.error().hint.find("!xform"), std::string::npos);
     EXPECT_NE(first_error("!xform a.rad | sort\n").find("not run"), std::string::npos);
     EXPECT_NE(first_error("!genbox grey box 1 2 3; rm -r /\n").find("it needs a shell"), std::string::npos);

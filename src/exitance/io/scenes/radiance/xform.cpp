@@ -106,6 +106,7 @@ Result<Xform> XformParser::parse() {
     Xform out;
     while (at_ < words_.size()) {
         const std::string& word = words_[at_++];
+        const std::size_t first = at_ - 1;
         if (word == "-t" || word == "-rx" || word == "-ry" || word == "-rz" || word == "-s" || word == "-mx" ||
             word == "-my" || word == "-mz") {
             const auto step = transform(word);
@@ -114,19 +115,18 @@ Result<Xform> XformParser::parse() {
         } else if (word == "-i" || word == "-a") {
             if (!start_stretch(word == "-a"))
                 return bad(fmt::format("xform's {} needs a count from 1 to {}", word, most_copies_));
-        } else if (word == "-n") {
-            if (at_ >= words_.size()) return bad("xform's -n lacks a name");
-            out.name = words_[at_++];
-        } else if (word == "-c" || word == "-e") {
-            continue;
-        } else if (word.starts_with("-")) {
+        } else if (word == "-n" || word == "-m") {
+            if (at_ >= words_.size()) return bad(fmt::format("xform's {} lacks a name", word));
+            (word == "-n" ? out.name : out.material) = words_[at_++];
+        } else if (word != "-c" && word != "-e" && word.starts_with("-")) {
             return bad(fmt::format("xform's option '{}' is not known", shown(word)),
-                       "known: -t -rx -ry -rz -s -mx -my -mz -i -a -n; run xform yourself and read what it writes");
-        } else if (!out.file.empty()) {
-            return bad("xform is given two files", "write a line for each");
-        } else {
-            out.file = word;
+                       "known: -t -rx -ry -rz -s -mx -my -mz -i -a -n -m; run xform yourself and read what it writes");
+        } else if (!word.starts_with("-")) {
+            out.files.push_back(word);
+            continue;
         }
+        out.options.insert(out.options.end(), words_.begin() + static_cast<std::ptrdiff_t>(first),
+                           words_.begin() + static_cast<std::ptrdiff_t>(at_));
     }
     lay_out(out.copies);
     return out;
@@ -141,8 +141,8 @@ Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t mos
 Result<Affine> parse_transform(const std::vector<std::string>& words) {
     const Result<Xform> parsed = XformParser(words, 1).parse();
     if (!parsed) return parsed.error();
-    if (!parsed->file.empty())
-        return Error{ErrorCode::bad_input, fmt::format("'{}' is no transform", shown(parsed->file)), "", ""};
+    if (!parsed->files.empty())
+        return Error{ErrorCode::bad_input, fmt::format("'{}' is no transform", shown(parsed->files[0])), "", ""};
     return parsed->copies[0];
 }
 
