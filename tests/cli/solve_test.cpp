@@ -94,6 +94,13 @@ TEST(ProgramSolve, AnUnwritableFolderEndsBeforeTheWorkWithoutAResult) {
     EXPECT_EQ(folder.count(), 2u) << "the scene's two files and nothing else";
 }
 
+TEST(ProgramSolve, WhatIsNoFileIsWrittenAndNotReadBack) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder);
+    EXPECT_EQ(run_program({"solve", scene, "-o", "/dev/null", "--error", "0.2", "-q"}).status, 0);
+    EXPECT_EQ(run_program({"solve", scene, "-o", "/dev/full", "--error", "0.2", "-q"}).status, 5);
+}
+
 TEST(ProgramSolve, NothingIsWrittenForABrokenScene) {
     const TemporaryFolder folder;
     const Finished run = run_program({"solve", write_broken_scene(folder), "-o", folder / "room.h5"});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -116,9 +117,11 @@ void drop_light(Solution& solution) {
     release_freed_memory();
 }
 
-/// Reads what it has written, too, if asked for; the light itself is in the file alone from then on.
+/// Reads what it has written, too, if asked for and if it is a file (/dev/null is none); the light itself is in the file alone from then on.
 Result<void> write_checked(const std::string& path, Solution& solution, const LightGroups& groups, bool reads_back) {
-    if (const Result<void> written = write_solution(path, solution, &groups); !written || !reads_back) return written;
+    if (const Result<void> written = write_solution(path, solution, &groups);
+        !written || !reads_back || !std::filesystem::is_regular_file(path))
+        return written;
     drop_light(solution);
     LightGroups groups_again;
     if (const Result<Solution> read_back = load_solution(path, Rehearsed::already, &groups_again); !read_back)
