@@ -117,7 +117,8 @@ void drop_light(Solution& solution) {
     release_freed_memory();
 }
 
-/// Reads what it has written, too, if asked for and if it is a file (/dev/null is none); the light itself is in the file alone from then on.
+/// Reads what it has written, too, if asked for and if it is a file (/dev/null is none); the light itself is in the
+/// file alone from then on.
 Result<void> write_checked(const std::string& path, Solution& solution, const LightGroups& groups, bool reads_back) {
     if (const Result<void> written = write_solution(path, solution, &groups);
         !written || !reads_back || !std::filesystem::is_regular_file(path))

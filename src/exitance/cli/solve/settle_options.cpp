@@ -89,11 +89,14 @@ void share_options(SolveArguments& arguments) {
         arguments.classical.direct = ClassicalDirect::apart;
 }
 
-/// Forms with a path of their own have checks of their own.
+/// Forms with a path of their own have checks of their own. Over several processes `auto` is `matrix`.
 Result<void> check_methods(const SolveArguments& arguments) {
     const bool of_its_own = arguments.classical.any() || arguments.options.task_engine ||
                             arguments.options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
-    return of_its_own ? Result<void>() : check_obedience(arguments.options);
+    if (of_its_own) return {};
+    SolveOptions options = arguments.options;
+    if (processes() > 1 && options.method == Method::automatic) options.method = Method::matrix;
+    return check_obedience(options);
 }
 
 }  // namespace

@@ -153,9 +153,11 @@ const RadMeaning* RadMaterials::meaning_of(const RadPrimitive& p, const std::str
     if (found == meanings_.end() && p.modifier != "void")
         findings_.error(at, fmt::format("material '{}' is not defined before '{}'", shown(p.modifier), shown(p.name)),
                         "files of one scene are read in the order given, materials first");
-    else if (found == meanings_.end() || found->second.kind == RadMeaning::Kind::pattern)
-        findings_.error(at, fmt::format("'{}' has no material", shown(p.name)),
-                        "void reflects nothing: name a material");
+    else if (found == meanings_.end())  // as those that mkillum is to fill
+        findings_.note("surfaces of void, which light passes", at);
+    else if (found->second.kind == RadMeaning::Kind::pattern)
+        findings_.error(at, fmt::format("'{}' has no material that is read", shown(p.name)),
+                        "its modifier is a pattern, or of a kind that is not known here");
     else
         return &found->second;
     return nullptr;

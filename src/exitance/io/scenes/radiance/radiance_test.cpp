@@ -153,6 +153,13 @@ TEST_F(RadianceFiles, GlossByFunctionsLeavesTheDiffusePart) {
     EXPECT_EQ(s.material(SurfaceId(6)).reflectance[1], 0.6);
 }
 
+TEST_F(RadianceFiles, LightPassesSurfacesOfVoid) {
+    const CheckedScene s = load(std::string("void ") + square + "lamp " + square);
+    ASSERT_TRUE(s.scene) << s.scene.error().message;
+    EXPECT_EQ(s.scene->surfaces().size(), 1u);
+    EXPECT_EQ(s.findings.size(), 1u);
+}
+
 TEST_F(RadianceFiles, PlainBoxesAreMadeHere) {
     const Scene out = scene("!genbox lamp box 1 2 3\n"), in = scene("!genbox lamp box 1 2 3 -i | xform -t 5 0 0\n");
     ASSERT_EQ(out.surfaces().size(), 6u);
@@ -226,7 +233,7 @@ TEST_F(RadianceFiles, PatternsLieOnPatternsAndMixturesAreOfTheirFirstMaterial) {
     });
     EXPECT_EQ(notes, 1);
     EXPECT_EQ(first_error("void brightfunc a 2 a b.cal 0 0\na polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"),
-              "s.rad:5: 'p' has no material");
+              "s.rad:5: 'p' has no material that is read");
 }
 
 TEST_F(RadianceFiles, WhatCannotBeReadUnderAnEmitterIsAnError) {
