@@ -8,6 +8,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/progress.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/methods/growing_cells/cells_method.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"
@@ -26,7 +27,6 @@ constexpr double element_rays = 2.6;     ///< Rays of an element, by those of a 
 constexpr double shooting_share = 0.48;  ///< Of all pairs of elements: those whose form factor shooting asks for.
 constexpr double refined_patches = 5;    ///< Elements of substructuring by its patches.
 constexpr double random_sweeps = 1.9;    ///< Light sent in random directions by light reflected first.
-constexpr double network_rays = 4.5e5;   ///< Of growing cells, which learn from so many samples.
 constexpr unsigned shooting_samples = 16;
 constexpr double shooting_memory = 0x1p30;  ///< Bytes of columns that shooting keeps.
 constexpr double lights_an_element = 20;    ///< Nodes of the projection and of the exported mesh, and cuts.
@@ -38,7 +38,27 @@ struct Pilot {
     double rays = 0;            ///< Of a place, until their noise is what is allowed.
     double gather_seconds = 0;  ///< Wall time of a ray, all threads at work,
     double light_seconds = 0;   ///< and of direct light at a point.
+    double facing = 0;          ///< Share of pairs of points that face each other;
+    bool blocked = false;       ///< is anything between any of these?
 };
+
+/// Pairs of points: which face each other, and which of these see each other.
+void look_across(const Stage& stage, std::span<const ProbePoint> points, std::span<const RegionId> region, Pilot& out) {
+    constexpr std::size_t partners = 8;
+    std::vector<SurfacePoint> from, to;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t k = 1; k <= partners; ++k) {
+            const std::size_t j = (i + k * points.size() / (partners + 1)) % points.size();
+            if (region[i].is_none() || region[j].is_none()) continue;
+            const Vec3 w = points[j].x - points[i].x;
+            if (!(dot(w, points[i].n) > 0 && dot(w, points[j].n) < 0)) continue;
+            from.push_back({points[i].x, region[i]}), to.push_back({points[j].x, region[j]});
+        }
+    const std::unique_ptr<bool[]> blocked(new bool[from.size()]);
+    if (!from.empty()) stage.tracer.occluded(from, to, {blocked.get(), from.size()});
+    out.facing = static_cast<double>(from.size()) / static_cast<double>(partners * points.size());
+    out.blocked = std::any_of(blocked.get(), blocked.get() + from.size(), [](bool b) { return b; });
+}
 
 /// Wall seconds of one call, all threads at work.
 template <class Work>
@@ -80,6 +100,7 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
             stage.clustered.at(points[i].x, points[i].n, region[i], {.relative = plan.options.error_target()},
                                workspace);
     });
+    look_across(stage, points, region, out);
     double mean_light = 0;
     for (const double l : light) mean_light += l / static_cast<double>(points.size());
     const Knobs& k = plan.knobs;
@@ -110,7 +131,7 @@ double method_rays(const Plan& plan, double elements) {
         case Method::discontinuity:
             return 0.5 * rows;
         case Method::growing_cells:
-            return network_rays;
+            return 0;  // see forecast_cells
         default:
             return rows;
     }
@@ -165,6 +186,11 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
         shoots ? std::min(shooting_memory, 4 * shooting_share * solved * solved / (patches ? refined_patches : 1))
                : 4 * solved * plan.knobs.solve_rays.average;
     out.memory_bytes = static_cast<double>(peak_memory_bytes()) + columns + bytes_a_leaf * (solved + leaves);
+    if (plan.options.method == Method::growing_cells) {
+        const CellsForecast cells =
+            forecast_cells(units_of(stage, plan.knobs, plan.options), pilot.facing, pilot.blocked);
+        out.rays += cells.rays, out.memory_bytes += cells.bytes;
+    }
     return out;
 }
 
