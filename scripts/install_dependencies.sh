@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and benchmarking need; with CI set in the environment also the
-# formatter. Does nothing when all are there.
+# formatter, and the compiler with the thread sanitizer. Does nothing when all are there.
 set -euo pipefail
 
 packages=(
@@ -16,7 +16,7 @@ packages=(
 )
 # The viewer's page is built by node and npm, of any origin; without them everything else is built.
 command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
-[[ -z ${CI:-} ]] || packages+=(clang-format-14)
+[[ -z ${CI:-} ]] || packages+=(clang-format-14 clang-14 libclang-rt-14-dev)
 
 missing=()
 for package in "${packages[@]}"; do

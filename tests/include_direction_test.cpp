@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <regex>
 #include <set>
@@ -123,6 +124,35 @@ TEST(Includes, HeadersArePlain) {
             EXPECT_FALSE(std::regex_match(include.header, third_party)) << include.place();
         }
     }
+}
+
+TEST(Folders, HoldAtMostFortyFilesBesideTests) {
+    const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+    std::map<std::string, std::size_t> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root))
+        if (entry.is_regular_file() && !entry.path().stem().string().ends_with("_test"))
+            ++files[fs::relative(entry.path().parent_path(), root)];
+    for (const auto& [folder, count] : files) EXPECT_LE(count, 40u) << folder << ": make a subfolder";
+    EXPECT_GT(files.size(), 20u);
+}
+
+/// Two types of one name in one program are one to the linker, which keeps the code of either for both.
+TEST(Headers, DefineEveryTypeOnce) {
+    const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+    const std::regex definition(
+        R"(^(?:template <.*> )?(?:struct|class|enum class) (?:alignas\(\w+\) )?(\w+)(?: final)?(?: : [^;]*)? \{.*)");
+    std::map<std::string, std::string> file_of;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
+        if (entry.path().extension() != ".hpp") continue;
+        std::ifstream in(entry.path());
+        std::smatch match;
+        for (std::string line; std::getline(in, line);)
+            if (std::regex_match(line, match, definition)) {
+                const auto [at, is_new] = file_of.try_emplace(match[1], fs::relative(entry.path(), root));
+                EXPECT_TRUE(is_new) << match[1] << " in " << at->second << " and " << entry.path();
+            }
+    }
+    EXPECT_GT(file_of.size(), 300u);
 }
 
 TEST(Includes, EveryHeaderIsGuardedAndEveryFileIsRead) {

@@ -31,7 +31,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
         std::max(count(c::solve_elements), pieces.size() + count(c::solve_elements_beyond_pieces));
     knobs.solve_mesh = {edge_for_elements(pieces, elements), whole(strips + further)};
     knobs.solve_rays = {.average = std::clamp(c::row_rays / error, c::least_row_average, c::most_row_average),
-                        .least = static_cast<unsigned>(c::least_row_rays),
+                        .least = static_cast<unsigned>(c::least_rays),
                         .most = static_cast<unsigned>(c::most_row_rays)};
     // What is projected is only gathered from, and its means are right; unless it is what is delivered.
     const bool is_delivered = options.visibility == VisibilityKind::fractional;
@@ -42,15 +42,15 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // takes about as many rays whatever its size: few elements to begin with, and where light turns sooner they are
     // cut.
     const bool curved = knobs.gather_curved = error < c::curved_below;
-    const double of_curved = 0.5 * c::curved_gather_elements * std::clamp(c::more_curved_below / error, 1.0, 2.0);
+    const double of_curved = 0.5 * c::curved_gather_elements * std::clamp(c::finer_gather_below / error, 1.0, 2.0);
     knobs.gather_mesh = {edge_for_elements(pieces, count(curved ? of_curved : c::straight_gather_elements)),
                          whole(strips)};
     const double rays = (curved ? c::curved_gather_rays : c::straight_gather_rays) * std::pow(0.5 / error, 4.0 / 3);
-    const double least = std::max(curved ? c::least_curved_rays : c::least_straight_rays, rays / 4);
+    const double least = std::max(curved ? c::least_curved_rays : c::least_rays, rays / 4);
     knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
     // What hides from all places of an element weighs more where there is less noise to hide in.
     knobs.gather_noise =
-        c::gather_noise * error * std::pow(std::min(1.0, error / c::quieter_below), c::quieter_exponent);
+        c::gather_noise * error * std::pow(std::min(1.0, error / c::finer_gather_below), c::quieter_exponent);
     knobs.gather_tolerance = (curved ? c::curved_tolerance : c::straight_tolerance) * error;
     apply_user_knobs(knobs, options);
     return knobs;
@@ -151,7 +151,7 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
     out.method = method > methods_share * target || std::hypot(method, local) <= target;
     if (out.method) {
         const double factor =
-            std::clamp(c::method_aim * methods_share * target / method, c::least_tightening, c::most_method_tightening);
+            std::clamp(c::part_aim * methods_share * target / method, c::least_tightening, c::most_method_tightening);
         out.knobs.solve_mesh.edge *= std::sqrt(factor);
         out.knobs.solve_mesh.grading_levels += 1;
         out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, c::most_row_rays);
@@ -165,10 +165,10 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
     if (local > allowed) {
         // Each part is given its share by itself: one that is small already is not made smaller for the other's sake.
         const auto share_of = [&](double part, double share) {
-            return part > share * allowed ? std::clamp(share * allowed / part, c::least_tightening, c::most_tightening)
+            return part > share * allowed ? std::clamp(share * allowed / part, c::least_tightening, c::least_step)
                                           : 1.0;
         };
-        const double noise = share_of(parts.noise, c::noise_share),
+        const double noise = share_of(parts.noise, c::part_aim),
                      interpolation = share_of(parts.interpolation, c::interpolation_share);
         out.knobs.gather_noise *= noise < 1 ? noise * std::min(1.0, parts.noise / knobs.gather_noise) : 1;
         out.knobs.gather_rays.average *= std::pow(noise, -4.0 / 3);

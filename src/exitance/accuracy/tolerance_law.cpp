@@ -18,7 +18,7 @@ double ToleranceLaw::factor(double error, double allowed) {
     ++round_;
     last_error_ = error;
     last_factor_ = error > allowed ? std::clamp(std::pow(aim * allowed / error, exponent),
-                                                calibrated::largest_tolerance_step, calibrated::first_tolerance_factor)
+                                                calibrated::largest_tolerance_step, calibrated::least_step)
                                    : 1;
     return last_factor_;
 }

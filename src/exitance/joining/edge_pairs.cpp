@@ -44,7 +44,8 @@ EdgePairs::EdgePairs(const FaceMesh& mesh, const Tolerances& tolerances, std::sp
 }
 
 std::span<const EdgePairs::Split> EdgePairs::splits(std::uint32_t e) const {
-    const auto [first, last] = std::ranges::equal_range(splits_, e, {}, &Split::edge);
+    const auto first = std::ranges::lower_bound(splits_, e, {}, &Split::edge);
+    const auto last = std::ranges::upper_bound(first, splits_.end(), e, {}, &Split::edge);
     return {first, last};
 }
 

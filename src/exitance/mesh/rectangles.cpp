@@ -82,7 +82,7 @@ class ShortestCuts {
                 at(i + 1, j + 1) = at(i, j + 1) + at(i + 1, j) - at(i, j) + (g_.inside(i, j) ? 1 : 0);
     }
 
-    void rectangles(std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1, std::vector<Rectangle>& out) {
+    void rectangles(std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1, std::vector<AxisRectangle>& out) {
         const Choice& c = solve(i0, i1, j0, j1);
         if (c.kind == Kind::full) out.push_back({{g_.x(i0), g_.y(j0)}, {g_.x(i1), g_.y(j1)}});
         if (c.kind == Kind::column) rectangles(i0, c.where, j0, j1, out), rectangles(c.where, i1, j0, j1, out);
@@ -128,7 +128,7 @@ class ShortestCuts {
 
 /// Tiles a grid of any size: one too large for the table is cut in two first, along the shortest line in its middle
 /// half.
-void tile(const CellGrid& g, std::vector<Rectangle>& out) {
+void tile(const CellGrid& g, std::vector<AxisRectangle>& out) {
     constexpr std::size_t most = 12;  // columns and rows; the table takes a time of most^5
     const std::size_t m = g.columns(), n = g.rows();
     if (m <= most && n <= most) return ShortestCuts(g).rectangles(0, m, 0, n, out);
@@ -146,7 +146,7 @@ void tile(const CellGrid& g, std::vector<Rectangle>& out) {
 
 }  // namespace
 
-std::vector<Rectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance) {
+std::vector<AxisRectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance) {
     constexpr std::size_t most_cells = 4'000'000;
     std::vector<double> xs, ys;
     for (const auto& loop : loops)
@@ -166,7 +166,7 @@ std::vector<Rectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loo
             grid.add_edge(nearest(xs, p.x), lo, hi);
         }
     grid.resolve();
-    std::vector<Rectangle> out;
+    std::vector<AxisRectangle> out;
     tile(grid, out);
     return out;
 }

@@ -7,7 +7,8 @@
 
 namespace exitance {
 
-struct Rectangle {
+/// A rectangle along the axes.
+struct AxisRectangle {
     Vec2 lo, hi;
 };
 
@@ -16,6 +17,6 @@ struct Rectangle {
 /// programming (O(k^5) for k coordinates an axis). Larger ones are cut in two first, where the cut is short.
 /// loops      any order and direction; their union by parity is tiled
 /// tolerance  coordinates nearer than this are one; an edge that is tilted by more makes the result empty
-std::vector<Rectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance);
+std::vector<AxisRectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance);
 
 }  // namespace exitance

@@ -1,29 +1,17 @@
 #include <algorithm>
 
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/mesh/element_locator.hpp"
+#include "exitance/methods/patch_steps.hpp"
 #include "exitance/methods/shooting_setup.hpp"
 
 namespace exitance {
 namespace {
 
-/// Largest difference of reflected light between a leaf and its neighbours in the same region, W/m^2, mean over bands.
-double steepest_step(const ShootingSetup& setup, const ElementLocator& locator, std::size_t leaf) {
-    const ElementId e = setup.numbering.leaves[leaf];
-    const Patch& patch = setup.tree.patch(e);
-    const auto light = [&](std::size_t i) {
-        return mean(setup.reflectance[i] *
-                    (setup.shoots_direct_light() ? setup.irradiance[i] : setup.direct[i] + setup.irradiance[i]));
-    };
-    double steepest = 0;
-    const Point centre = patch.centre();
-    for (int i = 0; i < patch.corner_count(); ++i) {
-        const Point middle = 0.5 * (patch.corner(i) + patch.corner((i + 1) % patch.corner_count()));
-        const Point across = centre + 1.25 * (middle - centre);  // given by geometry: within any neighbour
-        const std::uint32_t neighbour = setup.numbering.number[locator.find(setup.tree.region(e), across).element];
-        steepest = std::max(steepest, std::abs(light(leaf) - light(neighbour)));
-    }
-    return steepest;
+/// Reflected light of a leaf, W/m^2, mean over bands.
+double light_of(const ShootingSetup& setup, ElementId leaf) {
+    const std::size_t i = setup.numbering.number[leaf];
+    return mean(setup.reflectance[i] *
+                (setup.shoots_direct_light() ? setup.irradiance[i] : setup.direct[i] + setup.irradiance[i]));
 }
 
 }  // namespace
@@ -34,7 +22,6 @@ double steepest_step(const ShootingSetup& setup, const ElementLocator& locator, 
 /// patches have sent; in the end the patches take their elements' means and shoot the difference [Willmott97]. One form
 /// factor per element and patch.
 GlobalLight solve_substructuring(const MethodInput& input) {
-    constexpr int sweeps = 3;
     input.progress.phase("mesh");
     MeshSize coarse = input.knobs.solve_mesh;
     if (!input.options.mesh_size)
@@ -48,15 +35,18 @@ GlobalLight solve_substructuring(const MethodInput& input) {
     double mean_light = 0;
     for (std::size_t p = 0; p < setup.patches.size(); ++p)
         mean_light += setup.patch_area[p] * mean(setup.sent[p]) / input.stage.area;
-    const double threshold = 8 * input.options.error_target() * mean_light;
+    const double threshold = steep_step(input.options.error_target(), mean_light);
     const double least_area = input.options.min_area.value_or(calibrated::least_patch_element * input.stage.area);
-    for (int sweep = 0; sweep < sweeps && !input.stop.requested(); ++sweep) {
+    for (int sweep = 0; sweep < patch_sweeps && !input.stop.requested(); ++sweep) {
         input.progress.phase("refine");
         const ElementLocator locator(setup.tree, input.stage.scene.regions().size());
+        const auto light = [&](ElementId leaf) { return light_of(setup, leaf); };
         std::vector<ElementId> steep;
-        for (std::size_t i = 0; i < setup.numbering.leaves.size(); ++i)
-            if (setup.area[i] > 2 * least_area && steepest_step(setup, locator, i) > threshold)
-                steep.push_back(setup.numbering.leaves[i]);
+        for (std::size_t i = 0; i < setup.numbering.leaves.size(); ++i) {
+            const ElementId leaf = setup.numbering.leaves[i];
+            if (setup.area[i] > 2 * least_area && steepest_step(setup.tree, locator, leaf, light) > threshold)
+                steep.push_back(leaf);
+        }
         if (steep.empty()) break;
         setup.split(steep);
     }

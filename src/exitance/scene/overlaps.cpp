@@ -86,8 +86,8 @@ Overlaps find_overlaps(const Scene& scene, double tolerance) {
         return std::tie(a.regions, b.overlap.area, a.overlap.first, a.overlap.second) <
                std::tie(b.regions, a.overlap.area, b.overlap.first, b.overlap.second);
     });
-    const auto alike = std::ranges::unique(found, {}, &Found::regions);
-    found.erase(alike.begin(), alike.end());
+    const auto are_alike = [](const Found& a, const Found& b) { return a.regions == b.regions; };
+    found.erase(std::unique(found.begin(), found.end(), are_alike), found.end());
     for (const Found& f : found) out.pairs.push_back(f.overlap);
     std::ranges::sort(out.pairs, {}, [](const Overlap& o) { return std::pair(o.first, o.second); });
     return out;

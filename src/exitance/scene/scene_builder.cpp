@@ -38,7 +38,7 @@ std::string SceneBuilder::name_of(const SceneDescription::Face& face) const {
 
 void SceneBuilder::find(Finding::Kind kind, const SceneDescription::Face& face, Mark::Kind mark, std::string message,
                         std::string hint, const char* rest) {
-    Mark& marked = marks_.emplace_back(mark, std::vector<Point>());
+    Mark& marked = marks_.emplace_back(Mark{mark, {}});
     for (std::uint32_t c : face.corners)
         if (c < in_.points.size() && is_finite(in_.points[c])) marked.outline.push_back(in_.points[c]);
     if (face.line == 0 && face.group < in_.groups.size())

@@ -1,40 +1,22 @@
 #include "exitance/transport/light_rooms.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <numeric>
+#include <cmath>
 
 #include "exitance/core/disjoint_sets.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
-#include "exitance/transport/ray_rows.hpp"
+#include "exitance/transport/light_openings.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr double widest_opening = 0.1;  ///< Of the smaller room's walls.
-constexpr double narrower = 0.5;        ///< An opening, than cuts on either side of it.
-constexpr double beside = 0.2;          ///< Of the smaller room's walls: how far off these are.
-constexpr double least_share = 0.05;    ///< Of a room in what is no ground or sky.
-constexpr double least_detail = 0.001;  ///< Of a small room beside ground and sky in all elements.
-constexpr double far_larger = 20;       ///< Ground and sky than all else, from corner to corner.
-constexpr double flattest = 0.1;        ///< A room's height by its length; below, it is a gap.
-constexpr double thinnest = 0.03;       ///< How far off what walls see is, by the root of their area; likewise.
-constexpr int steps =
-    60;  ///< Of light to and fro, half of which stays: what an opening of a twentieth joins differs by a third still.
+constexpr double least_share = 0.05;     ///< Of a room in what is no ground or sky.
+constexpr double least_detail = 0.001;   ///< Of a small room beside ground and sky in all elements.
+constexpr double far_larger = 20;        ///< Ground and sky than all else, from corner to corner.
+constexpr double flattest = 0.1;         ///< A room's height by its length; below, it is a gap.
+constexpr double thinnest = 0.03;        ///< How far off what walls see is, by the root of their area; likewise.
 constexpr std::size_t fewest_walls = 4;  ///< Of a room.
 constexpr std::size_t most_rooms = 64;
-
-using Leaves = std::vector<std::uint32_t>;
-
-/// Coarse elements, and which of them light joins.
-struct Flow {
-    const RayRows& rows;
-    std::vector<double> area;
-    std::vector<double> start;        ///< What differs from room to room as a rule.
-    std::vector<std::uint16_t> part;  ///< Of the scene that a leaf is in, so far.
-    bool has_sky = false;             ///< What meets nothing is joined by the sky, as if that were a wall.
-};
 
 /// By place: rooms lie apart from, or within one another; and a little by chance.
 std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
@@ -50,83 +32,9 @@ std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering&
     return out;
 }
 
-/// Of what leaves send to the sky.
-double mean_towards_sky(const Flow& flow, const Leaves& leaves, const std::vector<double>& x) {
-    double sum = 0, all = 0;
-    for (std::uint32_t i : leaves) {
-        const auto hits = flow.rows.hits(i);
-        const auto lost = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
-        const double sent = flow.area[i] * lost / static_cast<double>(hits.size());
-        sum += sent * x[i], all += sent;
-    }
-    return all > 0 ? sum / all : 0;
-}
-
-/// What is left of light that differs from place to place after it has gone to and fro within a part.
-std::vector<double> slow_difference(const Flow& flow, const Leaves& leaves, std::uint16_t part) {
-    std::vector<double> x = flow.start, next(flow.area.size());
-    for (int step = 0; step < steps; ++step) {
-        const double sky = flow.has_sky ? mean_towards_sky(flow, leaves, x) : 0;
-        parallel_for(leaves.size(), 256, [&](std::size_t k) {
-            const std::uint32_t i = leaves[k];
-            double sum = 0;
-            std::size_t met = 0;
-            for (std::uint32_t j : flow.rows.hits(i)) {
-                if (j != RayRows::missed && flow.part[j] == part) sum += x[j], ++met;
-                if (j == RayRows::missed && flow.has_sky) sum += sky, ++met;
-            }
-            next[i] = met > 0 ? 0.5 * (x[i] + sum / static_cast<double>(met)) : x[i];
-        });
-        double mean = 0, area = 0, largest = 0;
-        for (std::uint32_t i : leaves) mean += flow.area[i] * next[i], area += flow.area[i];
-        for (std::uint32_t i : leaves) x[i] = next[i] - mean / area, largest = std::max(largest, std::abs(x[i]));
-        for (std::uint32_t i : leaves) x[i] /= largest > 0 ? largest : 1;
-    }
-    return x;
-}
-
-/// The opening between the first leaves of an order and the others, m^2, after each of them; by what the leaves on the
-/// smaller side see of the other: few rays from the larger one say little.
-struct Cuts {
-    std::vector<double> area, opening;  ///< Of the first k + 1 leaves.
-};
-
-Cuts sweep(const Flow& flow, const Leaves& order, std::uint16_t part) {
-    std::vector<std::uint32_t> rank(flow.area.size());
-    for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<std::uint32_t>(k);
-    const std::size_t n = order.size();
-    // Light that a leaf sends to one of higher (lower) rank crosses all cuts in between; what meets nothing leaves by
-    // an opening, too.
-    std::vector<double> up(n + 1), down(n + 1), lost(n);
-    double all_lost = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const auto hits = flow.rows.hits(order[k]);
-        const double each = flow.area[order[k]] / static_cast<double>(hits.size());
-        for (std::uint32_t j : hits) {
-            if (j == RayRows::missed) lost[k] += each;
-            if (j == RayRows::missed || flow.part[j] != part) continue;
-            const std::size_t other = rank[j];
-            if (other > k) up[k] += each, up[other] -= each;
-            if (other < k) down[other] += each, down[k] -= each;
-        }
-        // What sees nothing at all is covered, not outdoors.
-        if (std::count(hits.begin(), hits.end(), RayRows::missed) == std::ssize(hits)) lost[k] = 0;
-        all_lost += lost[k];
-    }
-    Cuts out{std::vector<double>(n), std::vector<double>(n)};
-    double area = 0, total = 0, u = 0, d = 0, lost_below = 0;
-    for (std::uint32_t i : order) total += flow.area[i];
-    for (std::size_t k = 0; k < n; ++k) {
-        area += flow.area[order[k]], u += up[k], d += down[k], lost_below += lost[k];
-        out.area[k] = area;
-        out.opening[k] = 2 * area <= total ? u + lost_below : d + all_lost - lost_below;
-    }
-    return out;
-}
-
 /// Elements that light joins, and what they enclose.
 struct Part {
-    Leaves leaves;
+    LeafNumbers leaves;
     double area = 0;    ///< m^2
     double volume = 0;  ///< Areas times how high what they see is above them, m^3.
     Box box;
@@ -175,7 +83,7 @@ class RoomFinder {
     }
 
   private:
-    Part part_of(Leaves leaves) const {
+    Part part_of(LeafNumbers leaves) const {
         Part part;
         part.leaves = std::move(leaves);
         std::vector<std::uint8_t> within(flow_.area.size());
@@ -217,11 +125,11 @@ class RoomFinder {
                 if (under_sky != RayRows::missed) sets.unite(i, under_sky);
                 under_sky = i;
             }
-        std::vector<Leaves> by_root(n);
+        std::vector<LeafNumbers> by_root(n);
         for (std::uint32_t i = 0; i < n; ++i) by_root[sets.root(i)].push_back(i);
         Part outer;
         std::vector<Part> out;
-        for (Leaves& leaves : by_root) {
+        for (LeafNumbers& leaves : by_root) {
             if (leaves.empty()) continue;
             Part part = part_of(std::move(leaves));
             part.may_be_room() ? out.push_back(std::move(part)) : outer.add(part);
@@ -258,47 +166,14 @@ class RoomFinder {
     /// Moves what lies behind an opening from `part` to `rest`, if there is one.
     bool cut_at_opening(Part& part, Part& rest) {
         const std::uint16_t own = flow_.part[part.leaves[0]];
-        Leaves order = part.leaves;
-        const std::vector<double> x = slow_difference(flow_, order, own);
-        std::sort(order.begin(), order.end(), [&](auto i, auto j) { return x[i] != x[j] ? x[i] < x[j] : i < j; });
-        const Cuts cuts = sweep(flow_, order, own);
-        const std::size_t cut = find_opening(cuts);
-        if (cut == 0) return false;
-        const bool first_is_small = 2 * cuts.area[cut - 1] <= cuts.area.back();
-        const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cut);
-        Part first = part_of({order.begin(), middle}), second = part_of({middle, order.end()});
-        Part &small = first_is_small ? first : second, &large = first_is_small ? second : first;
+        const std::optional<OpeningBetween> opening = find_opening(flow_, part.leaves, own);
+        if (!opening) return false;
+        Part small = part_of(opening->small), large = part_of(opening->large);
         if (!counts(small)) return false;
         inner_.add(small.box.lo), inner_.add(small.box.hi);
         for (std::uint32_t i : small.leaves) flow_.part[i] = fresh_;
         ++fresh_;
         part = std::move(large), rest = std::move(small);
-        return true;
-    }
-
-    /// After how many leaves of an order to cut it, so that most lies behind the opening; 0: there is none.
-    static std::size_t find_opening(const Cuts& cuts) {
-        const std::size_t n = cuts.area.size();
-        const double total = cuts.area.back();
-        std::size_t best = 0;
-        double most = 0;
-        for (std::size_t k = 0; k + 1 < n; ++k) {
-            const double smaller = std::min(cuts.area[k], total - cuts.area[k]);
-            if (smaller <= most || cuts.opening[k] >= widest_opening * smaller || !is_narrow(cuts, k, smaller))
-                continue;
-            best = k + 1, most = smaller;
-        }
-        return best;
-    }
-
-    /// Is the cut narrower than those beside it? Along a corridor all are alike.
-    static bool is_narrow(const Cuts& cuts, std::size_t k, double smaller) {
-        for (const double off : {-beside, beside}) {
-            const auto at = std::lower_bound(cuts.area.begin(), cuts.area.end(), cuts.area[k] + off * smaller);
-            const auto other = static_cast<std::size_t>(at - cuts.area.begin());
-            if (other + 1 < cuts.area.size() && other != k && cuts.opening[other] * narrower < cuts.opening[k])
-                return false;
-        }
         return true;
     }
 

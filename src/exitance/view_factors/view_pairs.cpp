@@ -29,9 +29,9 @@ ViewFace make_face(const Scene& scene, SurfaceId s) {
 }
 
 /// A box-to-box shaft: planes parallel to an axis that have both boxes on one side. Source: [Haines91].
-class Shaft {
+class BoxShaft {
   public:
-    Shaft(const Box& a, const Box& b) {
+    BoxShaft(const Box& a, const Box& b) {
         both_ = a;
         both_.add(b);
         for (std::size_t s = 0; s < 3; ++s) {
@@ -135,7 +135,7 @@ void ViewPairs::find_blockers(std::size_t i, std::size_t j, std::span<const std:
     for (std::uint32_t b : before_i)
         if ((sides_i[b] & sides_j[b]) == 0 && (standing_[j * blockers_.size() + b] & in_front)) found.push_back(b);
     if (found.empty()) return;
-    const Shaft shaft(faces_[i].box, faces_[j].box);
+    const BoxShaft shaft(faces_[i].box, faces_[j].box);
     std::erase_if(found, [&](std::uint32_t b) { return shaft.misses(boxes_[b]); });
 }
 

@@ -31,11 +31,20 @@ class EdgeNumbers {
     std::map<Ends, std::uint32_t> numbers_;
 };
 
+/// The nearest number of 16 bits (binary16 of IEEE 754: 5 of them exponent, 10 mantissa), ties to even; not every
+/// compiler has such a type. Steps are 2^(e - 10) from 2^e on, and 2^-24 below 2^-14. No value is a NaN.
 std::uint16_t to_half(double value) {
-    return std::bit_cast<std::uint16_t>(static_cast<_Float16>(value));
+    const unsigned sign = std::signbit(value) ? 0x8000 : 0;
+    const double size = std::abs(value);
+    if (size >= 65520) return static_cast<std::uint16_t>(sign | 0x7c00);  // nearer to infinity than to the largest
+    const int exponent = size > 0 ? std::max(std::ilogb(size), -14) : -14;
+    const int steps = static_cast<int>(std::nearbyint(std::ldexp(size, 10 - exponent)));
+    return static_cast<std::uint16_t>(sign | static_cast<unsigned>(1024 * (exponent + 14) + steps));
 }
 double from_half(std::uint16_t bits) {
-    return static_cast<double>(std::bit_cast<_Float16>(bits));
+    const std::uint64_t sign = bits >> 15, exponent = bits >> 10 & 31, mantissa = bits & 1023;
+    if (exponent == 0) return (sign ? -0x1p-24 : 0x1p-24) * static_cast<double>(mantissa);
+    return std::bit_cast<double>(sign << 63 | (exponent == 31 ? 2047 : exponent + 1008) << 52 | mantissa << 42);
 }
 
 double interpolated(const std::array<double, 6>& values, Vec2 st) {

@@ -15,7 +15,14 @@ struct LearnedLight {
 };
 
 /// Units of each network: as asked for, or as many as the error asked for has elements on so much surface.
-std::size_t units_of(const MethodInput& input);
+std::size_t units_of(const Stage& stage, const Knobs& knobs, const SolveOptions& options);
+
+/// What learning visibility and reflecting by it will take.
+struct CellsForecast {
+    double rays = 0, bytes = 0;
+};
+/// facing   share of pairs of points that face each other      blocked  is anything between any of them?
+CellsForecast forecast_cells(std::size_t units, double facing, bool blocked);
 
 /// All light through the networks, as published.
 LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool);

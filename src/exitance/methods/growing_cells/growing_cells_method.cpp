@@ -51,10 +51,10 @@ double projection_error(const Stage& stage, const CellFunction& E, const GlobalL
 
 }  // namespace
 
-std::size_t units_of(const MethodInput& input) {
-    if (input.options.max_units) return std::max(least_units, *input.options.max_units);
-    const double edge = input.knobs.solve_mesh.edge;
-    const double wanted = edge > 0 ? input.stage.area / (edge * edge) : 0;
+std::size_t units_of(const Stage& stage, const Knobs& knobs, const SolveOptions& options) {
+    if (options.max_units) return std::max(least_units, *options.max_units);
+    const double edge = knobs.solve_mesh.edge;
+    const double wanted = edge > 0 ? stage.area / (edge * edge) : 0;
     return static_cast<std::size_t>(
         std::clamp(wanted, static_cast<double>(usual_least), static_cast<double>(usual_most)));
 }
@@ -87,7 +87,9 @@ GlobalLight solve_growing_cells(const MethodInput& input) {
     light.direct = classic ? std::vector<Spectrum>(rho.size()) : leaf_means(input.direct, light.numbering);
     light.on_projection = !classic;
     light.holds_direct = classic;
-    const SurfacePool pool(input.stage, std::max(least_pool, points_a_unit * units_of(input)), input.options.seed);
+    const SurfacePool pool(input.stage,
+                           std::max(least_pool, points_a_unit * units_of(input.stage, input.knobs, input.options)),
+                           input.options.seed);
     LearnedLight learned = classic ? learn_flow(input, pool) : learn_visibility(input, pool);
     light.cells = std::move(learned.light);
     const CellFunction E(light.cells);

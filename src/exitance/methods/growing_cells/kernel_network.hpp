@@ -39,6 +39,8 @@ double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Nor
 /// batches, learned in order.
 class KernelNetwork {
   public:
+    static constexpr std::size_t most_insertions = 2;  ///< By units asked for: where as many go as come.
+
     /// All must outlive it. `radiosity`: B of every point of the pool, W/m^2, which sources are drawn by.
     KernelNetwork(const Stage& stage, const SurfacePool& pool, const KernelNetworkOptions& options,
                   std::span<const Spectrum> radiosity);

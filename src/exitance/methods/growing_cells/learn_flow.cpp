@@ -164,7 +164,7 @@ std::vector<Spectrum> reflected_radiosity(const Stage& stage, const SurfacePool&
 /// over all of that.
 LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     const Stage& stage = input.stage;
-    const std::size_t units = units_of(input);
+    const std::size_t units = units_of(stage, input.knobs, input.options);
     const auto emits = [&](const PoolPoint& p) { return stage.scene.material(p.region).emits(); };
     const auto everything = [](const PoolPoint&) { return true; };
     std::vector<Spectrum> M(pool.size());

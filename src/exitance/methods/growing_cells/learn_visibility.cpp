@@ -291,7 +291,7 @@ void find_slopes(CellLight& light) {
 /// grows on where all light is sent from now. 6. Reflections again, and slopes.
 LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool) {
     const Stage& stage = input.stage;
-    const std::size_t units = units_of(input);
+    const std::size_t units = units_of(stage, input.knobs, input.options);
     LearnedLight out;
     input.progress.phase("grow");
     ShadingNetwork network = grow_shading_network(
@@ -332,6 +332,20 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
     find_slopes(out.light);
     keep_network(kernel, out.light);
     out.rays += kernel.rays();
+    return out;
+}
+
+/// Between surfaces units come and go, so that insertions end at their limit. Of a network of so few units all that are
+/// near a pair have seen through only where nothing is between any surfaces: else rays find what is seen, twice.
+CellsForecast forecast_cells(std::size_t units, double facing, bool blocked) {
+    constexpr double units_near = 32;    // a sample: 24 to 54 on the scenes of forecast.cpp
+    constexpr double vector_room = 1.5;  // of vectors that grow, on average
+    const double n = static_cast<double>(units);
+    const double samples =
+        static_cast<double>(KernelNetwork::most_insertions * KernelNetworkOptions().samples_a_unit) * n;
+    CellsForecast out{.rays = samples, .bytes = sizeof(Spectrum) * n * n};
+    if (blocked) out.rays += 2 * facing * n * n * rays_a_pair;
+    out.bytes += samples * units_near * vector_room * sizeof(std::pair<std::uint32_t, double>);
     return out;
 }
 

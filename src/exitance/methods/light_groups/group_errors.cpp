@@ -1,12 +1,14 @@
 #include "exitance/methods/light_groups/group_errors.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/reconstruct/error/batch_mean.hpp"
+#include "exitance/reconstruct/error/residual_samples.hpp"
 #include "exitance/reconstruct/gather.hpp"
 #include "exitance/solve/relaxation.hpp"
 
@@ -14,7 +16,6 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t points = 1280;  ///< As many as a certificate takes at first.
-constexpr std::size_t batches = 32;   ///< Of points, for the spread of their mean.
 
 /// A point, and two estimates of every group's residual there.
 struct Residual {
@@ -153,34 +154,25 @@ std::vector<Spectrum> late_response(const Solution& solution, const LightGroups&
     }
     std::vector<Spectrum> out = rhs;
     solve_radiosity({F, rho, rhs, layout.area}, Relaxation::gmres, out,
-                    {.residual = 0.02, .max_iterations = 200});  // given by Certifier
+                    {.residual = calibrated::refined_residual, .max_iterations = 200});
     for (std::size_t i = 0; i < out.size(); ++i) out[i] -= rhs[i];
     return out;
 }
 
-/// The mean square of a group's error, (W/m^2)^2, and its standard error.
-struct SquaredError {
-    double mean = 0, standard_error = 0;
-};
-
-SquaredError squared_error(const std::vector<Residual>& all, const std::vector<Spectrum>& late, std::size_t g) {
+/// The mean square of a group's error, (W/m^2)^2.
+BatchMean squared_error(const std::vector<Residual>& all, const std::vector<Spectrum>& late, std::size_t g) {
     std::array<double, batches> squares{};
     for (std::size_t k = 0; k < all.size(); ++k) {
         const Spectrum& smooth = late[all[k].source];
         squares[k % batches] +=
             mean((all[k].r1[g] + smooth) * (all[k].r2[g] + smooth)) * batches / static_cast<double>(all.size());
     }
-    SquaredError out;
-    double spread = 0;
-    for (const double s : squares) out.mean += s / batches;
-    for (const double s : squares) spread += (s - out.mean) * (s - out.mean) / (batches * (batches - 1.0));
-    out.standard_error = std::sqrt(spread);
-    return out;
+    return BatchMean(squares);
 }
 
 /// How many times the rays it takes until no group's estimate is noise: the noise of a square falls with the power of
 /// 3/2 of the rays.
-double missing_rays(const std::vector<SquaredError>& squares, const std::vector<LightGroup>& groups, double error) {
+double missing_rays(const std::vector<BatchMean>& squares, const std::vector<LightGroup>& groups, double error) {
     constexpr double uncertain = 1.0 / 3;  // of an error: its square is told to a ninth
     double most = 1;
     for (std::size_t g = 0; g < squares.size(); ++g) {
@@ -202,21 +194,20 @@ void estimate_group_errors(const Stage& stage, const Solution& solution,
     std::vector<Spectrum> rho;
     for (const MaterialId m : groups.layout.material) rho.push_back(groups.reflectance[m.value]);
     // Rays as a certificate takes them; then as many as the noisiest group needs, within reason.
-    const double share = 0.2 * error * error;  // given by Certifier, as the rays' noise and their limits are
-    const double wanted = 0.09 / (share * std::sqrt(static_cast<double>(points)));           // given by it
-    unsigned rays = std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, 16.0, 4096.0)));  // given by it
+    unsigned rays = certificate_rays(rays_to_tell(error, points));
     constexpr double most_more = 8;
-    std::vector<SquaredError> squares(groups.groups.size());
+    std::vector<BatchMean> squares;
     for (int look = 0; look < 2; ++look) {
         std::vector<Residual> all = stratified(stage, solution.indirect.tree, seed);
         measure(stage, solution, groups, light, rays, seed, all, stop);
         if (stop.requested() || all.empty()) return;
         std::erase_if(all, [](const Residual& r) { return r.source == TransportLayout::none; });
-        for (std::size_t g = 0; g < squares.size(); ++g)
-            squares[g] = squared_error(all, late_response(solution, groups, F, rho, all, g), g);
+        squares.clear();
+        for (std::size_t g = 0; g < groups.groups.size(); ++g)
+            squares.push_back(squared_error(all, late_response(solution, groups, F, rho, all, g), g));
         const double more = std::min(most_more, missing_rays(squares, groups.groups, error));
         if (more < 2) break;
-        rays = std::min(4096u, std::bit_ceil(static_cast<unsigned>(more * rays)));
+        rays = certificate_rays(more * rays);
     }
     for (std::size_t g = 0; g < squares.size(); ++g)
         // Less than its own uncertainty cannot be claimed.

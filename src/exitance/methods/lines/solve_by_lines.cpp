@@ -188,7 +188,7 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
             s.stopped_by = attempt == most_attempts ? "iterations" : "time limit";
             break;
         }
-        error *= std::max(finer, calibrated::method_aim * *demand / *s.relative_error_estimate);
+        error *= std::max(finer, calibrated::part_aim * *demand / *s.relative_error_estimate);
     }
     s.energy = balance(solution, stage);
     s.seconds["total"] = watch.seconds();

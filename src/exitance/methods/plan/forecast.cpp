@@ -8,6 +8,8 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/progress.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/methods/growing_cells/cells_method.hpp"
+#include "exitance/methods/patch_steps.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"
@@ -24,9 +26,8 @@ constexpr double gathered_by_solved = 1.2;  ///< Elements that are gathered on, 
 constexpr double straight_by_curved = 1.7;  ///< Leaves delivered by elements of second degree.
 constexpr double element_rays = 2.6;     ///< Rays of an element, by those of a place: the rule's sums have less noise.
 constexpr double shooting_share = 0.48;  ///< Of all pairs of elements: those whose form factor shooting asks for.
-constexpr double refined_patches = 5;    ///< Elements of substructuring by its patches.
-constexpr double random_sweeps = 1.9;    ///< Light sent in random directions by light reflected first.
-constexpr double network_rays = 4.5e5;   ///< Of growing cells, which learn from so many samples.
+constexpr double gathered_by_patches = 3;  ///< Elements that are gathered on, by patches of substructuring.
+constexpr double random_sweeps = 1.9;      ///< Light sent in random directions by light reflected first.
 constexpr unsigned shooting_samples = 16;
 constexpr double shooting_memory = 0x1p30;  ///< Bytes of columns that shooting keeps.
 constexpr double lights_an_element = 20;    ///< Nodes of the projection and of the exported mesh, and cuts.
@@ -38,7 +39,28 @@ struct Pilot {
     double rays = 0;            ///< Of a place, until their noise is what is allowed.
     double gather_seconds = 0;  ///< Wall time of a ray, all threads at work,
     double light_seconds = 0;   ///< and of direct light at a point.
+    double mean_light = 0;      ///< Reflected, W/m^2: first, and what follows if every reflection leaves as much.
+    double facing = 0;          ///< Share of pairs of points that face each other;
+    bool blocked = false;       ///< is anything between any of these?
 };
+
+/// Pairs of points: which face each other, and which of these see each other.
+void look_across(const Stage& stage, std::span<const ProbePoint> points, std::span<const RegionId> region, Pilot& out) {
+    constexpr std::size_t partners = 8;
+    std::vector<SurfacePoint> from, to;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t k = 1; k <= partners; ++k) {
+            const std::size_t j = (i + k * points.size() / (partners + 1)) % points.size();
+            if (region[i].is_none() || region[j].is_none()) continue;
+            const Vec3 w = points[j].x - points[i].x;
+            if (!(dot(w, points[i].n) > 0 && dot(w, points[j].n) < 0)) continue;
+            from.push_back({points[i].x, region[i]}), to.push_back({points[j].x, region[j]});
+        }
+    const std::unique_ptr<bool[]> blocked(new bool[from.size()]);
+    if (!from.empty()) stage.tracer.occluded(from, to, {blocked.get(), from.size()});
+    out.facing = static_cast<double>(from.size()) / static_cast<double>(partners * points.size());
+    out.blocked = std::any_of(blocked.get(), blocked.get() + from.size(), [](bool b) { return b; });
+}
 
 /// Wall seconds of one call, all threads at work.
 template <class Work>
@@ -59,7 +81,7 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
     const auto reflectance = [&](RegionId r) { return stage.scene.material(r).reflectance; };
     const auto reflected = [&](RegionId r, const Point& p) { return reflectance(r) * direct.at(elements.find(r, p)); };
     Pilot out;
-    std::vector<double> noise(points.size()), light(points.size());
+    std::vector<double> noise(points.size()), light(points.size()), first_light(points.size());
     out.gather_seconds = seconds_each(points.size(),
                                       [&](std::size_t first, std::size_t last) {
                                           GatherWorkspace workspace;
@@ -70,7 +92,8 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
                                               if (region[i].is_none()) continue;
                                               const Spectrum rho = reflectance(region[i]);
                                               noise[i] = std::sqrt(mean(rho * rho * g.quarters));
-                                              light[i] = mean(reflected(region[i], points[i].x) + rho * g.irradiance);
+                                              first_light[i] = mean(reflected(region[i], points[i].x));
+                                              light[i] = first_light[i] + mean(rho * g.irradiance);
                                           }
                                       }) /
                          pilot_rays;
@@ -80,8 +103,13 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
             stage.clustered.at(points[i].x, points[i].n, region[i], {.relative = plan.options.error_target()},
                                workspace);
     });
+    look_across(stage, points, region, out);
     double mean_light = 0;
     for (const double l : light) mean_light += l / static_cast<double>(points.size());
+    double mean_first = 0;
+    for (const double l : first_light) mean_first += l / static_cast<double>(points.size());
+    // As a geometric series, of at most twenty times its first term.
+    if (mean_first > 0) out.mean_light = mean_first / std::max(0.05, 1 - (mean_light - mean_first) / mean_first);
     const Knobs& k = plan.knobs;
     for (const double n : noise) {
         // The error of scrambled points falls like n^-3/4; four freedoms are fitted to nine places.
@@ -94,23 +122,43 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
     return out;
 }
 
+/// Elements that substructuring cuts patches into: light reflected first steps from patch to patch, and steps of smooth
+/// light halve with every cut.
+double cut_patches(const Stage& stage, const Plan& plan, const DirectProjection& direct, double mean_light) {
+    const ElementLocator locator(direct.tree, stage.scene.regions().size());
+    const auto light = [&](ElementId leaf) {
+        const Spectrum E = direct.at({leaf, direct.tree.centre(leaf)});
+        return mean(stage.scene.material(direct.tree.region(leaf)).reflectance * E);
+    };
+    const double threshold = steep_step(plan.options.error_target(), mean_light);
+    const double least_area = plan.options.min_area.value_or(calibrated::least_patch_element * stage.area);
+    double elements = 0;
+    for (const ElementId leaf : direct.tree.leaves()) {
+        double step = steepest_step(direct.tree, locator, leaf, light), pieces = 1;
+        for (int sweep = 0; sweep < patch_sweeps && step > threshold; ++sweep, step /= 2)
+            if (direct.tree.area(leaf) > 2 * least_area * pieces) pieces *= 4;
+        elements += pieces;
+    }
+    return elements;
+}
+
 /// Rays of the method itself, on so many elements.
-double method_rays(const Plan& plan, double elements) {
+double method_rays(const Plan& plan, const Pilot& pilot, double patches, double elements) {
     const SolveOptions& o = plan.options;
     const double rows = elements * plan.knobs.solve_rays.average;
     const double samples = static_cast<double>(o.visibility_samples.value_or(shooting_samples));
     switch (o.method) {
         case Method::progressive:
             return shooting_share * elements * elements * samples;
-        case Method::substructuring:
-            return shooting_share * elements * elements / refined_patches * samples;
+        case Method::substructuring:  // of patches, and of all that are cut, those cut again with them
+            return pilot.facing * patches * (patches + 4.0 / 3 * elements) * samples;
         case Method::monte_carlo:
             return 8 * random_sweeps * rows;
         case Method::hierarchical:
         case Method::discontinuity:
             return 0.5 * rows;
         case Method::growing_cells:
-            return network_rays;
+            return 0;  // see forecast_cells
         default:
             return rows;
     }
@@ -149,22 +197,27 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
                  .surfaces = scene.surfaces().size(),
                  .regions = scene.regions().size(),
                  .emitters = scene.emitters().size() + scene.lights().size()};
-    const double solved = (patches ? refined_patches : 1) * static_cast<double>(direct.tree.leaves().size());
-    const bool indirect = plan.options.bounces != 0 && stage.has_indirect_light();
-    const double gathered = indirect ? gathered_by_solved * solved / (patches ? 2 : 1) : 0;
-    const double leaves = plan.knobs.gather_curved ? straight_by_curved * gathered : gathered;
     const Pilot pilot = look(stage, plan, direct);
+    const double projected = static_cast<double>(direct.tree.leaves().size());
+    const double solved = patches ? cut_patches(stage, plan, direct, pilot.mean_light) : projected;
+    const bool indirect = plan.options.bounces != 0 && stage.has_indirect_light();
+    const double gathered = indirect ? (patches ? gathered_by_patches : gathered_by_solved) * projected : 0;
+    const double leaves = plan.knobs.gather_curved ? straight_by_curved * gathered : gathered;
     const double rays_an_element = plan.sums ? 0 : element_rays * pilot.rays;
     out.solve_elements = static_cast<std::size_t>(solved), out.gather_elements = static_cast<std::size_t>(leaves);
     if (indirect)
-        out.rays = method_rays(plan, solved) + gathered * rays_an_element +
+        out.rays = method_rays(plan, pilot, projected, solved) + gathered * rays_an_element +
                    certificate_rays(plan, solved, gathered, rays_an_element);
     out.seconds = out.rays * pilot.gather_seconds + solved * lights_an_element * pilot.light_seconds;
     const bool shoots = plan.options.method == Method::progressive || patches;
-    const double columns =
-        shoots ? std::min(shooting_memory, 4 * shooting_share * solved * solved / (patches ? refined_patches : 1))
-               : 4 * solved * plan.knobs.solve_rays.average;
+    const double columns = shoots ? std::min(shooting_memory, 4 * shooting_share * solved * projected)
+                                  : 4 * solved * plan.knobs.solve_rays.average;
     out.memory_bytes = static_cast<double>(peak_memory_bytes()) + columns + bytes_a_leaf * (solved + leaves);
+    if (plan.options.method == Method::growing_cells) {
+        const CellsForecast cells =
+            forecast_cells(units_of(stage, plan.knobs, plan.options), pilot.facing, pilot.blocked);
+        out.rays += cells.rays, out.memory_bytes += cells.bytes;
+    }
     return out;
 }
 

@@ -33,8 +33,9 @@ TEST(Plan, ACoarseAnswerComesFirstInAHurry) {
 
 /// Within a factor of two of what the solve takes.
 TEST(Forecast, IsThatOfTheMethodThatSolves) {
-    for (const auto& [family, method] : {std::pair{"tube", Method::automatic}, std::pair{"cornell", Method::automatic},
-                                         std::pair{"cornell", Method::progressive}}) {
+    for (const auto& [family, method] :
+         {std::pair{"tube", Method::automatic}, std::pair{"cornell", Method::automatic},
+          std::pair{"cornell", Method::progressive}, std::pair{"tube", Method::substructuring}}) {
         const Scene scene = built_scene(family);
         const SolveOptions options{.method = method, .error = 0.06};
         const Result<Forecast> forecast = forecast_solve(scene, options);

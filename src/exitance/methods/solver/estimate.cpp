@@ -11,7 +11,7 @@
 namespace exitance {
 
 double Solver::margin(std::size_t points) {
-    const double first = static_cast<double>(CertificateOptions().points);
+    const double first = static_cast<double>(CertificateOptions::points_for(0));
     return 1 - calibrated::estimate_margin * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
 }
 

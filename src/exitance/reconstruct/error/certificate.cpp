@@ -1,14 +1,14 @@
 #include "exitance/reconstruct/error/certificate.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 #include <vector>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/geometry/polygon.hpp"
-#include "exitance/reconstruct/error/certificate_places.hpp"
+#include "exitance/reconstruct/error/batch_mean.hpp"
 #include "exitance/reconstruct/error/error_tail.hpp"
+#include "exitance/reconstruct/error/residual_samples.hpp"
 #include "exitance/reconstruct/error/surface_errors.hpp"
 #include "exitance/transport/distributed.hpp"
 #include "exitance/transport/narrow_places.hpp"
@@ -16,31 +16,6 @@
 
 namespace exitance {
 namespace {
-
-/// One point of the certificate: two independent estimates of the residual there.
-struct Sample {
-    ElementTree::Place place;  ///< In the delivered function.
-    RegionId region;
-    SurfaceId surface;
-    std::uint32_t room = 0;
-    double weight = 0;
-    Spectrum r1, r2;          ///< The residual.
-    double squared = 0;       ///< Of the error there, mean over the bands, (W/m^2)^2.
-    Spectrum local1, local2;  ///< Its part by the local pass, where known.
-    bool tells_local = false;
-    Spectrum delivered;      ///< E there, less direct light, W/m^2.
-    std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
-    std::uint32_t rays = 0;
-};
-
-/// The face of a region that holds a point of it.
-SurfaceId surface_at(const Scene& scene, RegionId region, const Point& x) {
-    const auto& surfaces = scene.regions()[region].surfaces;
-    if (surfaces.size() > 1)
-        for (SurfaceId s : surfaces)
-            if (contains(scene.outline(s), scene.surfaces()[s].normal, x)) return s;
-    return surfaces[0];
-}
 
 /// b + rho H b + (rho H)^2 b + ..., on the coarse mesh.
 std::vector<Spectrum> respond(const RadiositySystem& system, double residual) {
@@ -57,33 +32,16 @@ double largest(const std::vector<Spectrum>& values) {
 
 /// A bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit light.
 double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
+    const double residual = 0.5 * calibrated::refined_residual;  // what is missing makes the bound too small
     const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
-    const std::vector<Spectrum> u = respond({H, rho, ones, area}, 0.01);
+    const std::vector<Spectrum> u = respond({H, rho, ones, area}, residual);
     // The adjoint w = 1 + H rho w, by way of rho w = rho + rho H (rho w).
-    const std::vector<Spectrum> rho_w = respond({H, rho, rho, area}, 0.01);
+    const std::vector<Spectrum> rho_w = respond({H, rho, rho, area}, residual);
     std::vector<Spectrum> w(rho.size());
     H.gather(rho_w, w);
     for (Spectrum& v : w) v += Spectrum(1.0);
     return std::sqrt(largest(u) * largest(w));
 }
-
-/// Where light is summed, one sample in so many tells the parts of the residual: that is another sum, for less to know.
-constexpr std::size_t local_every = 4;
-
-constexpr std::size_t batches = 32;   ///< Of samples, for the spread of their mean.
-constexpr double student_95 = 1.696;  ///< One-sided, 31 degrees of freedom.
-
-/// The mean of batches, and how uncertain it is.
-struct BatchMean {
-    double mean = 0, standard_error = 0;
-
-    explicit BatchMean(const std::array<double, batches>& values) {
-        for (double v : values) mean += v / batches;
-        double spread = 0;
-        for (double v : values) spread += (v - mean) * (v - mean) / (batches * (batches - 1.0));
-        standard_error = std::sqrt(spread);
-    }
-};
 
 }  // namespace
 
@@ -99,7 +57,7 @@ struct Certifier::Content {
     std::vector<double> area;
     RayRows H;  ///< Between the leaves of `light`.
     std::size_t looks = 0;
-    std::vector<Sample> samples;  ///< Of all looks.
+    std::vector<ResidualSample> samples;  ///< Of all looks.
     std::vector<Spectrum>
         late;  ///< The smooth part of the error, by leaf number of the coarse mesh, as of the last one.
     Field<ElementId, std::uint8_t> narrow;  ///< Leaves of the delivered function.
@@ -123,7 +81,6 @@ struct Certifier::Content {
     }
 
     void measure_residuals();
-    Spectrum residual_by_rays(const Sample& sample, unsigned rays, std::uint64_t key, GatherWorkspace& workspace) const;
     void tell_p99(Certificate& out);
     std::vector<Spectrum> mean_residuals() const;
     std::vector<Spectrum> late_response() const;
@@ -132,73 +89,16 @@ struct Certifier::Content {
     std::vector<RoomError> rooms;
 };
 
-/// The residual at stratified points, twice each.
+/// One more look: the residual at stratified points, twice each.
 void Certifier::Content::measure_residuals() {
-    // Where light is reflected often, a small mean of the residual makes a large error, and has to be told from noise.
-    const double often = std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, 8.0);
-    const double wanted =
-        often * 0.09 / (0.2 * options.error * options.error * std::sqrt(static_cast<double>(options.points)));
-    const auto rays_at = [&](ElementId leaf) {
-        const double known = options.leaves ? 0.05 * (*options.leaves)[leaf].rays : wanted;
-        return std::bit_ceil(static_cast<unsigned>(std::clamp(known, 16.0, 4096.0)));
-    };
     const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
     const std::vector<WeightedSample> places = options.places.empty()
                                                    ? stratified_places(stage, indirect.tree, narrow, options, seed)
                                                    : in_turn(options.places, options.points);
     const std::size_t before = samples.size();
     samples.resize(before + places.size());
-    shared_ranges(
-        places.size(), 8,
-        [&](std::size_t begin, std::size_t end) {
-            GatherWorkspace workspace;
-            ElementGather::Workspace sums;
-            ClusteredLight::Workspace clustered;
-            for (std::size_t k = begin; k < end; ++k) {
-                const auto& [place, weight] = places[k];
-                const RegionId region = indirect.tree.region(place.element);
-                const Point x = indirect.tree.patch(place.element).at(place.uv);
-                const Normal& n = stage.scene.regions()[region].plane.n;
-                const Spectrum& reflectance = stage.scene.material(region).reflectance;
-                Spectrum delivered = indirect.at(place);
-                if (options.direct_in_elements)
-                    delivered -= stage.clustered.at(x, n, region, point_accuracy(options.error), clustered).irradiance;
-                Sample& sample = samples[before + k];
-                sample.place = place, sample.region = region, sample.weight = weight;
-                sample.delivered = delivered;
-                sample.surface = surface_at(stage.scene, region, x);
-                if (stage.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage.rooms.at(region, x));
-                sample.leaf = light.numbering.number[coarse.find(region, x).element];
-                if (options.summed) {
-                    const bool is_covered = stage.occluders.is_covered(x, n, region);
-                    const auto sum = [&](std::span<const ElementGather> parts) {
-                        Spectrum arriving;
-                        for (const ElementGather& part : parts)
-                            if (!is_covered) arriving += part(x, n, region, options.summed->share, sums);
-                        return arriving;
-                    };
-                    sample.r1 = sample.r2 = reflectance * (sum(options.summed->delivered) - delivered);
-                    if (!options.summed->gathered.empty() && k % local_every == 0) {
-                        sample.local1 = sample.local2 = reflectance * (sum(options.summed->gathered) - delivered);
-                        sample.tells_local = true;
-                    }
-                    continue;
-                }
-                const unsigned rays = rays_at(place.element);
-                const auto measure = [&](std::uint64_t which, Spectrum& r, Spectrum& local) {
-                    const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
-                    cast_gather(stage, x, n, region, rays, key, workspace);
-                    r = reflectance * (read_gather(b, workspace).irradiance - delivered);
-                    sample.tells_local = options.gathered != nullptr;
-                    if (options.gathered)
-                        local = reflectance * (read_gather(*options.gathered, workspace).irradiance - delivered);
-                };
-                measure(1, sample.r1, sample.local1);
-                measure(2, sample.r2, sample.local2);
-                sample.rays = 2 * rays;
-            }
-        },
-        [&](std::size_t k) -> Sample& { return samples[before + k]; }, {"certificate"});
+    const ResidualSampler sampler(stage, indirect, b, options, constant, coarse, light.numbering);
+    sampler.measure(places, seed, std::span(samples).subspan(before));
     ++looks;
 }
 
@@ -210,9 +110,9 @@ std::vector<Spectrum> Certifier::Content::mean_residuals() const {
     const std::size_t regions = stage.scene.regions().size();
     std::vector<Spectrum> of_place(regions * std::max<std::size_t>(1, stage.rooms.count()));
     std::vector<double> count(of_place.size());
-    const auto place_of = [&](const Sample& s) { return s.room * regions + s.region.value; };
-    const auto residual = [](const Sample& s) { return 0.5 * (s.r1 + s.r2); };
-    for (const Sample& s : samples) {
+    const auto place_of = [&](const ResidualSample& s) { return s.room * regions + s.region.value; };
+    const auto residual = [](const ResidualSample& s) { return 0.5 * (s.r1 + s.r2); };
+    for (const ResidualSample& s : samples) {
         const double n = s.weight * static_cast<double>(options.points);
         of_place[place_of(s)] += n * residual(s);
         count[place_of(s)] += n;
@@ -226,7 +126,7 @@ std::vector<Spectrum> Certifier::Content::mean_residuals() const {
         std::size_t count = 0;
     };
     std::vector<Leaf> of_leaf(rho.size());
-    for (const Sample& s : samples) {
+    for (const ResidualSample& s : samples) {
         const Spectrum beyond = residual(s) - of_place[place_of(s)];
         Leaf& leaf = of_leaf[s.leaf];
         leaf.sum += s.weight * beyond, leaf.square += s.weight * s.weight * beyond * beyond;
@@ -255,7 +155,7 @@ std::vector<Spectrum> Certifier::Content::mean_residuals() const {
 /// the coarse mesh.
 std::vector<Spectrum> Certifier::Content::late_response() const {
     const std::vector<Spectrum> rhs = mean_residuals();
-    std::vector<Spectrum> response = respond({H, rho, rhs, area}, 0.02);
+    std::vector<Spectrum> response = respond({H, rho, rhs, area}, calibrated::refined_residual);
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
 }
@@ -271,7 +171,7 @@ void Certifier::Content::judge_rooms(Certificate& out) {
     std::vector<std::array<double, batches>> squares(count);
     std::vector<double> weight(count), told(count), local(count), method(count);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-        const Sample& s = samples[k];
+        const ResidualSample& s = samples[k];
         squares[s.room][k % batches] += s.weight * batches * s.squared;
         weight[s.room] += s.weight;
         if (!s.tells_local) continue;
@@ -305,7 +205,7 @@ Certificate Certifier::Content::judge() {
     std::array<double, batches> residual_squared{}, error_squared{};
     double local_squared = 0, method_squared = 0, told = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-        Sample& s = samples[k];
+        ResidualSample& s = samples[k];
         const double weight = s.weight / static_cast<double>(looks);
         residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
         s.squared = mean((s.r1 + late[s.leaf]) * (s.r2 + late[s.leaf]));
@@ -332,22 +232,13 @@ Certificate Certifier::Content::judge() {
     return out;
 }
 
-/// The residual at a point, by so many rays.
-Spectrum Certifier::Content::residual_by_rays(const Sample& sample, unsigned rays, std::uint64_t key,
-                                              GatherWorkspace& workspace) const {
-    const Point x = indirect.tree.patch(sample.place.element).at(sample.place.uv);
-    const Region& region = stage.scene.regions()[sample.region];
-    cast_gather(stage, x, region.plane.n, sample.region, rays, key, workspace);
-    return stage.scene.material(sample.region).reflectance * (read_gather(b, workspace).irradiance - sample.delivered);
-}
-
 void Certifier::Content::tell_p99(Certificate& out) {
-    constexpr double share = 0.01;
+    constexpr double share = 0.01;  // given by the name
     constexpr unsigned most_rays = 1 << 14;
     std::vector<WeightedError> points;
     std::vector<unsigned> rays;
     double mean_square = 0;
-    for (const Sample& s : samples) {
+    for (const ResidualSample& s : samples) {
         const double weight = s.weight / static_cast<double>(looks);
         points.push_back({rms_over_bands(0.5 * (s.r1 + s.r2) + late[s.leaf]), weight});
         rays.push_back(s.rays);
@@ -357,6 +248,7 @@ void Certifier::Content::tell_p99(Certificate& out) {
         out.p99 = error_below(points, {}, share) / mean_reflected;
         return;
     }
+    const ResidualSampler sampler(stage, indirect, b, options, constant, coarse, light.numbering);
     const auto by_more_rays = [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
         const auto rays_at = [&](std::size_t i) { return std::min(most_rays, factor * samples[i].rays / 2); };
         for (std::size_t i : which) out.rays += 2 * rays_at(i);
@@ -365,11 +257,11 @@ void Certifier::Content::tell_p99(Certificate& out) {
             [&](std::size_t begin, std::size_t end) {
                 GatherWorkspace workspace;
                 for (std::size_t k = begin; k < end; ++k) {
-                    const Sample& s = samples[which[k]];
+                    const ResidualSample& s = samples[which[k]];
                     for (std::uint64_t half = 0; half < 2; ++half) {
                         const std::uint64_t key =
                             hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);
-                        error[k][half] = late[s.leaf] + residual_by_rays(s, rays_at(which[k]), key, workspace);
+                        error[k][half] = late[s.leaf] + sampler.by_rays(s, rays_at(which[k]), key, workspace);
                     }
                 }
             },
@@ -391,7 +283,7 @@ std::vector<FaceError> Certifier::surface_errors() const {
     const Content& c = *content_;
     if (c.rooms.empty()) return {};
     std::vector<PointError> points;
-    for (const Sample& s : c.samples) {
+    for (const ResidualSample& s : c.samples) {
         const double light_there = c.rooms[s.room].mean;
         points.push_back({s.surface, s.weight, s.squared / (light_there * light_there)});
     }

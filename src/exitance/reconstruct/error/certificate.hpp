@@ -17,7 +17,7 @@ struct SummedLight {
 };
 
 struct CertificateOptions {
-    double error = 0.02;  ///< The relative error that is to be resolved: it sets the number of points and rays.
+    double error = 1;  ///< The relative error that is to be resolved: it sets the number of rays.
     std::uint64_t seed = 1;
     std::size_t points = points_for(0);  ///< How many the residual is measured at by one look.
     bool direct_in_elements = false;     ///< Does the delivered function hold the emitters' light too?

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/reconstruct/error/certificate_places.hpp"
+
+namespace exitance {
+
+/// One point of the certificate: two independent estimates of the residual there.
+struct ResidualSample {
+    ElementTree::Place place;  ///< In the delivered function.
+    RegionId region;
+    SurfaceId surface;
+    std::uint32_t room = 0;
+    double weight = 0;
+    Spectrum r1, r2;          ///< The residual.
+    double squared = 0;       ///< Of the error there, mean over the bands, (W/m^2)^2.
+    Spectrum local1, local2;  ///< Its part by the local pass, where known.
+    bool tells_local = false;
+    Spectrum delivered;      ///< E there, less direct light, W/m^2.
+    std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
+    std::uint32_t rays = 0;
+};
+
+/// Rays of each of the two gathers at so many points by which a relative error of their mean can be told. A gather of n
+/// rays has a variance in proportion to 1 / n, and so has the product of two; hence for noise in the mean product that
+/// is a share of the error's square
+///
+///     n = `certificate_noise` / (error^2 sqrt(points)).
+double rays_to_tell(double error, std::size_t points);
+
+/// So many rays as a power of two, within the limits of a certificate.
+unsigned certificate_rays(double wanted);
+
+/// Measures residuals of a delivered function at points: see `Certifier`.
+class ResidualSampler {
+  public:
+    /// `constant` is the factor from the residual to the bound on the error. `coarse` finds leaves that `numbering`
+    /// numbers. All but numbers must outlive it.
+    ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
+                    const CertificateOptions& options, double constant, const ElementLocator& coarse,
+                    const LeafNumbering& numbering);
+
+    /// Measures the residual at places, twice each, into as many samples. O(places x rays), parallel.
+    void measure(std::span<const WeightedSample> places, std::uint64_t seed, std::span<ResidualSample> samples) const;
+    /// The residual at a point once more, by so many rays.
+    Spectrum by_rays(const ResidualSample& sample, unsigned rays, std::uint64_t key, GatherWorkspace& workspace) const;
+
+  private:
+    struct Workspace {
+        GatherWorkspace rays;
+        ElementGather::Workspace sums;
+        ClusteredLight::Workspace clustered;
+    };
+    void locate(const WeightedSample& place, ResidualSample& sample, Workspace& w) const;
+    void sum_elements(bool tells_local, ResidualSample& sample, Workspace& w) const;
+    void cast_rays(std::uint64_t seed, std::size_t k, ResidualSample& sample, Workspace& w) const;
+    unsigned rays_at(ElementId leaf) const;
+    Point point(const ResidualSample& sample) const;
+
+    const Stage& stage_;
+    const ElementFunction& indirect_;
+    const ReflectedLight& b_;
+    const CertificateOptions& options_;
+    double often_;  ///< More rays, where light is reflected often.
+    const ElementLocator& coarse_;
+    const LeafNumbering& numbering_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,133 @@
+#include "exitance/transport/light_openings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "exitance/core/parallel.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double widest_opening = 0.1;  ///< Of the smaller room's walls.
+constexpr double narrower = 0.5;        ///< An opening, than cuts on either side of it.
+constexpr double beside = 0.2;          ///< Of the smaller room's walls: how far off these are.
+constexpr int steps =
+    60;  ///< Of light to and fro, half of which stays: what an opening of a twentieth joins differs by a third still.
+
+/// Of what leaves send to the sky.
+double mean_towards_sky(const Flow& flow, const LeafNumbers& leaves, const std::vector<double>& x) {
+    double sum = 0, all = 0;
+    for (std::uint32_t i : leaves) {
+        const auto hits = flow.rows.hits(i);
+        const auto lost = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
+        const double sent = flow.area[i] * lost / static_cast<double>(hits.size());
+        sum += sent * x[i], all += sent;
+    }
+    return all > 0 ? sum / all : 0;
+}
+
+/// What is left of light that differs from place to place after it has gone to and fro within a part.
+std::vector<double> slow_difference(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part) {
+    std::vector<double> x = flow.start, next(flow.area.size());
+    for (int step = 0; step < steps; ++step) {
+        const double sky = flow.has_sky ? mean_towards_sky(flow, leaves, x) : 0;
+        parallel_for(leaves.size(), 256, [&](std::size_t k) {
+            const std::uint32_t i = leaves[k];
+            double sum = 0;
+            std::size_t met = 0;
+            for (std::uint32_t j : flow.rows.hits(i)) {
+                if (j != RayRows::missed && flow.part[j] == part) sum += x[j], ++met;
+                if (j == RayRows::missed && flow.has_sky) sum += sky, ++met;
+            }
+            next[i] = met > 0 ? 0.5 * (x[i] + sum / static_cast<double>(met)) : x[i];
+        });
+        double mean = 0, area = 0, largest = 0;
+        for (std::uint32_t i : leaves) mean += flow.area[i] * next[i], area += flow.area[i];
+        for (std::uint32_t i : leaves) x[i] = next[i] - mean / area, largest = std::max(largest, std::abs(x[i]));
+        for (std::uint32_t i : leaves) x[i] /= largest > 0 ? largest : 1;
+    }
+    return x;
+}
+
+/// The opening between the first leaves of an order and the others, m^2, after each of them; by what the leaves on the
+/// smaller side see of the other: few rays from the larger one say little.
+struct Cuts {
+    std::vector<double> area, opening;  ///< Of the first k + 1 leaves.
+};
+
+Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
+    std::vector<std::uint32_t> rank(flow.area.size());
+    for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<std::uint32_t>(k);
+    const std::size_t n = order.size();
+    // Light that a leaf sends to one of higher (lower) rank crosses all cuts in between; what meets nothing leaves by
+    // an opening, too.
+    std::vector<double> up(n + 1), down(n + 1), lost(n);
+    double all_lost = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto hits = flow.rows.hits(order[k]);
+        const double each = flow.area[order[k]] / static_cast<double>(hits.size());
+        for (std::uint32_t j : hits) {
+            if (j == RayRows::missed) lost[k] += each;
+            if (j == RayRows::missed || flow.part[j] != part) continue;
+            const std::size_t other = rank[j];
+            if (other > k) up[k] += each, up[other] -= each;
+            if (other < k) down[other] += each, down[k] -= each;
+        }
+        // What sees nothing at all is covered, not outdoors.
+        if (std::count(hits.begin(), hits.end(), RayRows::missed) == std::ssize(hits)) lost[k] = 0;
+        all_lost += lost[k];
+    }
+    Cuts out{std::vector<double>(n), std::vector<double>(n)};
+    double area = 0, total = 0, u = 0, d = 0, lost_below = 0;
+    for (std::uint32_t i : order) total += flow.area[i];
+    for (std::size_t k = 0; k < n; ++k) {
+        area += flow.area[order[k]], u += up[k], d += down[k], lost_below += lost[k];
+        out.area[k] = area;
+        out.opening[k] = 2 * area <= total ? u + lost_below : d + all_lost - lost_below;
+    }
+    return out;
+}
+
+/// Is the cut narrower than those beside it? Along a corridor all are alike.
+bool is_narrow(const Cuts& cuts, std::size_t k, double smaller) {
+    for (const double off : {-beside, beside}) {
+        const auto at = std::lower_bound(cuts.area.begin(), cuts.area.end(), cuts.area[k] + off * smaller);
+        const auto other = static_cast<std::size_t>(at - cuts.area.begin());
+        if (other + 1 < cuts.area.size() && other != k && cuts.opening[other] * narrower < cuts.opening[k])
+            return false;
+    }
+    return true;
+}
+
+/// After how many leaves of an order to cut it, so that most lies behind the opening; 0: there is none.
+std::size_t best_cut(const Cuts& cuts) {
+    const std::size_t n = cuts.area.size();
+    const double total = cuts.area.back();
+    std::size_t best = 0;
+    double most = 0;
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+        const double smaller = std::min(cuts.area[k], total - cuts.area[k]);
+        if (smaller <= most || cuts.opening[k] >= widest_opening * smaller || !is_narrow(cuts, k, smaller)) continue;
+        best = k + 1, most = smaller;
+    }
+    return best;
+}
+
+}  // namespace
+
+std::optional<OpeningBetween> find_opening(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part) {
+    LeafNumbers order = leaves;
+    const std::vector<double> x = slow_difference(flow, order, part);
+    std::sort(order.begin(), order.end(), [&](auto i, auto j) { return x[i] != x[j] ? x[i] < x[j] : i < j; });
+    const Cuts cuts = sweep(flow, order, part);
+    const std::size_t cut = best_cut(cuts);
+    if (cut == 0) return std::nullopt;
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cut);
+    OpeningBetween out{{order.begin(), middle}, {middle, order.end()}};
+    if (2 * cuts.area[cut - 1] > cuts.area.back()) std::swap(out.small, out.large);
+    return out;
+}
+
+}  // namespace exitance
