@@ -1,6 +1,7 @@
 #include "exitance/mesh/contact_lines.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <tuple>
 
 #include "exitance/core/shared_results.hpp"
@@ -41,38 +42,49 @@ void strips_into_gap(const Point& p, const Point& q, const Vec3& inwards, double
     }
 }
 
-/// Where a gap opens along an edge: of a face that hovers over the plane of a region, to the side on which that face
-/// is; or of the region itself, where another face hovers over it there, inwards.
-void gap_along_edge(const Scene& scene, const Bvh& faces, const std::pair<Point, Point>& edge, RegionId of_edge,
-                    RegionId own, double least, double gap, double tolerance, std::vector<Segment>& out) {
-    if (gap <= least) return;
+/// How high things stand over a surface for a gap to be between them, metres.
+struct GapHeights {
+    double least, most;
+    bool hold(double height) const { return height > least && height <= most; }
+};
+
+/// The direction in a plane to the left of a border's edge, which runs counter-clockwise: to the inside. Length 1.
+Vec3 inwards_of(const Point& p, const Point& q, const Normal& n) {
+    const Vec3 left = cross(n, q - p);
+    return (1 / norm(left)) * left;
+}
+
+/// Where a gap opens along the edge of another face, which hovers over the plane: to the side on which that face is.
+/// Upright sides have their edges there, too, but nothing under them is a gap.
+void gap_under_face(const Point& p, const Point& q, const Normal& n, const Plane& plane, const GapHeights& heights,
+                    std::vector<Segment>& out) {
+    constexpr double alike = 0.9;  // cosine
+    if (dot(n, plane.n) >= -alike) return;
+    const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
+    if (std::min(hp, hq) > heights.least && heights.hold(std::max(hp, hq)))
+        strips_into_gap(p, q, inwards_of(p, q, n), std::max(hp, hq), out);
+}
+
+/// Where a gap opens along an edge of the region itself, over which another face hovers: inwards.
+void gap_over_border(const Scene& scene, const Bvh& faces, const Point& p, const Point& q, RegionId own,
+                     const GapHeights& heights, double tolerance, std::vector<Segment>& out) {
     const Plane& plane = scene.regions()[own].plane;
-    const Normal& n = scene.regions()[of_edge].plane.n;
-    const Vec3 left = cross(n, edge.second - edge.first);
-    const Vec3 inwards = (1 / norm(left)) * left;  // borders run counter-clockwise
-    if (of_edge != own) {
-        // Upright sides have their edges there, too, but nothing under them is a gap.
-        constexpr double alike = 0.9;  // cosine
-        const double lower = plane.signed_distance(edge.first), upper = plane.signed_distance(edge.second);
-        if (dot(n, plane.n) < -alike && std::min(lower, upper) > least && std::max(lower, upper) <= gap)
-            strips_into_gap(edge.first, edge.second, inwards, std::max(lower, upper), out);
-        return;
-    }
-    const Point x = 0.5 * (edge.first + edge.second) + (10 * tolerance) * inwards;
-    double height = gap;
+    const Vec3 inwards = inwards_of(p, q, plane.n);
+    const Point x = 0.5 * (p + q) + (10 * tolerance) * inwards;
+    double height = heights.most;
     bool is_covered = false;
     Box above;
-    above.add(x + least * plane.n), above.add(x + gap * plane.n);
+    above.add(x + heights.least * plane.n), above.add(x + heights.most * plane.n);
     faces.visit_box(above, [&](std::uint32_t i) {
         const SurfaceId s(i);
         const Normal& other = scene.surfaces()[s].normal;
         const double down = -dot(other, plane.n);
         if (scene.surfaces()[s].region == own || down <= 0) return;
         const double h = dot(other, x - scene.outline(s)[0]) / down;
-        if (h <= least || h > height || !contains(scene.outline(s), other, x + h * plane.n)) return;
+        if (!heights.hold(h) || h > height || !contains(scene.outline(s), other, x + h * plane.n)) return;
         height = h, is_covered = true;
     });
-    if (is_covered) strips_into_gap(edge.first, edge.second, inwards, height, out);
+    if (is_covered) strips_into_gap(p, q, inwards, height, out);
 }
 
 /// The line in which a face crosses a plane; its edges that hover over the plane are left out.
@@ -95,19 +107,6 @@ void crossing_of_face(std::span<const Point> outline, const Plane& plane, double
     std::sort(crossings.begin(), crossings.end(),
               [&](const Point& a, const Point& b) { return dot(a, direction) < dot(b, direction); });
     out.push_back({crossings.front(), crossings.back(), 0});
-}
-
-/// The area of an element before contacts cut it: what its size asks of them is to hold for all of its parts, or else
-/// the first cuts would hide the others. Contacts alone cut otherwise than into halves and quarters.
-double area_before_contacts(const ElementTree& tree, ElementId e) {
-    const auto is_share = [](double ratio, double share) { return std::abs(ratio - share) < 1e-6 * share; };
-    while (!tree.parent(e).is_none()) {
-        const ElementId parent = tree.parent(e);
-        const double ratio = tree.area(e) / tree.area(parent);
-        if (!tree.is_cell(e) && (is_share(ratio, 0.5) || is_share(ratio, 0.25))) break;
-        e = parent;
-    }
-    return tree.area(e);
 }
 
 /// Length of the part of a segment inside a convex polygon, as a share of the segment, and where it runs.
@@ -170,52 +169,63 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
     borders_ = Bvh(boxes);
 }
 
-std::vector<std::pair<Vec2, Vec2>> ContactLines::within(const ElementTree& tree, ElementId e) const {
-    const Plane& plane = scene_->regions()[tree.region(e)].plane;
-    const std::vector<Vec2> domain = tree.domain(e);
-    const double gap = std::max(tolerance_, height_of_jump(area_before_contacts(tree, e)));
+std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, ElementId e, double area) const {
+    const RegionId own = tree.region(e);
+    const Plane& plane = scene_->regions()[own].plane;
+    const double width = std::sqrt(area), gap = std::max(tolerance_, height_of_jump(area));
     Box box;
-    double longest = 0;
-    const std::vector<Point> outline = tree.outline(e);
-    for (const Point& corner : outline) longest = std::max(longest, norm(corner - outline[0]));
-    // What contacts turned by tiny angles leave between them is too thin to be cut again with any exactness.
-    constexpr double thinnest = 100;  // in tolerances: 1e-5 of the scene's size
-    if (tree.area(e) <= thinnest * tolerance_ * longest) return {};
-    for (const Point& corner : outline) {
+    for (const Point& corner : tree.outline(e)) {
         box.add(corner - tolerance_ * plane.n);
         box.add(corner + gap * plane.n);
     }
     box.lo -= Vec3{tolerance_, tolerance_, tolerance_};
     box.hi += Vec3{tolerance_, tolerance_, tolerance_};
-    std::vector<Segment> segments;
+    std::vector<Line> out;
     borders_.visit_box(box, [&](std::uint32_t i) {
-        if (edges_[i].region != tree.region(e))
-            contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, segments);
+        if (edges_[i].region != own) contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, out);
     });
     // Strips lie beside the edge that they begin at, over parts that others have cut off from it, too.
     // They are worth their number where all together they are a noticeable part of an element.
     constexpr double noticeable = 0.1;  // of its width
-    const double lowest =
-        std::max(10 * tolerance_, noticeable / deepest_strip * std::sqrt(area_before_contacts(tree, e)));
-    const double reach = deepest_strip * gap;
-    Box around = box;
-    around.lo -= Vec3{reach, reach, reach}, around.hi += Vec3{reach, reach, reach};
-    borders_.visit_box(around, [&](std::uint32_t i) {
+    const GapHeights heights{std::max(10 * tolerance_, noticeable / deepest_strip * width), gap};
+    const Vec3 within_plane = {std::sqrt(std::max(0.0, 1 - plane.n.x * plane.n.x)),
+                               std::sqrt(std::max(0.0, 1 - plane.n.y * plane.n.y)),
+                               std::sqrt(std::max(0.0, 1 - plane.n.z * plane.n.z))};
+    const Vec3 reach = deepest_strip * gap * within_plane;
+    Box wider = box;
+    wider.lo -= reach, wider.hi += reach;
+    borders_.visit_box(wider, [&](std::uint32_t i) {
         const auto& [a, b, region] = edges_[i];
-        gap_along_edge(*scene_, faces_, {a, b}, region, tree.region(e), lowest, gap, tolerance_, segments);
+        if (region == own)
+            gap_over_border(*scene_, faces_, a, b, own, heights, tolerance_, out);
+        else
+            gap_under_face(a, b, scene_->regions()[region].plane.n, plane, heights, out);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
-        if (scene_->surfaces()[s].region != tree.region(e))
-            crossing_of_face(scene_->outline(s), plane, tolerance_, gap, segments);
+        if (scene_->surfaces()[s].region != own) crossing_of_face(scene_->outline(s), plane, tolerance_, gap, out);
     });
-    std::vector<std::pair<Vec2, Vec2>> out;
+    return out;
+}
+
+std::vector<std::pair<Vec2, Vec2>> ContactLines::inside(const ElementTree& tree, ElementId e,
+                                                        std::vector<Line>& lines) const {
+    const std::vector<Point> outline = tree.outline(e);
+    double longest = 0;
+    for (const Point& corner : outline) longest = std::max(longest, norm(corner - outline[0]));
+    // What contacts turned by tiny angles leave between them is too thin to be cut again with any exactness.
+    constexpr double thinnest = 100;  // in tolerances: 1e-5 of the scene's size
+    if (tree.area(e) <= thinnest * tolerance_ * longest) lines.clear();
+    const std::vector<Vec2> domain = tree.domain(e);
     const Patch& patch = tree.patch(e);
-    for (const Segment& segment : segments) {
-        Vec2 a = patch.coordinates(segment.a), b = patch.coordinates(segment.b);
+    std::vector<std::pair<Vec2, Vec2>> out;
+    std::erase_if(lines, [&](const Line& line) {
+        Vec2 a = patch.coordinates(line.a), b = patch.coordinates(line.b);
+        if (!clip_to_domain(domain, a, b)) return true;
         constexpr double shortest = 1e-3;  // of the element: a contact at a point alone parts nothing
-        if (clip_to_domain(domain, a, b) && std::hypot(b.x - a.x, b.y - a.y) > shortest) out.emplace_back(a, b);
-    }
+        if (std::hypot(b.x - a.x, b.y - a.y) > shortest) out.emplace_back(a, b);
+        return false;
+    });
     return out;
 }
 
@@ -262,51 +272,58 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
     constexpr int most_in_vain = 6;
     struct Open {
         ElementId element;
+        double area;                              ///< Before contacts cut it, m^2.
         std::size_t lines;                        ///< When they last became fewer by a quarter,
         int in_vain;                              ///< and how many cuts ago that was.
-        std::size_t given = ~std::size_t(0);      ///< Of those given: which one.
         std::size_t of_parent = ~std::size_t(0);  ///< Lines that the element had before a line cut it,
         int unchanged = 0;                        ///< and how often a part had no fewer.
+        std::shared_ptr<const std::vector<ContactLines::Line>> around = {};  ///< If they were found already.
     };
     // Most have none: all are looked at together, and what is left to cut is little.
-    std::vector<std::vector<std::pair<Vec2, Vec2>>> of_given(from.size());
+    std::vector<std::vector<ContactLines::Line>> of_given(from.size());
     find_together(
-        of_given, 64, [&](std::size_t i) { return contacts.within(tree, from[i]); },
-        [](auto& archive, std::vector<std::pair<Vec2, Vec2>>& lines) {
-            std::vector<std::array<Vec2, 2>> plain;
-            for (const auto& [a, b] : lines) plain.push_back({a, b});
-            archive(plain);
-            lines.clear();
-            for (const std::array<Vec2, 2>& line : plain) lines.emplace_back(line[0], line[1]);
+        of_given, 64,
+        [&](std::size_t i) {
+            std::vector<ContactLines::Line> lines = contacts.around(tree, from[i], tree.area(from[i]));
+            contacts.inside(tree, from[i], lines);
+            return lines;
         },
-        "contacts");
+        [](auto& archive, std::vector<ContactLines::Line>& lines) { archive(lines); }, "contacts");
     std::vector<Open> open;
     for (std::size_t i = 0; i < from.size(); ++i)
-        if (!of_given[i].empty()) open.push_back({from[i], ~std::size_t(0), 0, i});
+        if (!of_given[i].empty())
+            open.push_back({.element = from[i],
+                            .area = tree.area(from[i]),
+                            .lines = ~std::size_t(0),
+                            .in_vain = 0,
+                            .around = std::make_shared<std::vector<ContactLines::Line>>(std::move(of_given[i]))});
     while (!open.empty()) {
-        Open now = open.back();
+        Open now = std::move(open.back());
         const ElementId e = now.element;
         open.pop_back();
-        const std::vector<std::pair<Vec2, Vec2>> lines =
-            now.given < of_given.size() ? std::move(of_given[now.given]) : contacts.within(tree, e);
+        auto around = now.around ? *now.around : contacts.around(tree, e, now.area);
+        const std::vector<std::pair<Vec2, Vec2>> lines = contacts.inside(tree, e, around);
         // A line that has cut an element stands in neither part, unless rounding leaves it there, as among nearly
         // parallel ones that are closer than the cut is exact.
         if (lines.size() >= now.of_parent && ++now.unchanged > most_in_vain) continue;
         if (lines.size() > many) {
             if (lines.size() < now.lines - now.lines / 4)
-                now = {e, lines.size(), 0, now.given};
+                now = {e, now.area, lines.size(), 0};
             else if (++now.in_vain > most_in_vain)
                 continue;
-            for (ElementId child : refine_element(tree, e)) open.push_back({child, now.lines, now.in_vain});
+            // Halves are smaller elements, for which less is a gap: their lines are found anew.
+            for (ElementId child : refine_element(tree, e))
+                open.push_back({child, now.area * tree.area(child) / tree.area(e), now.lines, now.in_vain});
             if (!tree.is_leaf(e)) continue;
         }
+        const auto of_parts = std::make_shared<std::vector<ContactLines::Line>>(std::move(around));
         for (const auto& [a, b] : lines) {
             const Vec2 d = b - a;
             const double length = std::hypot(d.x, d.y);
             const Vec2 normal = {-d.y / length, d.x / length};
             if (!cut_along(tree, e, {normal, dot(normal, a)})) continue;
             for (ElementId child : tree.children(e))
-                open.push_back({child, now.lines, now.in_vain, ~std::size_t(0), lines.size(), now.unchanged});
+                open.push_back({child, now.area, now.lines, now.in_vain, lines.size(), now.unchanged, of_parts});
             break;  // the children look for their own share of the other contacts
         }
     }

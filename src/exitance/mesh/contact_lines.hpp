@@ -16,19 +16,23 @@ class ContactLines {
     /// The scene must outlive it. O(n log n).
     explicit ContactLines(const Scene& scene);
 
-    /// The contacts of an element's domain with faces of other regions, as pairs of points in the element's own
-    /// coordinates: edges that lie in its plane, and the lines in which faces cross it. Only those are listed that run
-    /// through the inside of the domain.
-    std::vector<std::pair<Vec2, Vec2>> within(const ElementTree& tree, ElementId e) const;
-
-    /// All contacts of a whole region's plane within the region's box, along its border, too. Metres.
-    std::vector<std::pair<Point, Point>> of_region(RegionId region) const;
-
     /// A stretch of a line over a plane, and how high it is above it at most, metres.
     struct Line {
         Point a, b;
         double height;
     };
+    /// Lines that may run through an element's domain, from faces of other regions: edges that lie in its plane or
+    /// hover over it by little, with a line on either side of the latter; the lines in which faces cross it; and in
+    /// gaps, along whose mouths light falls off, three lines inwards. What is little is a share of the root of
+    /// `area` (m^2), the element's before contacts cut it, so that its parts share its lines.
+    std::vector<Line> around(const ElementTree& tree, ElementId e, double area) const;
+    /// Leaves of the lines those that meet an element's domain; returns what of them runs through its inside, as pairs
+    /// of points in the element's own coordinates.
+    std::vector<std::pair<Vec2, Vec2>> inside(const ElementTree& tree, ElementId e, std::vector<Line>& lines) const;
+
+    /// All contacts of a whole region's plane within the region's box, along its border, too. Metres.
+    std::vector<std::pair<Point, Point>> of_region(RegionId region) const;
+
     /// The same of regions in one plane, ascending, but for contacts among themselves; up to a height of `gap` metres.
     std::vector<Line> over_plane(std::span<const RegionId> regions, double gap) const;
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace exitance {
 namespace {
 
@@ -45,7 +47,8 @@ TEST(ContactLines, AnEdgeThatHoversHasAStripOnEitherSide) {
     const ContactLines contacts(scene);
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
-    EXPECT_EQ(contacts.within(tree, ElementId(0)).size(), 3u);
+    std::vector<ContactLines::Line> lines = contacts.around(tree, ElementId(0), 16);
+    EXPECT_EQ(contacts.inside(tree, ElementId(0), lines).size(), 3u);
     cut_along_contacts(tree, {ElementId(0)}, contacts);
     EXPECT_NEAR(tree.area(tree.leaf_at(ElementId(0), {0.25 + 0.006, 0.5}).element), 0.05 * 4, 1e-9);
 }
@@ -127,6 +130,37 @@ TEST(ContactLines, TrianglesOfTheOtherSideOfASheetCutNothing) {
     tree.add_root(RegionId(0), {{0.5, -0.3, 0}, {0.4, 0, 0}, {0, 0.6, 0}, Patch::Shape::parallelogram});
     cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
     EXPECT_EQ(tree.leaves().size(), 1u);
+}
+
+TEST(ContactLines, WhatIsLittleToAnElementIsMoreToItsHalves) {
+    // Forty plates stand close together on a large floor, and a board hovers 2 m over them. To half the floor, 45 m
+    // wide, that is near, to the halves that many plates make of it no longer.
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {64, 0, 0}, {64, 64, 0}, {0, 64, 0}, {8.5, 1, 2}, {8.5, 3, 2}, {11, 3, 2}, {11, 1, 2}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1}, {{4, 5, 6, 7}, 0, 0, 2}};
+    for (std::uint32_t k = 0; k < 40; ++k) {
+        const double x = 9.8 + 0.01 * k;
+        const auto first = static_cast<std::uint32_t>(d.points.size());
+        for (const Point& p : {Point{x, 1.9, 0}, Point{x, 2.1, 0}, Point{x, 2, 0.1}}) d.points.push_back(p);
+        d.faces.push_back({{first, first + 1, first + 2}, 0, 0, 3});
+    }
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    const ContactLines contacts(scene);
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0, 0, 0}, {64, 0, 0}, {0, 64, 0}, Patch::Shape::parallelogram});
+    const double root_half = std::sqrt(0.5);
+    tree.split_by_line(ElementId(0), {{root_half, -root_half}, 0}, 0);
+    const ElementId half = tree.leaf_at(ElementId(0), {10. / 64, 2. / 64}).element;
+    ASSERT_TRUE(tree.is_cell(half));
+    std::vector<ContactLines::Line> lines = contacts.around(tree, half, tree.area(half));
+    ASSERT_TRUE(std::any_of(lines.begin(), lines.end(), [](const auto& line) { return line.a.x == 8.5; }));
+    cut_along_contacts(tree, {half}, contacts);
+    EXPECT_EQ(tree.leaf_at(ElementId(0), {8.5 / 64 - 1e-9, 2. / 64}).element,
+              tree.leaf_at(ElementId(0), {8.5 / 64 + 1e-9, 2. / 64}).element);
+    EXPECT_NE(tree.leaf_at(ElementId(0), {10.005 / 64, 2. / 64}).element,
+              tree.leaf_at(ElementId(0), {10.015 / 64, 2. / 64}).element);
 }
 
 TEST(ContactLines, APointWhereManyThingsMeetIsNotLookedIntoForEver) {
