@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "exitance/reconstruct/discontinuity/cover_ends.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "exitance/visibility/shaft.hpp"
 #include "exitance/visibility/three_edge_events.hpp"
@@ -124,9 +125,13 @@ void CurveFinder::add_curves_behind(RegionId region, ReceiverCurves& out) const 
 }
 
 void CurveFinder::add_contacts(RegionId region, ReceiverCurves& out) const {
-    for (const auto& [a, b] : stage_->contacts.of_region(region))
-        out.curves.push_back(
-            {out.frame.flat(a), out.frame.flat(b), CurveOrder::d0, CurveCause::contact, RegionId(), HUGE_VAL});
+    const auto add = [&](const auto& lines) {
+        for (const auto& [a, b] : lines)
+            out.curves.push_back(
+                {out.frame.flat(a), out.frame.flat(b), CurveOrder::d0, CurveCause::contact, RegionId(), HUGE_VAL});
+    };
+    add(stage_->contacts.of_region(region));
+    add(cover_ends(stage_->occluders, region));
 }
 
 void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out) const {
