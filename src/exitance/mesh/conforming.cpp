@@ -327,6 +327,35 @@ void reserve(const std::vector<FoundLeaves>& found, ElementTree& tree, SharedNod
     nodes.first_corner.reserve(elements), nodes.node_of.reserve(corners);
 }
 
+/// Cuts the leaves of one plane into their fans, and gives all of them their nodes, after those of the planes before.
+void add_plane(const FoundLeaves& f, ElementTree& tree, SharedNodes& out) {
+    const std::uint32_t first = out.first_node.back();
+    std::uint32_t more = 0;  // nodes of slivers that could not be cut after all
+    const auto add_leaf = [&](ElementId e, std::initializer_list<std::uint32_t> nodes) {
+        out.first_corner.resize(tree.size());
+        out.first_corner[e] = static_cast<std::uint32_t>(out.node_of.size());
+        out.node_of.insert(out.node_of.end(), nodes);
+    };
+    const std::uint32_t* n = f.node.data();
+    const Vec2* place = f.place.data();
+    for (std::size_t k = 0; k < f.leaf.size(); n += f.nodes[k], place += f.places[k], ++k) {
+        const ElementId leaf = f.leaf[k],
+                        child = f.places[k] > 0 ? tree.split_fan(leaf, {place[0], {place + 1, place + f.places[k]}})
+                                                : ElementId();
+        if (!child.is_none()) {
+            for (std::uint32_t i = 0; i + 2 < f.places[k]; ++i)
+                add_leaf(ElementId(child.value + i), {first + n[0], first + n[i + 1], first + n[i + 2]});
+            continue;
+        }
+        const auto corner = [&](std::size_t i) { return first + (f.places[k] == 0 ? n[i] : f.node_count + more++); };
+        if (tree.patch(leaf).is_triangle())
+            add_leaf(leaf, {corner(0), corner(1), corner(2)});
+        else
+            add_leaf(leaf, {corner(0), corner(1), corner(2), corner(3)});
+    }
+    out.first_node.push_back(first + f.node_count + more);
+}
+
 }  // namespace
 
 SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
@@ -357,36 +386,9 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         if (!leaves[p].empty() && found[p].leaf.empty()) return out;
     out.first_node.push_back(0);
     reserve(found, tree, out);
-    for (std::size_t p = 0; p < planes; ++p) {
-        const std::uint32_t first = out.first_node.back();
-        std::uint32_t more = 0;  // nodes of slivers that could not be cut after all
-        const auto add_leaf = [&](ElementId e, std::initializer_list<std::uint32_t> nodes) {
-            out.first_corner.resize(tree.size());
-            out.first_corner[e] = static_cast<std::uint32_t>(out.node_of.size());
-            out.node_of.insert(out.node_of.end(), nodes);
-        };
-        const FoundLeaves& f = found[p];
-        const std::uint32_t* n = f.node.data();
-        const Vec2* place = f.place.data();
-        for (std::size_t k = 0; k < f.leaf.size(); n += f.nodes[k], place += f.places[k], ++k) {
-            const ElementId leaf = f.leaf[k],
-                            child = f.places[k] > 0 ? tree.split_fan(leaf, {place[0], {place + 1, place + f.places[k]}})
-                                                    : ElementId();
-            if (!child.is_none()) {
-                for (std::uint32_t i = 0; i + 2 < f.places[k]; ++i)
-                    add_leaf(ElementId(child.value + i), {first + n[0], first + n[i + 1], first + n[i + 2]});
-                continue;
-            }
-            const auto corner = [&](std::size_t i) {
-                return first + (f.places[k] == 0 ? n[i] : f.node_count + more++);
-            };
-            if (tree.patch(leaf).is_triangle())
-                add_leaf(leaf, {corner(0), corner(1), corner(2)});
-            else
-                add_leaf(leaf, {corner(0), corner(1), corner(2), corner(3)});
-        }
-        out.first_node.push_back(first + f.node_count + more);
-        found[p] = {};
+    for (FoundLeaves& f : found) {
+        add_plane(f, tree, out);
+        f = {};
     }
     out.first_corner.resize(tree.size());
     return out;

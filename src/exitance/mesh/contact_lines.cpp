@@ -16,6 +16,18 @@ bool hovers(double hp, double hq, double tolerance, double gap) {
     return std::min(hp, hq) >= -tolerance && std::max(hp, hq) <= gap;
 }
 
+/// The part of an edge that lies in a plane though the edge as a whole leaves it: of a box turned by a tiny angle. A
+/// jump ends where it does. Steep edges meet the plane in a point.
+void contact_of_tilted_edge(const Point& p, const Point& q, const Plane& plane, double tolerance,
+                            std::vector<Segment>& out) {
+    constexpr double steepest = 0.01;  // sine; the part is 1e-4 of the scene's size long then
+    const double hp = plane.signed_distance(p), rise = plane.signed_distance(q) - hp;
+    if (std::abs(rise) > steepest * norm(q - p) || rise == 0) return;
+    const double at_low = (-tolerance - hp) / rise, at_high = (tolerance - hp) / rise;
+    const double first = std::max(0.0, std::min(at_low, at_high)), last = std::min(1.0, std::max(at_low, at_high));
+    if (first < last) out.push_back({p + first * (q - p), p + last * (q - p), 0});
+}
+
 /// An edge that lies in a plane, or hovers over it by less than `gap`: then also a line on either side as far away as
 /// the edge is high, so wide is the strip in which light changes.
 void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double tolerance, double gap,
@@ -255,7 +267,12 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
     box.hi += Vec3{near, near, near};
     std::vector<Line> out;
     borders_.visit_box(box, [&](std::uint32_t i) {
-        if (is_of_others(edges_[i].region)) contacts_of_edge(edges_[i].a, edges_[i].b, plane, near, highest, out);
+        const auto& [a, b, region] = edges_[i];
+        if (!is_of_others(region)) return;
+        if (hovers(plane.signed_distance(a), plane.signed_distance(b), near, highest))
+            contacts_of_edge(a, b, plane, near, highest, out);
+        else
+            contact_of_tilted_edge(a, b, plane, near, out);
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);

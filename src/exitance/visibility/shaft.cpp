@@ -18,6 +18,16 @@ double highest(std::span<const Point> points, const Plane& plane) {
     return h;
 }
 
+/// The corners of a facet. Where several surfaces share a plane, the one that is on top stands off it
+/// (Occluders::lift): seen from the plane itself, what it covers would hide everything.
+void take(const Occluders& occluders, const Facet& facet, std::vector<Point>& corners) {
+    corners.assign(facet.corners.begin(), facet.corners.end());
+    const double lift = facet.region.is_none() ? 0 : occluders.lift(facet.region);
+    if (!(lift > 0)) return;
+    const Plane& plane = occluders.scene().regions()[facet.region].plane;
+    for (Point& p : corners) p = p - (plane.signed_distance(p) - lift) * plane.n;
+}
+
 }  // namespace
 
 void Shaft::clip_by(const Plane& plane, std::vector<Point>& polygon) {
@@ -29,10 +39,9 @@ void Shaft::set(const Occluders& occluders, const Facet& receiver, const Facet& 
     occluders_ = &occluders;
     receiver_region_ = receiver.region, source_region_ = source.region;
     blocker_ = PieceId();
-    receiver_plane_ = {receiver.n, dot(receiver.n, receiver.corners[0])};
-    source_plane_ = {source.n, dot(source.n, source.corners[0])};
-    receiver_.assign(receiver.corners.begin(), receiver.corners.end());
-    source_.assign(source.corners.begin(), source.corners.end());
+    take(occluders, receiver, receiver_), take(occluders, source, source_);
+    receiver_plane_ = {receiver.n, dot(receiver.n, receiver_[0])};
+    source_plane_ = {source.n, dot(source.n, source_[0])};
     constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
     slack_ = occluders.rounding();
     if (source.is_distant) slack_ = std::max(slack_, noise * norm(source.corners[0] - receiver.corners[0]));

@@ -141,5 +141,28 @@ TEST(DirectLight, OfAPreparedPolygonIsThatOfItsPoints) {
     }
 }
 
+/// Two faces in one plane but for 1e-9: the later one is on top, and lit, though it lies below.
+TEST(DirectLight, OfAPreparedPolygonOnTopOfAnotherIsThatOfItsPoints) {
+    const auto lower = [](double x, double y) { return Point{x, y, -1e-9}; };
+    const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}},
+                                    {{lower(-1, -1), lower(0.7, -1), lower(0.7, 1), lower(-1, 1)}},
+                                    {{{-2, -2, -1}, {2, -2, -1}, {2, 2, -1}, {-2, 2, -1}}},
+                                    {{{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, 3}});
+    const Occluders occluders(scene);
+    const DirectLight light(scene, occluders);
+    const RegionId top = scene.surfaces()[SurfaceId(1)].region;
+    ASSERT_GT(occluders.lift(top), 1e-9);
+    const Normal& n = scene.regions()[top].plane.n;
+    VisibilityWorkspace scratch;
+    ReceiverLight whole, part;
+    light.prepare(std::vector{lower(-1, -1), lower(0.7, -1), lower(0.7, 1), lower(-1, 1)}, n, top, whole, scratch);
+    light.prepare(std::vector{lower(0.1, 0.2), lower(0.5, 0.3), lower(0.3, 0.7)}, whole, part, scratch);
+    const Point x = lower(0.3, 0.4);
+    const double exact = light.irradiance(x, n, top, scratch)[0];
+    EXPECT_GT(exact, 0.1);
+    EXPECT_NEAR(light.irradiance(part, x, scratch)[0], exact, 1e-13 * exact);  // rounding
+    EXPECT_TRUE(part.is_unshadowed());
+}
+
 }  // namespace
 }  // namespace exitance

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
 #include <optional>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
 #include "exitance/reconstruct/discontinuity/clough_tocher_fit.hpp"
 #include "exitance/reconstruct/discontinuity/exact_places.hpp"
 #include "exitance/reconstruct/discontinuity/face_lights.hpp"
 #include "exitance/reconstruct/discontinuity/findable.hpp"
+#include "exitance/reconstruct/discontinuity/finished_mesh.hpp"
+#include "exitance/reconstruct/discontinuity/mesh_limits.hpp"
 #include "exitance/reconstruct/discontinuity/mesh_progress.hpp"
 #include "exitance/reconstruct/discontinuity/misfit.hpp"
 #include "exitance/reconstruct/discontinuity/ordered_light.hpp"
@@ -28,7 +30,7 @@ class Builder {
           options_(options),
           report_(report),
           stop_(stop),
-          mesh_(1e-6 * stage.scene.size()),
+          mesh_(mesh_limits::shortest_edge * stage.scene.size()),
           touched_(stage.scene.regions().size(), 0) {}
 
     SixNodeMesh run() {
@@ -42,7 +44,7 @@ class Builder {
         report_.interrupted = stop_.requested();
         if (report_.interrupted) return {};
         constexpr int most_attempts = 5;
-        double tolerance = 0.8 * options_.error * report_.scale;
+        double tolerance = calibrated::method_aim * options_.error * report_.scale;
         SixNodeMesh out;
         for (int attempt = 1;; ++attempt) {
             refine(tolerance);
@@ -54,8 +56,7 @@ class Builder {
             report_.mesh_seconds += watch.restart();
             report_.interrupted = stop_.requested();
             if (report_.error <= options_.error || attempt == most_attempts || report_.interrupted || is_full()) break;
-            constexpr double aim = 0.7;
-            tolerance *= aim * options_.error / report_.error;
+            tolerance *= calibrated::attempt_aim * options_.error / report_.error;
         }
         return out;
     }
@@ -74,14 +75,15 @@ class Builder {
     void find_weak_light() {
         if (options_.by_orderings) ordered_.emplace(stage_.direct);
         if (stop_.requested() || ordered_ || !WeakLight::pays(stage_.direct)) return;
-        // Of the errors asked for: what is left out changes nothing that can be seen; noise of half of one adds an
-        // eighth to it, where it is as large as it may be. Triangles smaller than a region's share of the area may have
-        // more, as their bisection allows it.
-        constexpr double unseen = 0.02, part = 0.5;
-        const double rms = 0.8 * options_.error * report_.scale, most = options_.largest_error * largest_;
+        // Triangles smaller than a region's share of the area may have more noise, as their bisection allows it.
+        constexpr double part = mesh_limits::ray_noise;
+        const double rms = calibrated::method_aim * options_.error * report_.scale,
+                     most = options_.largest_error * largest_;
         const auto regions = static_cast<double>(stage_.scene.regions().size());
-        weak_.emplace(stage_.direct, stage_.tracer,
-                      WeakLight::Asked{unseen * std::min(rms, most), part * rms, part * most, area_ / regions}, stop_);
+        weak_.emplace(
+            stage_.direct, stage_.tracer,
+            WeakLight::Asked{mesh_limits::unseen_light * std::min(rms, most), part * rms, part * most, area_ / regions},
+            stop_);
     }
 
     /// What an earlier run has found, as far as it came.
@@ -120,30 +122,26 @@ class Builder {
         return out;
     }
 
+    CurveOptions curve_options() const {
+        const double T = options_.largest_error * largest_;
+        return {.least_effect = (weak_ ? mesh_limits::least_kink_among_many : mesh_limits::least_kink) * T,
+                .least_area = mesh_limits::unfindable_area * area_,
+                .least_bend = (weak_ ? mesh_limits::least_bend_among_many : mesh_limits::least_bend) * T,
+                .conics = options_.conics,
+                .secondary = options_.secondary,
+                .stop = &stop_,
+                .weak = weak_ ? &*weak_ : nullptr,
+                .ordered = ordered_ ? &*ordered_ : nullptr};
+    }
+
     void find_curves() {
         const BlockerEdges edges(stage_.occluders);
-        constexpr double tiny = 1e-5;
-        // Where light G falls to 0 across w, elements of size h have cubic errors of about G (h/w)^3 / 10, so that the
-        // error T leaves h/w = (10 T/G)^(1/3); a bend 2 G/w^2 within one is off by G (h/w)^2 / 8. That is below T where
-        // G is below 5 T: there, D2 lines do no good. A kink G/w is off by G h/(16 w), which is below T where G is
-        // below 20 T: in buildings, where blockers' edges are countless, there are no lines for less, and none for
-        // bends, whose error is G (h/w)^2 / 32 at closer look, before 300 T.
-        constexpr double bent = 5, kinked = 20, bent_among_many = 300, unseen = 0.1;
-        const double T = options_.largest_error * largest_;
-        const CurveFinder finder(stage_, edges,
-                                 {.least_effect = (weak_ ? kinked : unseen) * T,
-                                  .least_area = tiny * area_,
-                                  .least_bend = (weak_ ? bent_among_many : bent) * T,
-                                  .conics = options_.conics,
-                                  .secondary = options_.secondary,
-                                  .stop = &stop_,
-                                  .weak = weak_ ? &*weak_ : nullptr,
-                                  .ordered = ordered_ ? &*ordered_ : nullptr});
+        const CurveFinder finder(stage_, edges, curve_options());
         const std::size_t regions = stage_.scene.regions().size();
         std::vector<std::optional<ReceiverCurves>> receivers(regions);
         std::vector<ReceiverTriangles> triangles(regions);
         const TriangleOptions cut{options_.triangulation, options_.premesh, options_.penumbra_first, options_.refined,
-                                  1e-7 * stage_.scene.size()};
+                                  mesh_limits::one_place * stage_.scene.size()};
         // Where the state is kept from time to time, some receivers have to be ready together.
         const std::size_t batch = options_.safe_points ? 256 : regions;
         for (std::size_t first = 0; first < regions && !stop_.requested(); first += batch) {
@@ -155,19 +153,22 @@ class Builder {
             keep();
         }
         if (stop_.requested()) return;
-        std::vector<std::uint32_t> whole;
+        std::vector<std::size_t> first_face{0};
         for (const RegionId r : stage_.scene.regions().ids()) {
             ReceiverCurves& receiver = *receivers[r.value];
             mesh_.add(triangles[r.value].triangles, receiver.frame);
             report_.tree_bytes += triangles[r.value].tree_bytes;
-            region_.resize(mesh_.triangles().size(), r), whole.resize(mesh_.triangles().size(), r.value);
+            region_.resize(mesh_.triangles().size(), r), first_face.push_back(region_.size());
             record(r, receiver);
         }
+        look_at_faces(receivers, first_face);
+        count_faces(receivers);
+    }
+
+    /// What shines on every face of a receiver, and what may stand before it.
+    void look_at_faces(std::vector<std::optional<ReceiverCurves>>& receivers, std::span<const std::size_t> first_face) {
         lights_.resize(region_.size());
-        std::vector<std::size_t> first_face(regions + 1, 0);
-        for (const std::uint32_t r : whole) ++first_face[r + 1];
-        std::partial_sum(first_face.begin(), first_face.end(), first_face.begin());
-        parallel_for(regions, 1, [&](std::size_t r) {
+        parallel_for(receivers.size(), 1, [&](std::size_t r) {
             FaceOutlines outlines{{}, receivers[r]->frame.u, receivers[r]->frame.v};
             const std::size_t first = first_face[r], count = first_face[r + 1] - first;
             for (std::size_t f = first; f < first + count; ++f)
@@ -185,6 +186,9 @@ class Builder {
                 prepare_face_lights(stage_.direct, outlines, receivers[r]->light,
                                     std::span(lights_).subspan(first, count), stop_, workspace);
         });
+    }
+
+    void count_faces(const std::vector<std::optional<ReceiverCurves>>& receivers) {
         std::size_t candidates = 0, listed = 0, listed_faces = 0;
         for (const auto& receiver : receivers) {
             listed += receiver->ordered.listed, listed_faces += receiver->ordered.faces;
@@ -296,10 +300,11 @@ class Builder {
     bool is_full() const { return mesh_.triangles().size() >= options_.max_triangles; }
 
     void refine(double tolerance) {
-        const double allowed = tolerance * tolerance * area_;
-        constexpr double between = 0.8;  // places that are tried miss some of what lies between them
-        const double largest = between * options_.largest_error * largest_;
-        constexpr double unfindable = 1e-5, shortest = 1e-6;
+        // Of the largest error, too, places that are tried miss some of what lies between them.
+        const MisfitLimits limits{
+            tolerance * tolerance * area_, calibrated::method_aim * options_.largest_error * largest_,
+            (weak_ ? mesh_limits::unfindable_area_among_many : mesh_limits::unfindable_area) * area_,
+            mesh_limits::shortest_edge * stage_.scene.size()};
         constexpr int most_rounds = 60;
         for (int round = 0; round < most_rounds; ++round) {
             if (!light_nodes()) {
@@ -307,21 +312,7 @@ class Builder {
                 return;
             }
             renew_misfits();
-            double sum = 0;
-            for (const Misfit& m : misfits_) sum += m.squared;
-            const auto count = static_cast<double>(misfits_.size());
-            const double share =
-                sum <= allowed ? HUGE_VAL : allowed / count * std::min(1.0, 2 * std::sqrt(allowed / sum));
-            std::vector<std::uint32_t> coarse;
-            std::vector<double> missing(misfits_.size());
-            for (std::uint32_t t = 0; t < misfits_.size(); ++t)
-                if (misfits_[t].largest > largest) missing[t] = mesh_.area(t);
-            const double least = least_findable(missing, unfindable * area_);
-            for (std::uint32_t t = 0; t < misfits_.size(); ++t) {
-                const bool misses = missing[t] > least;
-                if ((misfits_[t].squared > share || misses) && mesh_.longest_edge(t) > shortest * stage_.scene.size())
-                    coarse.push_back(t);
-            }
+            const std::vector<std::uint32_t> coarse = coarse_triangles(mesh_, misfits_, limits);
             if (coarse.empty() || is_full() || stop_.requested()) return;
             lit_ = mesh_;
             // Some were bisected for a neighbour's sake: then their misfit is out of date.
@@ -359,29 +350,8 @@ class Builder {
     }
 
     SixNodeMesh finish() {
-        SixNodeMesh out;
-        std::vector<std::uint32_t> number(mesh_.nodes().size(), BisectionMesh::none);
-        const auto add = [&](std::uint32_t node) {
-            if (number[node] == BisectionMesh::none) {
-                number[node] = static_cast<std::uint32_t>(out.points.size());
-                out.points.push_back(mesh_.nodes()[node].at);
-                out.values.emplace_back();
-                for (std::size_t b = 0; b < bands; ++b) out.values.back()[b] = static_cast<float>(values_[node][b]);
-            }
-            return number[node];
-        };
-        std::vector<std::optional<ShadowClass>> classes(lights_.size());
-        for (std::uint32_t index = 0; index < mesh_.triangles().size(); ++index) {
-            const BisectionMesh::Triangle& t = mesh_.triangles()[index];
-            std::array<std::uint32_t, 6> nodes;
-            for (std::size_t k = 0; k < 3; ++k) nodes[k] = add(t.corner[k]), nodes[3 + k] = add(t.middle[k]);
-            out.nodes.push_back(nodes);
-            out.region.push_back(region_[t.face]);
-            out.edge_order.push_back(t.order);
-            std::optional<ShadowClass>& shadow = classes[t.face];
-            if (!shadow) shadow = class_of(t.face, mesh_.centre(index));
-            out.shadow.push_back(*shadow);
-        }
+        SixNodeMesh out = finished_mesh(mesh_, values_, region_,
+                                        [&](std::uint32_t face, const Point& at) { return class_of(face, at); });
         out.curves = curves_;
         if (options_.clough_tocher) clough_tocher().write(out);
         report_.counts.triangles = out.size();

@@ -13,10 +13,10 @@
 namespace exitance {
 
 struct DiscontinuityOptions {
-    double error = 0.02;  ///< Asked of the mesh, relative RMS of rho E.
+    double error = 0;  ///< Asked of the mesh, relative RMS of rho E.
     /// How far any place may be off, as a share of the largest value of rho E; but for as little area as no table of
     /// points would find.
-    double largest_error = 0.03;
+    double largest_error = 0;
     /// Light on top of what is direct, at a place of a region; empty: none.
     std::function<Spectrum(RegionId, const Point&)> indirect = {};
     Spectrum direct_weight = Spectrum(1.0);       ///< What direct light is to be multiplied by.

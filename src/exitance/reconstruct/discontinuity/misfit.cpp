@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/reconstruct/discontinuity/findable.hpp"
+
 namespace exitance {
 
 Misfit misfit(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const Spectrum> values,
@@ -32,6 +34,24 @@ Misfit misfit(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const
     look(values[t.inner] - inner, of_bubble);
     out.squared = mesh.area(triangle) * square;
     return out;
+}
+
+std::vector<std::uint32_t> coarse_triangles(const BisectionMesh& mesh, std::span<const Misfit> misfits,
+                                            const MisfitLimits& limits) {
+    double sum = 0;
+    for (const Misfit& m : misfits) sum += m.squared;
+    const double share = sum <= limits.squared ? HUGE_VAL
+                                               : limits.squared / static_cast<double>(misfits.size()) *
+                                                     std::min(1.0, 2 * std::sqrt(limits.squared / sum));
+    std::vector<double> missing(misfits.size());
+    for (std::uint32_t t = 0; t < misfits.size(); ++t)
+        if (misfits[t].largest > limits.largest) missing[t] = mesh.area(t);
+    const double least = least_findable(missing, limits.unfindable_area);
+    std::vector<std::uint32_t> coarse;
+    for (std::uint32_t t = 0; t < misfits.size(); ++t)
+        if ((misfits[t].squared > share || missing[t] > least) && mesh.longest_edge(t) > limits.shortest_edge)
+            coarse.push_back(t);
+    return coarse;
 }
 
 }  // namespace exitance

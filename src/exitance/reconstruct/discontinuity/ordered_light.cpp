@@ -10,6 +10,11 @@ namespace exitance {
 struct OrderedLight::Volume {
     PieceId piece;
     ShadowVolume shadow;
+
+    /// All of its source from all of a face?
+    bool hides(std::span<const Point> face, Counts& counts) const {
+        return shadow.has_umbra() && shadow.in_umbra(face, counts.plane_tests) == ShadowVolume::Place::inside;
+    }
 };
 
 OrderedLight::OrderedLight(const DirectLight& direct) : direct_(&direct) {
@@ -48,6 +53,46 @@ std::uint64_t OrderedLight::corners_over(std::uint32_t emitter, std::span<const 
     return out;
 }
 
+/// Of all pieces, those that stand before a source as a region sees it, and whether one hides it from all of the
+/// outline.
+std::vector<OrderedLight::Volume> OrderedLight::volumes_before(const DirectLight::SourceName& source,
+                                                               std::span<const Point> outline, RegionId region,
+                                                               bool& is_hidden, Counts& counts) const {
+    const Occluders& occluders = direct_->occluders();
+    const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
+    const MinimumLists::Limits limits = lists_->limits(source.emitter, region);
+    std::vector<Volume> out;
+    std::uint64_t before = 0;
+    for (const PieceId p : occluders.pieces().ids()) {
+        const ConvexPiece& c = occluders.pieces()[p];
+        if (occluders.is_distant(p) || occluders.is_own(c.region, region) || c.region == emitter.region) continue;
+        const std::uint64_t corners = lists_->stands_before(source.emitter, p, limits);
+        if (corners == 0) continue;
+        before |= corners;
+        out.push_back({p, ShadowVolume(occluders.corners(source.piece), emitter.plane, occluders.corners(p), c.plane,
+                                       occluders.rounding())});
+    }
+    std::erase_if(out, [&](const Volume& v) {
+        return v.shadow.is_empty() || v.shadow.in_penumbra(outline, counts.plane_tests) == ShadowVolume::Place::outside;
+    });
+    const Normal& n = occluders.scene().regions()[region].plane.n;
+    is_hidden = (corners_over(source.emitter, outline, n) & ~before) == 0 &&
+                std::any_of(out.begin(), out.end(), [&](const Volume& v) { return v.hides(outline, counts); });
+    return out;
+}
+
+namespace {
+
+/// Adds the sources and candidates of one light to those of another.
+void append(const ReceiverLight& more, ReceiverLight& light) {
+    const auto first = static_cast<std::uint32_t>(light.candidates.size());
+    for (ReceiverLight::Source s : more.sources) s.first += first, light.sources.push_back(s);
+    for (Beam b : more.beams) b.first += first, light.beams.push_back(b);
+    light.candidates.insert(light.candidates.end(), more.candidates.begin(), more.candidates.end());
+}
+
+}  // namespace
+
 ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region, DirectLight::Workspace& workspace,
                                  Counts& counts) const {
     const Occluders& occluders = direct_->occluders();
@@ -66,32 +111,10 @@ ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region
     for (std::uint32_t e = 0; e < corners_.size(); ++e) {
         const DirectLight::Emitter& emitter = direct_->emitters()[e];
         if (!direct_->shines_on(emitter, region)) continue;
-        const MinimumLists::Limits limits = lists_->limits(e, region);
-        const std::uint64_t over = corners_over(e, outline, n);
         for (const PieceId piece : emitter.pieces) {
             if (!face_each_other(outline, n, {e, piece})) continue;
-            std::vector<Volume> candidates;
-            std::uint64_t before = 0;
-            for (const PieceId p : occluders.pieces().ids()) {
-                const ConvexPiece& c = occluders.pieces()[p];
-                if (occluders.is_distant(p) || occluders.is_own(c.region, region) || c.region == emitter.region)
-                    continue;
-                const std::uint64_t corners = lists_->stands_before(e, p, limits);
-                if (corners == 0) continue;
-                before |= corners;
-                candidates.push_back({p, ShadowVolume(occluders.corners(piece), emitter.plane, occluders.corners(p),
-                                                      c.plane, occluders.rounding())});
-            }
-            std::erase_if(candidates, [&](const Volume& v) {
-                return v.shadow.is_empty() ||
-                       v.shadow.in_penumbra(outline, counts.plane_tests) == ShadowVolume::Place::outside;
-            });
-            const bool may_be_hidden = (over & ~before) == 0;
-            const bool hidden =
-                may_be_hidden && std::any_of(candidates.begin(), candidates.end(), [&](const Volume& v) {
-                    return v.shadow.has_umbra() &&
-                           v.shadow.in_umbra(outline, counts.plane_tests) == ShadowVolume::Place::inside;
-                });
+            bool hidden = false;
+            const std::vector<Volume> candidates = volumes_before({e, piece}, outline, region, hidden, counts);
             if (hidden) continue;
             if (candidates.empty()) {
                 open.sources.push_back({e, piece});
@@ -105,31 +128,41 @@ ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region
     // Those that are all visible are laid out for many at once, then come the others.
     ReceiverLight light;
     direct_->prepare(outline, open, light, workspace);
-    const auto append = [&](const ReceiverLight& more) {
-        const auto first = static_cast<std::uint32_t>(light.candidates.size());
-        for (ReceiverLight::Source s : more.sources) s.first += first, light.sources.push_back(s);
-        for (Beam b : more.beams) b.first += first, light.beams.push_back(b);
-        light.candidates.insert(light.candidates.end(), more.candidates.begin(), more.candidates.end());
-    };
-    append(rest), append(out);
+    append(rest, light), append(out, light);
     return light;
 }
 
-void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole, std::span<ReceiverLight> lights,
-                        const StopRequest& stop, DirectLight::Workspace& workspace, Counts& counts) const {
-    for (ReceiverLight& light : lights) light.n = whole.n, light.own = whole.own;
-    if (whole.is_dark()) return;
+/// Of the volumes before a source, those whose half-shadow reaches a face; none, and false, where the face cannot see
+/// the source at all.
+bool OrderedLight::find_candidates(const DirectLight::SourceName& source, std::span<const Point> face, const Normal& n,
+                                   const MinimumLists::Limits& limits, std::span<const Volume> volumes,
+                                   std::vector<const Volume*>& candidates, Counts& counts) const {
+    candidates.clear();
+    std::uint64_t before = 0;
+    for (const Volume& v : volumes) {
+        const std::uint64_t corners = lists_->stands_before(source.emitter, v.piece, limits);
+        before |= corners;
+        if (corners != 0 && v.shadow.in_penumbra(face, counts.plane_tests) != ShadowVolume::Place::outside)
+            candidates.push_back(&v);
+    }
+    const bool hidden =
+        (corners_over(source.emitter, face, n) & ~before) == 0 &&
+        std::any_of(candidates.begin(), candidates.end(), [&](const Volume* v) { return v->hides(face, counts); });
+    return !hidden;
+}
+
+/// The volumes before each source of a light, if any; what shafts look at goes to `others`: the sky, lights without
+/// extent, and all sources of both sides.
+std::vector<std::vector<OrderedLight::Volume>> OrderedLight::volumes_of(const ReceiverLight& whole,
+                                                                        ReceiverLight& others) const {
     const Occluders& occluders = direct_->occluders();
-    std::vector<std::vector<Volume>> volumes;  // of each source
-    // What shafts look at: the sky, lights without extent, all sources, and then those that are all visible.
-    ReceiverLight others, open;
-    others.n = open.n = whole.n, others.own = open.own = whole.own;
+    std::vector<std::vector<Volume>> out;
+    others.n = whole.n, others.own = whole.own;
     others.behind = whole.behind, others.through = whole.through;
     others.beams = whole.beams, others.candidates = whole.candidates;
-    const bool both_sides = !whole.behind.empty();
     for (const ReceiverLight::Source& s : whole.sources) {
-        std::vector<Volume>& of_source = volumes.emplace_back();
-        if (both_sides || !is_listed(s.emitter) || s.count == 0) {
+        std::vector<Volume>& of_source = out.emplace_back();
+        if (!whole.behind.empty() || !is_listed(s.emitter) || s.count == 0) {
             others.sources.push_back(s);
             continue;
         }
@@ -138,6 +171,17 @@ void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole
                 {p, ShadowVolume(occluders.corners(s.piece), direct_->emitters()[s.emitter].plane, occluders.corners(p),
                                  occluders.pieces()[p].plane, occluders.rounding())});
     }
+    return out;
+}
+
+void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole, std::span<ReceiverLight> lights,
+                        const StopRequest& stop, DirectLight::Workspace& workspace, Counts& counts) const {
+    for (ReceiverLight& light : lights) light.n = whole.n, light.own = whole.own;
+    if (whole.is_dark()) return;
+    const Occluders& occluders = direct_->occluders();
+    ReceiverLight others, open;
+    const std::vector<std::vector<Volume>> volumes = volumes_of(whole, others);
+    std::vector<const Volume*> candidates;
     for (std::size_t f = 0; f < lights.size() && !stop.requested(); ++f) {
         const std::span<const Point> face = outlines.faces[f];
         open = others;
@@ -148,20 +192,7 @@ void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole
             const ReceiverLight::Source& s = whole.sources[k];
             if (!face_each_other(face, whole.n, {s.emitter, s.piece})) continue;
             const MinimumLists::Limits limits = lists_->limits(s.emitter, whole.own, face, whole.n);
-            std::uint64_t before = 0;
-            std::vector<const Volume*> candidates;
-            for (const Volume& v : volumes[k]) {
-                const std::uint64_t corners = lists_->stands_before(s.emitter, v.piece, limits);
-                before |= corners;
-                if (corners != 0 && v.shadow.in_penumbra(face, counts.plane_tests) != ShadowVolume::Place::outside)
-                    candidates.push_back(&v);
-            }
-            const bool hidden = (corners_over(s.emitter, face, whole.n) & ~before) == 0 &&
-                                std::any_of(candidates.begin(), candidates.end(), [&](const Volume* v) {
-                                    return v->shadow.has_umbra() &&
-                                           v->shadow.in_umbra(face, counts.plane_tests) == ShadowVolume::Place::inside;
-                                });
-            if (hidden) continue;
+            if (!find_candidates({s.emitter, s.piece}, face, whole.n, limits, volumes[k], candidates, counts)) continue;
             if (candidates.empty()) {
                 open.sources.push_back({s.emitter, s.piece});
                 continue;

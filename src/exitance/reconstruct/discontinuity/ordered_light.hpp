@@ -39,6 +39,12 @@ class OrderedLight {
 
   private:
     struct Volume;
+    std::vector<Volume> volumes_before(const DirectLight::SourceName& source, std::span<const Point> outline,
+                                       RegionId region, bool& is_hidden, Counts& counts) const;
+    bool find_candidates(const DirectLight::SourceName& source, std::span<const Point> face, const Normal& n,
+                         const MinimumLists::Limits& limits, std::span<const Volume> volumes,
+                         std::vector<const Volume*>& candidates, Counts& counts) const;
+    std::vector<std::vector<Volume>> volumes_of(const ReceiverLight& whole, ReceiverLight& others) const;
     bool is_listed(std::uint32_t emitter) const { return !direct_->is_distant(emitter); }
     bool face_each_other(std::span<const Point> receiver, const Normal& n, const DirectLight::SourceName& source) const;
     std::uint64_t corners_over(std::uint32_t emitter, std::span<const Point> receiver, const Normal& n) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "exitance/reconstruct/discontinuity/cover_ends.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "exitance/visibility/shaft.hpp"
 #include "exitance/visibility/three_edge_events.hpp"
@@ -10,7 +11,8 @@
 namespace exitance {
 namespace {
 
-constexpr double nearness = 2e-8;  // of the scene's size: lines nearer than this are one
+// Of the scene's size: lines nearer than this are one.
+constexpr double nearness = 2e-8;  // given by rounding of where long wedges meet a plane
 
 PlaneFrame frame_of(const Region& region) {
     PlaneFrame frame(region.loops.front().front(), region.plane.n);
@@ -124,9 +126,13 @@ void CurveFinder::add_curves_behind(RegionId region, ReceiverCurves& out) const 
 }
 
 void CurveFinder::add_contacts(RegionId region, ReceiverCurves& out) const {
-    for (const auto& [a, b] : stage_->contacts.of_region(region))
-        out.curves.push_back(
-            {out.frame.flat(a), out.frame.flat(b), CurveOrder::d0, CurveCause::contact, RegionId(), HUGE_VAL});
+    const auto add = [&](const auto& lines) {
+        for (const auto& [a, b] : lines)
+            out.curves.push_back(
+                {out.frame.flat(a), out.frame.flat(b), CurveOrder::d0, CurveCause::contact, RegionId(), HUGE_VAL});
+    };
+    add(stage_->contacts.of_region(region));
+    add(cover_ends(stage_->occluders, region));
 }
 
 void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out) const {
@@ -211,7 +217,7 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         if (beam.count == 0) continue;
         const PunctualLight& light = stage_->scene.lights()[beam.light];
         // Parallel light comes from a point so far away that its shadows lie right to 1e-8 of the scene.
-        constexpr double far = 1e8;
+        constexpr double far = 1e8;  // given by that
         const Point place = light.is_directional()
                                 ? stage_->scene.box().centre() - (far * stage_->scene.size()) * light.direction
                                 : light.position;
@@ -276,9 +282,9 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
     for (const ShadowEvent& e : events)
         out.curves.push_back({e.a, e.b, CurveOrder::d2, CurveCause::blocker_edge, source.region, gain});
     if (options_.conics == ConicCurves::none) return;
-    // A polyline beside its conic leaves a strip where the polynomial is the neighbour's: as thin as lines that are
-    // one.
-    constexpr double beside = 1e-3;
+    // A polyline beside its conic leaves a strip where the polynomial is the neighbour's, of less than a thousandth of
+    // the region.
+    constexpr double beside = 1e-3;  // given by that: what it costs is D2, a third power of it
     const double sagitta = beside * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
     std::vector<ThreeEdgeEvent> conics;
     ThreeEdgeEventFinder(stage_->occluders, *edges_, options_.stop)

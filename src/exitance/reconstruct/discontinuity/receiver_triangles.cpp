@@ -14,7 +14,8 @@ bool is_convex_outline(const ReceiverCurves& receiver) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const Vec2 a = loop[(i + 1) % loop.size()] - loop[i],
                    b = loop[(i + 2) % loop.size()] - loop[(i + 1) % loop.size()];
-        if (cross(a, b) < -1e-9 * std::sqrt(dot(a, a) * dot(b, b))) return false;
+        constexpr double straight = 1e-9;  // sine, given by rounding of coordinates
+        if (cross(a, b) < -straight * std::sqrt(dot(a, a) * dot(b, b))) return false;
     }
     return true;
 }
@@ -56,7 +57,7 @@ ReceiverTriangles receiver_triangles(const ReceiverCurves& receiver, const Trian
     if (options.scheme != TriangulationScheme::delaunay && is_convex_outline(receiver)) {
         ReceiverTriangles out = by_tree(receiver, options);
         // Trees merge what is near; where that costs area, the exact triangulation stands in.
-        constexpr double lost = 1e-10;
+        constexpr double lost = 1e-10;  // given by the 1e-9 that no mesh may lose
         const double area = area_of(receiver.loops.front());
         if (std::abs(area_of(out.triangles) - area) <= lost * area) return out;
     }

@@ -11,7 +11,7 @@ struct TriangleOptions {
     bool grid = false;            ///< Trees begin with a coarse grid,
     bool penumbra_first = false;  ///< and take the curves that bound half-shadows first: kinks and long ones.
     bool refined = false;         ///< Points are added for the triangles' shape.
-    double tolerance = 1e-7;      ///< What is nearer is the same for trees, metres.
+    double tolerance = 0;         ///< What is nearer is the same for trees, metres.
 };
 
 /// The triangles between a receiver's curves, with the memory of the tree that they come from.
