@@ -6,94 +6,182 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/direct/source_point.hpp"
+#include "exitance/geometry/polygon.hpp"
 
 namespace exitance {
 namespace {
 
 /// What a blocker costs that is cut out of a source, in rays: a microsecond and some, where fragments are many.
 constexpr unsigned rays_a_blocker = 6;
-constexpr unsigned least_rays = 16;
-constexpr std::uint32_t least_crowd = least_rays / rays_a_blocker + 1;
+constexpr std::size_t least_crowd = 3;  ///< Up to so many candidates, visible parts are exact.
 
 }  // namespace
 
-double CrowdedLight::unblocked(const Receiver& at, const ReceiverLight::Source& source,
-                               DirectLight::Workspace& scratch) const {
+/// Over four quarters of the rays of a place to a source: what would arrive, and what does.
+struct CrowdedLight::Sums {
+    std::array<double, 4> all{}, arrived{};
+
+    /// Makes room for as many rays again: those that there are become the first two quarters.
+    void halve() {
+        for (auto* sums : {&all, &arrived}) *sums = {(*sums)[0] + (*sums)[1], (*sums)[2] + (*sums)[3], 0, 0};
+    }
+    double total() const { return all[0] + all[1] + all[2] + all[3]; }
+    double share() const { return (arrived[0] + arrived[1] + arrived[2] + arrived[3]) / total(); }
+    /// Of the share, as if quarters were independent; a quotient of sums by its linear part.
+    double variance() const {
+        const double whole = total(), part = share();
+        double squares = 0;
+        for (std::size_t q = 0; q < 4; ++q) squares += std::pow(arrived[q] - part * all[q], 2);
+        return 4.0 / 3 * squares / (whole * whole);
+    }
+};
+
+unsigned CrowdedLight::rays_for(double E, double allowed) {
+    // A ray comes or does not: the variance of n is E^2 / (4 n) at most.
+    const double wanted = std::clamp(0.25 * E * E / allowed, static_cast<double>(least_rays), 1e9);
+    return std::bit_ceil(static_cast<unsigned>(wanted));
+}
+
+bool CrowdedLight::may_be_crowded(const SourceName& source) const {
+    return !direct_->is_distant(source.emitter) || direct_->looks_far(source.emitter);  // not through panes
+}
+
+double CrowdedLight::unblocked(const Receiver& at, const SourceName& source, DirectLight::Workspace& scratch) const {
     const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
     return visible_form_factor(direct_->occluders(), at, source.piece, {}, scratch, emitter.radiance);
 }
 
-std::vector<CrowdedLight::Source> CrowdedLight::take_crowded(ReceiverLight& light, const Point& middle, double allowed,
-                                                             DirectLight::Workspace& scratch, unsigned& rays) const {
-    // Not through panes.
-    const auto is_crowded = [&](const ReceiverLight::Source& s) {
-        return s.count > least_crowd && (!direct_->is_distant(s.emitter) || direct_->looks_far(s.emitter));
+CrowdedLight::Crowd CrowdedLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own,
+                                          double allowed, ReceiverLight& light, DirectLight::Workspace& scratch,
+                                          const std::vector<SourceName>* named) const {
+    DirectLight::WorthCounting worth;
+    const Point middle = centroid(receiver);
+    const bool is_possible = allowed > 0 && direct_->occluders().scene().panes().empty();
+    if (is_possible)
+        worth = [&](const SourceName& source) -> std::size_t {
+            const double F = may_be_crowded(source) ? unblocked(direct_->receiver(middle, n, own), source, scratch) : 0;
+            const unsigned rays = rays_for(F * mean(direct_->emitters()[source.emitter].exitance), allowed);
+            // A source that is beneath the horizon of the middle tells nothing of those that others need.
+            if (F <= 0 || rays > most_rays) return Shaft::all_candidates;
+            return std::max<std::size_t>(least_crowd, rays / rays_a_blocker);
+        };
+    if (named)
+        direct_->prepare(receiver, n, own, *named, light, scratch, worth);
+    else
+        direct_->prepare(receiver, n, own, light, scratch, worth);
+    return is_possible && light.behind.empty() ? take_crowded(light, middle, allowed, scratch) : Crowd();
+}
+
+CrowdedLight::Crowd CrowdedLight::take_crowded(ReceiverLight& light, const Point& middle, double allowed,
+                                               DirectLight::Workspace& scratch) const {
+    const auto may_be = [&](const ReceiverLight::Source& s) {
+        return s.is_crowded || (s.count > least_crowd && may_be_crowded({s.emitter, s.piece}));
     };
-    std::vector<Source> out;
-    if (!direct_->occluders().scene().panes().empty()) return out;
-    if (allowed <= 0 || !light.behind.empty() || std::none_of(light.sources.begin(), light.sources.end(), is_crowded))
-        return out;
+    Crowd out{.sources = {}, .allowed = allowed};
+    if (std::none_of(light.sources.begin(), light.sources.end(), may_be)) return out;
     const Receiver at = direct_->receiver(middle, light.n, light.own);
-    // A ray comes or does not: the variance of n is F^2 / (4 n) at most.
     double power = 0;
     for (const ReceiverLight::Source& s : light.sources) {
-        if (!is_crowded(s)) continue;
-        out.push_back({s, unblocked(at, s, scratch)});
-        const double E = out.back().factor * mean(direct_->emitters()[s.emitter].exitance);
-        power += 0.25 * E * E;
+        if (!may_be(s)) continue;
+        out.sources.push_back({s, unblocked(at, {s.emitter, s.piece}, scratch)});
+        power = std::hypot(power, out.sources.back().factor * mean(direct_->emitters()[s.emitter].exitance));
     }
-    const double wanted = std::clamp(power / allowed, static_cast<double>(least_rays), 1e9);
-    if (wanted > most_rays) return {};
-    rays = std::bit_ceil(static_cast<unsigned>(wanted));
-    const auto pays = [&](const ReceiverLight::Source& s) { return is_crowded(s) && s.count * rays_a_blocker > rays; };
+    const unsigned wanted = rays_for(power, allowed);
+    out.rays = std::min(wanted, most_rays);
+    const auto pays = [&](const ReceiverLight::Source& s) {
+        return s.is_crowded || (may_be(s) && s.count * rays_a_blocker > wanted);
+    };
+    std::erase_if(out.sources, [&](const Crowd::Source& s) { return !pays(s.source); });
     std::erase_if(light.sources, pays);
-    std::erase_if(out, [&](const Source& s) { return !pays(s.source); });
     return out;
 }
 
-CrowdedLight::Estimate CrowdedLight::at(const ReceiverLight& light, std::span<const Source> sources, const Point& x,
-                                        unsigned rays, DirectLight::Workspace& scratch, Spectrum* parallel) const {
-    EXI_CHECK(rays <= most_rays);
-    const Receiver at = direct_->receiver(x, light.n, light.own);
-    std::array<SurfacePoint, most_rays> from, to;
-    std::array<double, most_rays> kernel;
-    std::array<bool, most_rays> blocked;
+/// Rays `first` to `last` of every place, whose points are those of a net of its own.
+void CrowdedLight::cast(const ReceiverLight& light, const ReceiverLight::Source& source, std::span<const Point> places,
+                        unsigned first, unsigned last, std::span<Sums> sums) const {
+    constexpr std::size_t together = 64;
+    std::array<SurfacePoint, together> from, to;
+    std::array<double, together> kernel, s, t;
+    std::array<std::uint32_t, together> quarter;  // 4 times the place, and the quarter of its rays
+    std::array<bool, together> blocked;
+    const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
+    const std::span<const Point> corners = direct_->occluders().corners(source.piece);
+    const double area = norm(area_vector(corners));
     const Box& box = direct_->occluders().scene().box();
-    const double reach = 2 * norm(box.hi - box.lo) + norm(x - box.lo);
+    const bool is_far = direct_->looks_far(source.emitter);
     const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c); };
-    Estimate out;
-    for (const auto& [source, factor] : sources) {
-        const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
-        const std::span<const Point> corners = direct_->occluders().corners(source.piece);
-        const double area = norm(area_vector(corners));
-        const ScrambledSobol points(
-            hash(static_cast<std::uint64_t>(Stream::direct), bits(x.x), bits(x.y), bits(x.z), source.piece.value));
-        const bool is_far = direct_->looks_far(source.emitter);
-        std::size_t count = 0;
-        double all = 0, arrived = 0;
-        for (std::uint32_t i = 0; i < rays; ++i) {
-            const Point y = uniform_on(corners, area, points(i, 0), points(i, 1));
-            const Vec3 d = y - at.x;
-            const double above = dot(light.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
-            if (above <= 0 || below <= 0) continue;
-            kernel[count] = emitter.radiance.towards(at.x, y) * above * below / (squared * squared);
-            all += kernel[count];
-            // Of the sky a ray needs the direction alone, and to leave the scene.
-            const double part = is_far ? std::min(1.0, reach / std::sqrt(squared)) : 1;
-            from[count] = {x, light.own}, to[count] = {at.x + part * d, emitter.region};
-            ++count;
-        }
-        if (all <= 0) continue;
+    std::size_t count = 0;
+    const auto trace = [&] {
         tracer_->occluded(std::span(from).first(count), std::span(to).first(count), std::span(blocked).first(count));
-        for (std::size_t i = 0; i < count; ++i)
-            if (!blocked[i]) arrived += kernel[i];
-        const double share = arrived / all, E = is_far ? factor : unblocked(at, source, scratch);
-        out.irradiance += share * E * emitter.exitance;
-        if (parallel && is_far) *parallel += share * E * emitter.exitance;
-        const double level = E * mean(emitter.exitance);
-        out.variance += share * (1 - share) * level * level / static_cast<double>(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            Sums& of = sums[quarter[i] / 4];
+            of.all[quarter[i] % 4] += kernel[i];
+            if (!blocked[i]) of.arrived[quarter[i] % 4] += kernel[i];
+        }
+        count = 0;
+    };
+    for (std::uint32_t p = 0; p < places.size(); ++p) {
+        const Point &name = places[p], x = direct_->receiver(name, light.n, light.own).x;
+        const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::direct), bits(name.x), bits(name.y),
+                                         bits(name.z), source.piece.value));
+        const double reach = 2 * norm(box.hi - box.lo) + norm(x - box.lo);
+        for (unsigned begin = first; begin < last;) {
+            const auto some = std::min<std::size_t>(together - count, last - begin);
+            points.fill(begin, 0, std::span(s).first(some));
+            points.fill(begin, 1, std::span(t).first(some));
+            for (std::size_t i = 0; i < some; ++i) {
+                const Point y = uniform_on(corners, area, s[i], t[i]);
+                const Vec3 d = y - x;
+                const double above = dot(light.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
+                if (above <= 0 || below <= 0) continue;
+                kernel[count] = emitter.radiance.towards(x, y) * above * below / (squared * squared);
+                // Of the sky a ray needs the direction alone, and to leave the scene.
+                const double part = is_far ? std::min(1.0, reach / std::sqrt(squared)) : 1;
+                from[count] = {places[p], light.own}, to[count] = {x + part * d, emitter.region};
+                quarter[count++] = 4 * p + 4 * (begin + static_cast<std::uint32_t>(i)) / last;
+            }
+            begin += static_cast<unsigned>(some);
+            if (count == together) trace();
+        }
     }
-    return out;
+    trace();
+}
+
+std::vector<CrowdedLight::Estimate> CrowdedLight::at(const ReceiverLight& light, const Crowd& crowd,
+                                                     std::span<const Point> places,
+                                                     DirectLight::Workspace& scratch) const {
+    EXI_CHECK(crowd.rays <= most_rays && std::has_single_bit(crowd.rays));
+    const std::size_t count = places.size();
+    std::vector<double> level(crowd.sources.size() * count);  // F at every place
+    std::vector<Sums> sums(level.size());
+    for (std::size_t k = 0, i = 0; k < crowd.sources.size(); ++k)
+        for (const Point& x : places) {
+            const auto& [source, factor] = crowd.sources[k];
+            const Receiver at = direct_->receiver(x, light.n, light.own);
+            level[i++] =
+                direct_->looks_far(source.emitter) ? factor : unblocked(at, {source.emitter, source.piece}, scratch);
+        }
+    std::vector<Estimate> out;
+    unsigned rays = std::max(least_rays, crowd.rays / 4);
+    for (unsigned before = 0;; before = rays, rays *= 2) {
+        for (Sums& s : sums)
+            if (before > 0) s.halve();
+        for (std::size_t k = 0; k < crowd.sources.size(); ++k)
+            cast(light, crowd.sources[k].source, places, before, rays, std::span(sums).subspan(k * count, count));
+        out.assign(count, {});
+        double variance = 0;
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            if (sums[i].total() <= 0) continue;
+            const ReceiverLight::Source& source = crowd.sources[i / count].source;
+            const Spectrum whole = level[i] * direct_->emitters()[source.emitter].exitance;
+            Estimate& at = out[i % count];
+            at.irradiance += sums[i].share() * whole;
+            if (direct_->looks_far(source.emitter)) at.parallel += sums[i].share() * whole;
+            const double own = sums[i].variance() * mean(whole) * mean(whole);
+            at.variance += own, variance += own / static_cast<double>(count);
+        }
+        if (variance <= crowd.allowed || rays >= crowd.rays) return out;
+    }
 }
 
 }  // namespace exitance

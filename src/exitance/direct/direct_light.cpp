@@ -147,17 +147,17 @@ Spectrum DirectLight::on_side(const Point& x, const Normal& n, RegionId own, Wor
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
-                          Workspace& scratch) const {
-    prepare_side(receiver, n, own, light, scratch);
+                          Workspace& scratch, const WorthCounting& worth) const {
     const RegionId behind = occluders_->scene().behind(own);
+    prepare_side(receiver, n, own, light, scratch, behind.is_none() ? worth : WorthCounting());
     if (behind.is_none()) return;
     light.behind.resize(1), light.through = occluders_->scene().material(own).through;
     const std::vector<Point> turned(receiver.rbegin(), receiver.rend());
-    prepare_side(turned, -n, behind, light.behind[0], scratch);
+    prepare_side(turned, -n, behind, light.behind[0], scratch, {});
 }
 
 void DirectLight::prepare_side(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
-                               Workspace& scratch) const {
+                               Workspace& scratch, const WorthCounting& worth) const {
     light.n = n, light.own = own;
     light.clear();
     const Point middle = centroid(receiver);
@@ -168,21 +168,22 @@ void DirectLight::prepare_side(std::span<const Point> receiver, const Normal& n,
         if (!shines_on(emitter, own) || emitter.plane.signed_distance(middle) <= -radius ||
             dot(n, emitter.centre - middle) <= -emitter.radius)
             continue;
-        for (PieceId piece : emitter.pieces) look_at({e, piece}, receiver, light, scratch);
+        for (PieceId piece : emitter.pieces) look_at({e, piece}, receiver, light, scratch, worth);
     }
     if (!beams_.empty()) beams_.prepare(receiver, n, own, light.beams, light.candidates);
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own,
-                          std::span<const SourceName> sources, ReceiverLight& light, Workspace& scratch) const {
+                          std::span<const SourceName> sources, ReceiverLight& light, Workspace& scratch,
+                          const WorthCounting& worth) const {
     if (!occluders_->scene().behind(own).is_none()) return prepare(receiver, n, own, light, scratch);
     light.n = n, light.own = own;
     light.clear();
-    for (const SourceName& source : sources) look_at(source, receiver, light, scratch);
+    for (const SourceName& source : sources) look_at(source, receiver, light, scratch, worth);
 }
 
 void DirectLight::look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
-                          Workspace& scratch) const {
+                          Workspace& scratch, const WorthCounting& worth) const {
     const auto& [e, piece] = source;
     const Emitter& emitter = emitters_[e];
     if (occluders_->has_nothing_inside() && !is_distant(e)) {
@@ -194,12 +195,15 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
                       {occluders_->corners(piece), emitter.plane.n, emitter.region, looks_far(e)});
     PieceId& likely = scratch.last_blocker(*occluders_, piece);
     if (!likely.is_none() && scratch.shaft.is_blocked_by(likely)) return;
-    View view = scratch.shaft.classify(scratch.candidates);
+    const std::size_t most = worth ? worth(source) : Shaft::all_candidates;
+    View view = scratch.shaft.classify(scratch.candidates, most);
+    const bool is_crowded = scratch.candidates.size() > most;
     if (view != View::none && looks_out_on_faces(*occluders_, piece)) {
         WindowView().add(*occluders_, {receiver, light.n, light.own}, piece, scratch.candidates);
         if (!scratch.candidates.empty()) view = View::mixed;
     }
     add_source(source, view, receiver[0], light, scratch);
+    if (is_crowded) light.sources.back().is_crowded = true;
     if (!scratch.shaft.blocker().is_none()) likely = scratch.shaft.blocker();
 }
 
@@ -259,7 +263,7 @@ void DirectLight::add_open(const SourceName& source, const Point& x, ReceiverLig
     const std::span<const Point> corners = occluders_->corners(piece);
     const bool no_panes = occluders_->scene().panes().empty();
     const bool in_batch = corners.size() <= 4 && !emitters_[e].radiance.is_directed() && !is_distant(e) && no_panes;
-    light.sources.push_back({e, piece, 0, 0, in_batch});
+    light.sources.push_back({.emitter = e, .piece = piece, .in_batch = in_batch});
     if (looks_far(e) && no_panes)
         light.sources.back().far_factor = visible_form_factor(*occluders_, receiver(x, light.n, light.own), piece, {},
                                                               scratch, emitters_[e].radiance);
@@ -287,6 +291,7 @@ Spectrum DirectLight::on_side(const ReceiverLight& light, const Point& x, Worksp
     for (std::size_t i = 0; i < scratch.factors.size(); ++i) sum += scratch.factors[i] * light.open_light[i];
     for (const ReceiverLight::Source& source : light.sources) {
         if (source.in_batch) continue;
+        EXI_ASSERT(!source.is_crowded);
         const auto candidates = std::span(light.candidates).subspan(source.first, source.count);
         const Emitter& emitter = emitters_[source.emitter];
         const Spectrum light_there =

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct ReceiverLight {
         std::uint32_t emitter = 0;
         PieceId piece;
         std::uint32_t first = 0, count = 0;  ///< Of `candidates`; none: all of the piece is visible.
+        bool is_crowded = false;             ///< They are some of more than are worth counting: exact light wants all.
         bool in_batch = false;               ///< One of `open`.
         double far_factor = -1;              ///< Of a part of the sky that is all visible: F, alike everywhere.
     };
@@ -67,14 +69,18 @@ class DirectLight {
         PieceId piece;
     };
 
+    /// How many candidates of a source are worth counting: one with more is crowded, and light at points is not to be
+    /// asked for while it is among the sources. Empty: all are counted. On diffusing panes all are in any case.
+    using WorthCounting = std::function<std::size_t(const SourceName&)>;
+
     /// Looks at the emitters from a convex polygon of region `own` (metres, counter-clockwise about n); fills `light`,
     /// whose memory is used again. About 1-2 microseconds an emitter, and what the shaft meets of the tree.
     void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
-                 Workspace& scratch) const;
+                 Workspace& scratch, const WorthCounting& worth = {}) const;
 
     /// The same for these sources alone, and no beams.
     void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, std::span<const SourceName> sources,
-                 ReceiverLight& light, Workspace& scratch) const;
+                 ReceiverLight& light, Workspace& scratch, const WorthCounting& worth = {}) const;
 
     /// The same for a part of the polygon that `whole` was made for: only what reached into its shafts is looked at.
     void prepare(std::span<const Point> receiver, const ReceiverLight& whole, ReceiverLight& light,
@@ -135,9 +141,9 @@ class DirectLight {
     Spectrum on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
     Spectrum on_side(const ReceiverLight& light, const Point& x, Workspace& scratch, Spectrum* parallel) const;
     void prepare_side(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
-                      Workspace& scratch) const;
-    void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light,
-                 Workspace& scratch) const;
+                      Workspace& scratch, const WorthCounting& worth) const;
+    void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light, Workspace& scratch,
+                 const WorthCounting& worth) const;
     /// x: any point of the receiver.
     void add_source(const SourceName& source, View view, const Point& x, ReceiverLight& light,
                     Workspace& scratch) const;

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/core/error_share.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -13,7 +14,15 @@ namespace exitance {
 
 LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
     : stage_(stage), seed_(seed), tree_(stage.make_elements(mesh)) {
-    mean_area_ = stage.area / static_cast<double>(tree_.leaves().size());
+    const std::vector<ElementId> leaves = tree_.leaves();
+    noise_area_ = mean_area_ = stage.area / static_cast<double>(leaves.size());
+    is_crowd_ = ErrorShare::is_crowd(leaves.size(), stage.pieces.size());
+    if (is_crowd_) {
+        std::vector<double> areas;
+        for (ElementId e : leaves)
+            if (!stage.is_left_out(tree_.region(e))) areas.push_back(stage.counted_area(tree_, e));
+        noise_area_ = std::max(mean_area_, even_noise_area(areas));
+    }
     share_on_node(tree_);
 }
 
@@ -31,15 +40,16 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
     // Exponents are given by the least rays for a mean square, halved.
     const double dear = std::clamp(std::pow(sampled.place_rays / usual, 0.25), 0.5, 2.0);
     const double allowed = demand.noise * light_near(e, demand) * dear *
-                           std::pow(mean_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
+                           std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
 
 /// An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Without noise it can
 /// be told how far dim places are off, too; not the darkest, where that would follow the method's elements.
 double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
-    const double share =
-        demand.tolerance * light_near(e, demand) * std::sqrt(mean_area_ / stage_.counted_area(tree_, e));
+    const double counted = stage_.counted_area(tree_, e), near = light_near(e, demand);
+    const double even = demand.tolerance * near * std::sqrt(mean_area_ / counted);
+    const double share = std::max(even, near * std::sqrt(least_share_ / counted));
     if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
     return std::min(share, std::max(demand.relative_tolerance * light, calibrated::minor_misfit * demand.tolerance));
 }
@@ -90,9 +100,12 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
     const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area counts for no rays
-    const unsigned first =
-        hopeless ? std::bit_ceil(demand.rays.least) : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
-    unsigned rays = std::max({4u, first, before});
+    // Of a crowd each has so small a share in the light that its noise alone tells how many rays it needs.
+    constexpr unsigned least_rays = 4;
+    const unsigned first = is_crowd_  ? least_rays
+                           : hopeless ? std::bit_ceil(demand.rays.least)
+                                      : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
+    unsigned rays = std::max({least_rays, first, before});
     w.growing.assign(places.size(), {});
     for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
         const unsigned cast = gather_at(e, places, b, rays, more, demand, w);
@@ -134,6 +147,18 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
     if (!(misfit > allowed * allowed + 3 * noise)) return;
     // Given by five freedoms, as in is_too_rough.
     sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
+}
+
+/// What misfit is left to each of many small elements by what all have now.
+double LocalPass::share_in_crowd(const LocalPassDemand& demand) const {
+    std::vector<double> errors;
+    for (ElementId e : tree_.leaves()) {
+        const SampledElement& s = sampled_[e];
+        const double light = light_near(e, demand);
+        const double misfit = std::max(0.0, s.misfit_squared - s.noise_in_misfit);
+        if (light > 0) errors.push_back(stage_.counted_area(tree_, e) * misfit / (light * light));
+    }
+    return share_of_crowd(std::move(errors), demand.tolerance * demand.tolerance * stage_.area);
 }
 
 /// Cuts the elements whose error has too large a share in the whole; returns the new leaves.
@@ -191,9 +216,12 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         };
         std::copy_if(active.begin(), active.end(), std::back_inserter(kept), good);
         std::erase_if(active, good);
+        if (is_crowd_) least_share_ = share_in_crowd(demand);
         // Of what is quiet enough and to be cut, the pieces are all that has to be gathered.
         for (ElementId child : split_where_needed(kept, demand)) active.push_back(child);
     }
+    // What those of a crowd may leave follows from what all of them have.
+    const auto may_cut = [&](int at) { return at < demand.max_depth && !(is_crowd_ && at == 0); };
     for (; !active.empty(); ++depth) {
         sampled_.resize(tree_.size());
         // In slices, so that progress can be told; few, since threads wait for one another at the end of each. A
@@ -206,7 +234,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
                 [&](std::size_t begin, std::size_t end) {
                     Workspace workspace;
                     for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
-                        sampled_[active[i]] = sample(active[i], b, demand, depth < demand.max_depth, workspace),
+                        sampled_[active[i]] = sample(active[i], b, demand, may_cut(depth), workspace),
                         note_touched("rays", sampled_[active[i]].rays);
                 },
                 [&](std::size_t i) -> SampledElement& { return sampled_[active[first + i]]; },
@@ -224,6 +252,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
             for (ElementId e : active) report.rays += sampled_[e].rays;
         report.interrupted = stop.requested();
         if (depth == demand.max_depth || report.interrupted) break;
+        if (is_crowd_) least_share_ = share_in_crowd(demand);
         active = split_where_needed(active, demand);
     }
     tree_.shrink_to_fit(), sampled_.shrink_to_fit();

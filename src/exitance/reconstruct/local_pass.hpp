@@ -66,7 +66,7 @@ class LocalPass {
     /// Mesh and gathers, for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(tree_, sampled_, mean_area_, spread_);
+        a(tree_, sampled_, mean_area_, noise_area_, is_crowd_, least_share_, spread_);
     }
 
   private:
@@ -103,6 +103,7 @@ class LocalPass {
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
+    double share_in_crowd(const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);
     ElementFunction finished(const LocalPassDemand& demand, LocalPassReport& report) const;
 
@@ -111,6 +112,10 @@ class LocalPass {
     ElementTree tree_;
     Field<ElementId, SampledElement> sampled_;
     double mean_area_ = 0;
+    double noise_area_ = 0;  ///< In place of it where noise is dealt out.
+    bool is_crowd_ = false;  ///< Are most elements whole polygons (`ErrorShare`)?
+    /// Squared misfit that any element may have, by the squared light of its room, m^2; 0 but in crowds.
+    double least_share_ = 0;
     Spread spread_;
 };
 

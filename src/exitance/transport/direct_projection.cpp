@@ -1,7 +1,9 @@
 #include "exitance/transport/direct_projection.hpp"
 
 #include "exitance/basis/element_fit.hpp"
+#include "exitance/core/error_share.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/direct/crowd_by_light.hpp"
 #include "exitance/direct/sampled_light.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/transport/distributed.hpp"
@@ -31,35 +33,65 @@ DirectFit fit_at_places(const Stage& stage, const ElementTree& tree, ElementId e
     return out;
 }
 
-/// Leaves noise in a fit to values whose noise has the mean square `noise`, by weight w: it has as many freedoms as the
-/// element has corners, as much of the noise stays in it, and the rest looks like misfit.
-void count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit& fit) {
+/// A fit, and how much of its misfit is noise that it keeps, (W/m^2)^2: more rays would help, smaller elements would
+/// not.
+struct NoisyFit {
+    DirectFit fit;
+    double noise = 0;
+};
+
+/// How much of the noise of its places a fit keeps: as many parts as it has freedoms.
+double kept_noise_share(const ElementTree& tree, ElementId e) {
     const double places = static_cast<double>(element_rule(tree, e, RuleOrder::fine).size());
-    const double kept = std::min(1.0, tree.patch(e).corner_count() / places);
-    constexpr double seldom = 2;  // of noise alone, the squares of a few freedoms are seldom more than this
-    fit.misfit_squared = std::max(0.0, fit.misfit_squared - seldom * (1 - kept) * noise) + kept * noise;
+    return std::min(1.0, tree.patch(e).corner_count() / places);
 }
 
-/// Exact, but where rays find what is hidden for less (`CrowdedLight`). `allowed`: mean square of w (E - polynomial)
-/// that noise may leave; 0: exact.
-DirectFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, ReceiverLight& light,
-                     DirectLight::Workspace& workspace) {
-    if (light.is_dark()) return {};
-    const double w = mean(light_weight(stage.scene.material(tree.region(e))));
-    unsigned rays = 0;
-    const std::vector<CrowdedLight::Source> crowded =
-        stage.crowded.take_crowded(light, tree.patch(e).at(tree.centre(e)), allowed / (w * w), workspace, rays);
-    double noise = 0, places = 0;
-    DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
-        Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
-        if (!crowded.empty()) {
-            const CrowdedLight::Estimate more = stage.crowded.at(light, crowded, x, rays, workspace, &parallel);
-            E += more.irradiance, noise += more.variance, ++places;
-        }
-        return E;
+/// Leaves noise in a fit to values whose noise has the mean square `noise`, by weight w: it has as many freedoms as the
+/// element has corners, as much of the noise stays in it, and the rest looks like misfit.
+NoisyFit count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit fit) {
+    const double kept = kept_noise_share(tree, e);
+    constexpr double seldom = 2;  // of noise alone, the squares of a few freedoms are seldom more than this
+    fit.misfit_squared = std::max(0.0, fit.misfit_squared - seldom * (1 - kept) * noise) + kept * noise;
+    return {fit, kept * noise};
+}
+
+/// What noise of rays to crowded sources a fit may keep.
+struct NoiseAllowed {
+    double squared = 0;     ///< Mean square of w (E - polynomial) that noise may leave, (W/m^2)^2; 0: exact.
+    double mean_light = 0;  ///< Mean of w E over all surfaces, W/m^2, where it is dealt out by light; else 0.
+};
+
+/// Exact, but where rays find what is hidden for less (`CrowdedLight`). `named`: the sources to look at; none: all, and
+/// beams.
+NoisyFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                    ReceiverLight& light, DirectLight::Workspace& workspace,
+                    const std::vector<DirectLight::SourceName>* named = nullptr) {
+    const RegionId region = tree.region(e);
+    const double w = mean(light_weight(stage.scene.material(region)));
+    const CrowdedLight::Crowd crowd = stage.crowded.prepare(tree.outline(e), stage.scene.regions()[region].plane.n,
+                                                            region, allowed.squared / (w * w), light, workspace, named);
+    if (light.is_dark() && crowd.empty()) return {};
+    std::vector<CrowdedLight::Estimate> by_rays;
+    if (!crowd.empty()) {
+        std::vector<Point> places;
+        for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::fine))
+            places.push_back(tree.patch(e).at(place.uv));
+        by_rays = allowed.mean_light > 0
+                      ? estimates_by_light(stage.crowded, light, crowd, places, kept_noise_share(tree, e),
+                                           allowed.mean_light / w, workspace)
+                      : stage.crowded.at(light, crowd, places, workspace);
+    }
+    double noise = 0;
+    std::size_t next = 0;
+    const DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
+        const Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
+        if (crowd.empty()) return E;
+        const CrowdedLight::Estimate& more = by_rays[next++];
+        noise += more.variance, parallel += more.parallel;
+        return E + more.irradiance;
     });
-    if (noise > 0) count_noise(tree, e, w * w * noise / places, out);
-    return out;
+    if (noise <= 0) return {out};
+    return count_noise(tree, e, w * w * noise / static_cast<double>(next), out);
 }
 
 /// What clusters of emitters may miss at one place of an element that an error of `allowed` is left to.
@@ -69,22 +101,21 @@ LightAccuracy accuracy_on(const Stage& stage, RegionId region, double allowed) {
     return {at_least, of_error * std::sqrt(allowed) / mean(light_weight(stage.scene.material(region)))};
 }
 
-DirectFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
-                       ClusteredLight::Workspace& workspace) {
+NoisyFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
+                      ClusteredLight::Workspace& workspace) {
     const RegionId region = tree.region(e);
     const Normal& n = stage.scene.regions()[region].plane.n;
     const LightAccuracy accuracy = accuracy_on(stage, region, allowed);
     double noise = 0, places = 0;
     const bool parallel_light = !stage.direct.beams().empty();
-    DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
+    const DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
         const ClusteredLight::Estimate at = stage.clustered.by_clusters(x, n, region, accuracy, workspace);
         noise += at.variance, ++places;
         if (parallel_light) stage.direct.beams().irradiance({x, n, region}, &parallel);
         return at.irradiance;
     });
     const double w = mean(light_weight(stage.scene.material(region)));
-    count_noise(tree, e, w * w * noise / places, out);
-    return out;
+    return count_noise(tree, e, w * w * noise / places, out);
 }
 
 /// Would clusters do at the middle of an element?
@@ -96,23 +127,23 @@ bool suits_clusters(const Stage& stage, const ElementTree& tree, ElementId e, do
                                 accuracy_on(stage, region, allowed), workspace);
 }
 
+NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                       DirectFitRoom& room) {
+    if (suits_clusters(stage, tree, e, allowed.squared, room.clustered))
+        return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
+    return fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
+}
+
 }  // namespace
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                            DirectFitRoom& room) {
-    if (suits_clusters(stage, tree, e, allowed, room.clustered))
-        return fit_clusters(stage, tree, e, allowed, room.clustered);
-    const RegionId region = tree.region(e);
-    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, room.light,
-                         room.clustered.exact);
-    return fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
+    return fit_all_light(stage, tree, e, {allowed}, room).fit;
 }
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace) {
-    const RegionId region = tree.region(e);
-    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, light, workspace);
-    return fit_values(stage, tree, e, 0, light, workspace);
+    return fit_values(stage, tree, e, {}, light, workspace).fit;
 }
 
 namespace {
@@ -154,25 +185,24 @@ constexpr unsigned rays_an_element = 16;  ///< For weak sources; more on element
 constexpr std::size_t few_strong = 24;  ///< Sources of which exact visible parts cost no more than clusters do.
 
 /// The same where there are many elements: sources that do not count on this one are left to rays.
-DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed, unsigned rays,
-                           SampledLight& sampled, DirectFitRoom& room) {
+NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                          unsigned rays, SampledLight& sampled, DirectFitRoom& room) {
     const RegionId region = tree.region(e);
-    if (!stage.scene.behind(region).is_none()) return fit_direct_light(stage, tree, e, allowed, room);
+    if (!stage.scene.behind(region).is_none()) return fit_all_light(stage, tree, e, allowed, room);
     // Each source is looked at, if only roughly: where they are too many even for that, clusters are first.
     constexpr std::size_t too_many = 10000;
     const bool clusters_first = stage.clustered.tree().sources().size() > too_many;
-    if (clusters_first && suits_clusters(stage, tree, e, allowed, room.clustered))
-        return fit_clusters(stage, tree, e, allowed, room.clustered);
-    const SampledLight::Estimate& of = sampled(tree, e, light_weight(stage.scene.material(region)), allowed, rays);
-    if (of.strong.size() > few_strong && suits_clusters(stage, tree, e, allowed, room.clustered))
-        return fit_clusters(stage, tree, e, allowed, room.clustered);
-    stage.direct.prepare(tree.outline(e), stage.scene.regions()[region].plane.n, region, of.strong, room.light,
-                         room.clustered.exact);
-    DirectFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
-    for (Spectrum& corner : out.corners) corner += of.weak;
-    out.mean += of.weak;
+    if (clusters_first && suits_clusters(stage, tree, e, allowed.squared, room.clustered))
+        return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
+    const SampledLight::Estimate& of =
+        sampled(tree, e, light_weight(stage.scene.material(region)), allowed.squared, rays);
+    if (of.strong.size() > few_strong && suits_clusters(stage, tree, e, allowed.squared, room.clustered))
+        return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
+    NoisyFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact, &of.strong);
+    for (Spectrum& corner : out.fit.corners) corner += of.weak;
+    out.fit.mean += of.weak;
     // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
-    out.misfit_squared = std::max(out.misfit_squared, of.misfit_squared);
+    out.fit.misfit_squared = std::max(out.fit.misfit_squared, of.misfit_squared);
     return out;
 }
 
@@ -234,10 +264,6 @@ double estimated_flux_apart(const Stage& stage, const ElementTree& tree, std::sp
     return area > 0 ? flux * stage.area / area : 0;
 }
 
-}  // namespace
-
-namespace {
-
 /// What squared error an element may have where rooms are judged apart: each room as if it were alone, but none for
 /// less than a hundredth of the light of all. (W/m^2)^2 m^2
 std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& light,
@@ -260,6 +286,18 @@ std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& l
             tolerance * light_there * tolerance * light_there * stage.rooms.area(room) / std::max(1.0, elements[room]);
     }
     return out;
+}
+
+/// The squared error of an element that smaller ones would not have, (W/m^2)^2 m^2. `noise`: see `NoisyFit`.
+double error_of_shape(const DirectProjection& light, const Field<ElementId, double>& noise, ElementId e) {
+    return light.tree.area(e) * std::max(0.0, light.fit[e].misfit_squared - noise[e]);
+}
+
+/// Of a bound on the sum of the leaves' squared errors, (W/m^2)^2 m^2.
+double share_in_crowd(const DirectProjection& light, const Field<ElementId, double>& noise, double bound) {
+    std::vector<double> errors;
+    for (ElementId e : light.tree.leaves()) errors.push_back(error_of_shape(light, noise, e));
+    return share_of_crowd(std::move(errors), bound);
 }
 
 }  // namespace
@@ -300,8 +338,19 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
         const double relative = stage.rooms.importance(out.tree, e) / stage.rooms.weight(out.tree, e);
         return share_in[stage.rooms.of(out.tree, e)] / relative;
     };
+    // Noise of small elements is small by itself, and that of large ones not to be less the more of those there are.
+    const bool is_crowd = stage.rooms.count() == 0 && ErrorShare::is_crowd(active.size(), stage.pieces.size());
+    const auto noise_on = [&](ElementId e) -> NoiseAllowed {
+        const double of_area =
+            share * std::min(1.0, stage.area / (ErrorShare::most_even * out.tree.area(e))) / mean_area;
+        const double even = allowed_on(e) / out.tree.area(e);
+        if (!is_crowd) return {even};
+        return {std::max(even, of_area), std::sqrt(share / mean_area) / options.tolerance};
+    };
+    std::vector<NoisyFit> found;
+    Field<ElementId, double> noise;
     for (int depth = 0; !active.empty(); ++depth) {
-        out.fit.resize(out.tree.size());
+        found.assign(active.size(), {});
         shared_ranges(
             active.size(), 8,
             [&](std::size_t begin, std::size_t end) {
@@ -310,28 +359,32 @@ DirectProjection project_direct_light(const Stage& stage, const DirectProjection
                 SampledLight sampled(stage.direct, stage.tracer, options.seed);
                 for (std::size_t i = begin; i < end; ++i) {
                     const ElementId e = active[i];
-                    DirectFit& fit = out.fit[e];
+                    NoisyFit& fit = found[i];
                     if (stop.requested() && depth > 0)
-                        fit = inherited_fit(out.tree, e, out.fit[out.tree.parent(e)]);
-                    else if (stop.requested())  // dark, where even rays would take too long
-                        fit = stop.seconds_overdue() < time_for_rays ? fit_by_rays(stage, out.tree, e, sampled)
-                                                                     : DirectFit();
+                        fit.fit = inherited_fit(out.tree, e, out.fit[out.tree.parent(e)]);
+                    else if (stop.requested() && stop.seconds_overdue() < time_for_rays)
+                        fit.fit = fit_by_rays(stage, out.tree, e, sampled);
+                    else if (stop.requested())
+                        continue;  // dark, where even rays would take too long
                     else if (many)
-                        fit = fit_strong_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), rays_of(e),
-                                               sampled, room);
+                        fit = fit_strong_light(stage, out.tree, e, noise_on(e), rays_of(e), sampled, room);
                     else
-                        fit = fit_direct_light(stage, out.tree, e, allowed_on(e) / out.tree.area(e), room);
+                        fit = fit_all_light(stage, out.tree, e, noise_on(e), room);
                 }
             },
-            [&](std::size_t i) -> DirectFit& { return out.fit[active[i]]; },
+            [&](std::size_t i) -> NoisyFit& { return found[i]; },
             {"direct light", [&](std::size_t i) { return out.tree.region(active[i]).value; }});
+        out.fit.resize(out.tree.size()), noise.resize(out.tree.size());
+        for (std::size_t i = 0; i < active.size(); ++i)
+            out.fit[active[i]] = found[i].fit, noise[active[i]] = is_crowd ? found[i].noise : 0;
         if (options.may_give_up && stop.requested()) return {};
         if (depth == 0 && !many) share = share_of(weighted_flux(stage, out.tree, active, out.fit));
         if (depth == 0) share_in = shares_by_room(stage, out, active, options.tolerance);
         if (depth == options.max_depth || stop.requested()) break;
+        const double least = is_crowd ? share_in_crowd(out, noise, share * stage.area / mean_area) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            if (out.tree.area(e) * out.fit[e].misfit_squared <= allowed_on(e)) continue;
+            if (error_of_shape(out, noise, e) <= std::max(least, allowed_on(e))) continue;
             if (options.least_area && out.tree.area(e) < 2 * *options.least_area) continue;
             for (ElementId child : refine_element(out.tree, e)) fresh.push_back(child);
         }

@@ -154,22 +154,24 @@ bool Shaft::blocks_all(RegionId r) {
     return cover_.covers();
 }
 
-View Shaft::classify(std::vector<PieceId>& candidates) {
+View Shaft::classify(std::vector<PieceId>& candidates, std::size_t most) {
     candidates.clear();
     in_vain_.clear();
     if (receiver_.empty() || source_.empty()) return View::none;
     if (are_in_scene() && occluders_->has_nothing_inside()) return View::open;
+    bool blocked = false;
     const auto look = [&](PieceId p) {
         if (!reaches_in(p)) return false;
         candidates.push_back(p);
-        return blocks_all(p);
+        blocked = blocks_all(p);
+        return blocked || candidates.size() > most;
     };
     const Vec3 direction = source_[0] - receiver_[0];  // from the receiver on: near walls block most
     const bool in_scene = are_in_scene();
-    bool blocked = false;
+    bool ended = false;
     for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})
-        blocked = blocked || (in_scene ? occluders_->visit_inner(size, region_, look, direction)
-                                       : occluders_->visit_region(size, region_, look, direction));
+        ended = ended || (in_scene ? occluders_->visit_inner(size, region_, look, direction)
+                                   : occluders_->visit_region(size, region_, look, direction));
     if (blocked) blocker_ = candidates.back();
     if (blocked) candidates.clear();
     return blocked ? View::none : candidates.empty() ? View::open : View::mixed;

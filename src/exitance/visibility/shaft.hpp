@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,8 +39,11 @@ class Shaft {
     void set(const Occluders& occluders, const Facet& receiver, const Facet& source);
 
     /// Classifies the pair, looking at every occluder of the scene. `candidates` receives, for a mixed view, all pieces
-    /// that may stand in between (it is cleared first).
-    View classify(std::vector<PieceId>& candidates);
+    /// that may stand in between (it is cleared first). The search ends where more than `most` of them are found: the
+    /// view is mixed as far as is known then, and there may be others. O(log n + most) but for boxes that the shaft
+    /// meets and their pieces do not.
+    View classify(std::vector<PieceId>& candidates, std::size_t most = all_candidates);
+    static constexpr std::size_t all_candidates = std::numeric_limits<std::size_t>::max();
 
     /// The same when only `from` can stand in between: the candidates of a pair of polygons that hold these.
     /// `candidates` must be another vector.

@@ -34,7 +34,6 @@ class PartOfLight {
             return fit_values(e, [&](const Point& x) {
                 return clustered_.by_clusters(x, n, region, accuracy, room.clustered).irradiance;
             });
-        direct_.prepare(tree_.outline(e), n, region, room.light, room.clustered.exact);
         return fit_prepared(e, allowed, room);
     }
 
@@ -45,9 +44,7 @@ class PartOfLight {
         constexpr unsigned rays = 16;
         const Spectrum w = light_weight(stage_.scene.material(region));
         const SampledLight::Estimate& of = sampled(tree_, e, w, allowed, rays);
-        direct_.prepare(tree_.outline(e), stage_.scene.regions()[region].plane.n, region, of.strong, room.light,
-                        room.clustered.exact);
-        DirectFit out = fit_prepared(e, allowed, room);
+        DirectFit out = fit_prepared(e, allowed, room, &of.strong);
         for (Spectrum& corner : out.corners) corner += of.weak;
         out.mean += of.weak;
         return out;
@@ -56,17 +53,24 @@ class PartOfLight {
     double weight(ElementId e) const { return mean(light_weight(stage_.scene.material(tree_.region(e)))); }
 
   private:
-    DirectFit fit_prepared(ElementId e, double allowed, DirectFitRoom& room) const {
-        if (room.light.is_dark()) return {};
-        unsigned rays = 0;
+    /// `named`: the sources to look at; none: all.
+    DirectFit fit_prepared(ElementId e, double allowed, DirectFitRoom& room,
+                           const std::vector<DirectLight::SourceName>* named = nullptr) const {
+        const RegionId region = tree_.region(e);
         DirectLight::Workspace& exact = room.clustered.exact;
         const double variance = allowed / (weight(e) * weight(e));
-        const std::vector<CrowdedLight::Source> crowded =
-            crowded_.take_crowded(room.light, tree_.patch(e).at(tree_.centre(e)), variance, exact, rays);
+        const CrowdedLight::Crowd crowd = crowded_.prepare(tree_.outline(e), stage_.scene.regions()[region].plane.n,
+                                                           region, variance, room.light, exact, named);
+        if (room.light.is_dark() && crowd.empty()) return {};
+        std::vector<Point> places;
+        for (const WeightedPlace& place : element_rule(tree_, e, RuleOrder::fine))
+            places.push_back(tree_.patch(e).at(place.uv));
+        std::vector<CrowdedLight::Estimate> by_rays;
+        if (!crowd.empty()) by_rays = crowded_.at(room.light, crowd, places, exact);
+        std::size_t next = 0;
         return fit_values(e, [&](const Point& x) {
-            Spectrum E = direct_.irradiance(room.light, x, exact);
-            if (!crowded.empty()) E += crowded_.at(room.light, crowded, x, rays, exact).irradiance;
-            return E;
+            const Spectrum E = direct_.irradiance(room.light, x, exact);
+            return crowd.empty() ? E : E + by_rays[next++].irradiance;
         });
     }
 
