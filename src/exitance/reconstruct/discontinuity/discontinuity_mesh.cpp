@@ -72,7 +72,7 @@ class Builder {
 
     /// Where emitters are many, most matter little wherever one looks.
     void find_weak_light() {
-        if (options_.by_orderings) ordered_.emplace(stage_.direct);
+        if (options_.by_orderings) ordered_.emplace(stage_.direct, options_.merges_volumes);
         if (stop_.requested() || ordered_ || !WeakLight::pays(stage_.direct)) return;
         // Of the errors asked for: what is left out changes nothing that can be seen; noise of half of one adds an
         // eighth to it, where it is as large as it may be. Triangles smaller than a region's share of the area may have

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/visibility/bsp/shadow_volume.hpp"
+#include "exitance/visibility/bsp/merged_volumes.hpp"
 
 namespace exitance {
 
@@ -12,7 +12,13 @@ struct OrderedLight::Volume {
     ShadowVolume shadow;
 };
 
-OrderedLight::OrderedLight(const DirectLight& direct) : direct_(&direct) {
+/// What all candidates hide of one source.
+struct OrderedLight::SourceVolumes {
+    std::vector<Volume> all;
+    std::optional<MergedVolumes> merged = {};
+};
+
+OrderedLight::OrderedLight(const DirectLight& direct, bool merges_volumes) : direct_(&direct), merges_(merges_volumes) {
     std::vector<Normal> normals;
     for (std::uint32_t e = 0; e < direct.emitters().size() && !direct.is_distant(e); ++e) {
         const DirectLight::Emitter& emitter = direct.emitters()[e];
@@ -115,12 +121,54 @@ ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region
     return light;
 }
 
+OrderedLight::SourceVolumes OrderedLight::volumes_of(const ReceiverLight& whole, const ReceiverLight::Source& source,
+                                                     const Box& space) const {
+    const Occluders& occluders = direct_->occluders();
+    SourceVolumes out;
+    for (const PieceId p : std::span(whole.candidates).subspan(source.first, source.count))
+        out.all.push_back({p, ShadowVolume(occluders.corners(source.piece), direct_->emitters()[source.emitter].plane,
+                                           occluders.corners(p), occluders.pieces()[p].plane, occluders.rounding())});
+    if (!merges_) return out;
+    out.merged.emplace(space, occluders.rounding());
+    for (const Volume& v : out.all) out.merged->add(v.shadow);
+    return out;
+}
+
+/// Is all of a source hidden from a face? If not, `candidates` are what may hide parts of it.
+bool OrderedLight::hides(const SourceVolumes& volumes, std::span<const Point> face, const ReceiverLight& whole,
+                         const ReceiverLight::Source& source, std::vector<PieceId>& candidates, Counts& counts) const {
+    using Place = ShadowVolume::Place;
+    const MinimumLists::Limits limits = lists_->limits(source.emitter, whole.own, face, whole.n);
+    MergedVolumes::Classes classes;
+    if (volumes.merged) volumes.merged->classify(face, classes, counts.plane_tests);
+    if (classes.is_hidden) return true;
+    std::uint64_t before = 0;
+    std::vector<const Volume*> reaching;
+    for (std::uint32_t i = 0; i < volumes.all.size(); ++i) {
+        const Volume& v = volumes.all[i];
+        const std::uint64_t corners = lists_->stands_before(source.emitter, v.piece, limits);
+        before |= corners;
+        if (corners == 0) continue;
+        const bool reaches = volumes.merged ? std::binary_search(classes.reached.begin(), classes.reached.end(), i)
+                                            : v.shadow.in_penumbra(face, counts.plane_tests) != Place::outside;
+        if (reaches) reaching.push_back(&v);
+    }
+    for (const Volume* v : reaching) candidates.push_back(v->piece);
+    return !volumes.merged && (corners_over(source.emitter, face, whole.n) & ~before) == 0 &&
+           std::any_of(reaching.begin(), reaching.end(), [&](const Volume* v) {
+               return v->shadow.has_umbra() && v->shadow.in_umbra(face, counts.plane_tests) == Place::inside;
+           });
+}
+
 void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole, std::span<ReceiverLight> lights,
                         const StopRequest& stop, DirectLight::Workspace& workspace, Counts& counts) const {
     for (ReceiverLight& light : lights) light.n = whole.n, light.own = whole.own;
     if (whole.is_dark()) return;
     const Occluders& occluders = direct_->occluders();
-    std::vector<std::vector<Volume>> volumes;  // of each source
+    Box space;
+    for (const auto& face : outlines.faces)
+        for (const Point& p : face) space.add(p);
+    std::vector<SourceVolumes> volumes;  // of each source
     // What shafts look at: the sky, lights without extent, all sources, and then those that are all visible.
     ReceiverLight others, open;
     others.n = open.n = whole.n, others.own = open.own = whole.own;
@@ -128,15 +176,9 @@ void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole
     others.beams = whole.beams, others.candidates = whole.candidates;
     const bool both_sides = !whole.behind.empty();
     for (const ReceiverLight::Source& s : whole.sources) {
-        std::vector<Volume>& of_source = volumes.emplace_back();
-        if (both_sides || !is_listed(s.emitter) || s.count == 0) {
-            others.sources.push_back(s);
-            continue;
-        }
-        for (const PieceId p : std::span(whole.candidates).subspan(s.first, s.count))
-            of_source.push_back(
-                {p, ShadowVolume(occluders.corners(s.piece), direct_->emitters()[s.emitter].plane, occluders.corners(p),
-                                 occluders.pieces()[p].plane, occluders.rounding())});
+        const bool by_shafts = both_sides || !is_listed(s.emitter) || s.count == 0;
+        if (by_shafts) others.sources.push_back(s);
+        volumes.push_back(by_shafts ? SourceVolumes() : volumes_of(whole, s, space));
     }
     for (std::size_t f = 0; f < lights.size() && !stop.requested(); ++f) {
         const std::span<const Point> face = outlines.faces[f];
@@ -144,30 +186,17 @@ void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole
         std::vector<std::pair<std::size_t, std::vector<PieceId>>> partly;
         std::vector<PieceId> listed;
         for (std::size_t k = 0; k < volumes.size(); ++k) {
-            if (volumes[k].empty()) continue;
+            if (volumes[k].all.empty()) continue;
             const ReceiverLight::Source& s = whole.sources[k];
             if (!face_each_other(face, whole.n, {s.emitter, s.piece})) continue;
-            const MinimumLists::Limits limits = lists_->limits(s.emitter, whole.own, face, whole.n);
-            std::uint64_t before = 0;
-            std::vector<const Volume*> candidates;
-            for (const Volume& v : volumes[k]) {
-                const std::uint64_t corners = lists_->stands_before(s.emitter, v.piece, limits);
-                before |= corners;
-                if (corners != 0 && v.shadow.in_penumbra(face, counts.plane_tests) != ShadowVolume::Place::outside)
-                    candidates.push_back(&v);
-            }
-            const bool hidden = (corners_over(s.emitter, face, whole.n) & ~before) == 0 &&
-                                std::any_of(candidates.begin(), candidates.end(), [&](const Volume* v) {
-                                    return v->shadow.has_umbra() &&
-                                           v->shadow.in_umbra(face, counts.plane_tests) == ShadowVolume::Place::inside;
-                                });
-            if (hidden) continue;
+            std::vector<PieceId> candidates;
+            if (hides(volumes[k], face, whole, s, candidates, counts)) continue;
             if (candidates.empty()) {
                 open.sources.push_back({s.emitter, s.piece});
                 continue;
             }
-            auto& [source, pieces] = partly.emplace_back(k, std::vector<PieceId>());
-            for (const Volume* v : candidates) pieces.push_back(v->piece);
+            partly.emplace_back(k, std::move(candidates));
+            const MinimumLists::Limits limits = lists_->limits(s.emitter, whole.own, face, whole.n);
             for (const PieceId p : occluders.pieces().ids())
                 if (!occluders.is_distant(p) && lists_->stands_before(s.emitter, p, limits) != 0) listed.push_back(p);
         }
