@@ -51,7 +51,7 @@ void declare_discontinuity(CLI::App& app, SolveOptions& options) {
         ->group(group);
     add_choice(app, "--dm-structure", structure_names, o.structure,
                "What may hide a source is found by shafts and a tree of boxes (bvh, default), or by orderings of a BSP "
-               "tree (bsp)")
+               "tree and shadow volumes, one by one (bsp) or merged into one tree a source (bsp-merged)")
         ->group(group);
     add_switch(app, "--layers", o.layers, "One compressed mesh a source, to be added up, in place of one for all")
         ->group(group);

@@ -17,8 +17,9 @@ enum class ThreeEdgeEvents { automatic, on, off };
 enum class Premesh { off, penumbra_first, coarse };
 /// The function on a triangle: one quadratic polynomial, or three cubic ones whose tangent planes agree.
 enum class MeshElement { quadratic, clough_tocher };
-/// By what is found what may hide a source: a scene BSP tree's orderings, or shafts and a tree of boxes.
-enum class OccluderStructure : std::uint8_t { bsp, bvh };
+/// By what is found what may hide a source: a scene BSP tree's orderings with shadow volumes, one by one or merged into
+/// one tree a source, or shafts and a tree of boxes.
+enum class OccluderStructure : std::uint8_t { bsp, bvh, merged };
 /// How triangles get their shape: by points that are added for it before light is looked at, or as bisection leaves it.
 enum class MeshQuality : std::uint8_t { delaunay, rivara };
 
@@ -36,9 +37,10 @@ inline constexpr std::array<std::pair<MeshElement, std::string_view>, 2> mesh_el
     {MeshElement::quadratic, "quadratic"},
     {MeshElement::clough_tocher, "clough-tocher"},
 }};
-inline constexpr std::array<std::pair<OccluderStructure, std::string_view>, 2> structure_names{{
+inline constexpr std::array<std::pair<OccluderStructure, std::string_view>, 3> structure_names{{
     {OccluderStructure::bsp, "bsp"},
     {OccluderStructure::bvh, "bvh"},
+    {OccluderStructure::merged, "bsp-merged"},
 }};
 inline constexpr std::array<std::pair<MeshQuality, std::string_view>, 2> mesh_quality_names{{
     {MeshQuality::delaunay, "delaunay"},

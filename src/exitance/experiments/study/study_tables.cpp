@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "exitance/experiments/flatland/kernel_terms.hpp"
 #include "exitance/experiments/kernel_error.hpp"
 #include "exitance/experiments/local_pass/local_pass_study.hpp"
+#include "exitance/experiments/sample_distribution.hpp"
 #include "exitance/experiments/study/study_scene.hpp"
 #include "exitance/experiments/task_schedules.hpp"
 #include "exitance/experiments/thesis/thesis_studies.hpp"
@@ -190,6 +192,22 @@ Result<StudyTables> kernel_tables(const Study& study, const StudyOptions& option
     return StudyTables{{"results", std::move(*table)}};
 }
 
+/// `samples` is an argument; units are doubled from 8 to 256.
+Result<StudyTables> sample_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                  const StopRequest& stop) {
+    const auto samples = static_cast<std::size_t>(std::clamp(argument(study, "samples", 1000), 1.0, 1e6));
+    CsvText text;
+    text.print("%s\n", sample_distribution_header);
+    const Result<void> done = for_scenes(
+        study, options, progress, stop, [&](const std::string& name, const Scene& scene, const std::string&) {
+            write_sample_distribution(name, scene, {8, 16, 32, 64, 128, 256}, samples, 1, text, stop);
+        });
+    if (!done) return done.error();
+    Result<Table> table = parse_csv(text.text(), study.table);
+    if (!table) return table.error();
+    return StudyTables{{"results", std::move(*table)}};
+}
+
 /// `threshold_W`, `min_area_m2`, `repeats` and `error` (of the production solve) are arguments.
 Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& options, Progress& progress,
                                     const StopRequest& stop) {
@@ -273,17 +291,10 @@ Result<StudyTables> local_pass_tables(const Study& study, const StudyOptions& op
 
 std::span<const StudyTableMaker> study_table_makers() {
     static constexpr StudyTableMaker makers[] = {
-        {"candidates", visibility_tables},
-        {"cie171", cie171_tables},
-        {"flatland", flatland_tables},
-        {"kernel", kernel_tables},
-        {"local-pass", local_pass_tables},
-        {"layers", mesh_tables},
-        {"premesh", mesh_tables},
-        {"rays", visibility_tables},
-        {"schedules", schedule_tables},
-        {"triangulation", mesh_tables},
-        {"view-factors", view_factor_tables},
+        {"candidates", visibility_tables}, {"cie171", cie171_tables},         {"flatland", flatland_tables},
+        {"kernel", kernel_tables},         {"local-pass", local_pass_tables}, {"layers", mesh_tables},
+        {"premesh", mesh_tables},          {"rays", visibility_tables},       {"samples", sample_tables},
+        {"schedules", schedule_tables},    {"triangulation", mesh_tables},    {"view-factors", view_factor_tables},
         {"volumes", visibility_tables},
     };
     return makers;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "exitance/core/random.hpp"
-#include "exitance/visibility/bsp/shadow_volume.hpp"
+#include "exitance/visibility/bsp/merged_volumes.hpp"
 #include "exitance/visibility/bsp/source_orderings.hpp"
 #include "exitance/visibility/shaft.hpp"
 
@@ -111,56 +111,103 @@ void candidates(const char* name, const Scene& scene, CsvText& out) {
 
 // ---------------------------------------------------------------------------------------------- shadow volumes
 
-/// Survivors among all polygons for every pair of a source and a polygon that light may reach.
-void volumes(const char* name, const Scene& scene, CsvText& out) {
-    const Occluders occluders(scene);
-    const auto& pieces = occluders.pieces();
-    constexpr std::size_t most_emitters = 4;
-    std::size_t pairs = 0, survivors = 0, of_shafts = 0, tests = 0, umbra = 0, hidden = 0, made = 0;
-    double making = 0, testing = 0, shaft_seconds = 0;
-    for (std::size_t e = 0; e < std::min(most_emitters, scene.emitters().size()); ++e) {
-        const Surface& emitter = scene.surfaces()[scene.emitters()[e]];
-        const std::vector<Point> hull = convex_hull(scene.outline(scene.emitters()[e]), emitter.normal);
-        const Plane plane = scene.regions()[emitter.region].plane;
-        std::vector<std::pair<PieceId, ShadowVolume>> all;
+/// What the volumes of one kind tell of pairs, and what that takes.
+struct VolumeCounts {
+    std::size_t survivors = 0, tests = 0, umbra = 0;
+    double making = 0, testing = 0;  ///< Seconds of processor.
+};
+
+/// Survivors among all polygons for every pair of a source and a polygon that light may reach: by the volumes one by
+/// one, merged into one tree a source, and by shafts.
+class VolumeStudy {
+  public:
+    explicit VolumeStudy(const Scene& scene) : scene_(scene), occluders_(scene) {
+        constexpr std::size_t most_emitters = 4;
+        for (std::size_t e = 0; e < std::min(most_emitters, scene.emitters().size()); ++e) look(scene.emitters()[e]);
+    }
+
+    void print(const char* name, CsvText& out) const {
+        const double each = pairs_ > 0 ? 1.0 / static_cast<double>(pairs_) : 0;
+        const double a_volume = 1e6 / static_cast<double>(std::max<std::size_t>(1, made_));
+        const auto per_pair = [&](std::size_t count) { return each * static_cast<double>(count); };
+        out.print("%s,%zu,%zu,%zu,%.2f,%.2f,%.1f,%zu,%zu,%.2f,%.2f,%.2f,", name, occluders_.pieces().size(), pairs_,
+                  made_, per_pair(apart_.survivors), per_pair(of_shafts_), per_pair(apart_.tests), apart_.umbra,
+                  hidden_, a_volume * apart_.making, 1e6 * each * apart_.testing, 1e6 * each * shaft_seconds_);
+        out.print("%.2f,%.1f,%zu,%zu,%zu,%.2f,%.2f\n", per_pair(merged_.survivors), per_pair(merged_.tests),
+                  merged_.umbra, nodes_, unmerged_, a_volume * merged_.making, 1e6 * each * merged_.testing);
+    }
+
+  private:
+    using Volumes = std::vector<std::pair<PieceId, ShadowVolume>>;
+
+    bool is_own(PieceId p, RegionId region) const { return occluders_.is_own(occluders_.pieces()[p].region, region); }
+
+    void look(SurfaceId source) {
+        const Surface& emitter = scene_.surfaces()[source];
+        const std::vector<Point> hull = convex_hull(scene_.outline(source), emitter.normal);
+        Volumes all;
         double begin = cpu_seconds();
-        for (PieceId p : pieces.ids()) {
-            if (occluders.is_own(pieces[p].region, emitter.region)) continue;
-            ShadowVolume volume(hull, plane, occluders.corners(p), pieces[p].plane, occluders.rounding());
+        for (PieceId p : occluders_.pieces().ids()) {
+            if (is_own(p, emitter.region)) continue;
+            ShadowVolume volume(hull, scene_.regions()[emitter.region].plane, occluders_.corners(p),
+                                occluders_.pieces()[p].plane, occluders_.rounding());
             if (!volume.is_empty()) all.emplace_back(p, std::move(volume));
         }
-        making += cpu_seconds() - begin, made += all.size();
+        apart_.making += cpu_seconds() - begin, made_ += all.size();
+        begin = cpu_seconds();
+        MergedVolumes tree(scene_.box(), occluders_.rounding());
+        for (const auto& [p, volume] : all) tree.add(volume);
+        merged_.making += cpu_seconds() - begin, nodes_ += tree.nodes(), unmerged_ += tree.unmerged();
         Shaft shaft;
         std::vector<PieceId> found;
-        for (PieceId r : pieces.ids()) {
-            if (occluders.is_own(pieces[r].region, emitter.region)) continue;
-            const Facet receiver{occluders.corners(r), pieces[r].plane.n, pieces[r].region};
+        for (PieceId r : occluders_.pieces().ids()) {
+            if (is_own(r, emitter.region)) continue;
+            const ConvexPiece& piece = occluders_.pieces()[r];
             begin = cpu_seconds();
-            shaft.set(occluders, receiver, {hull, emitter.normal, emitter.region});
+            shaft.set(occluders_, {occluders_.corners(r), piece.plane.n, piece.region},
+                      {hull, emitter.normal, emitter.region});
             const View view = shaft.classify(found);
-            shaft_seconds += cpu_seconds() - begin;
+            shaft_seconds_ += cpu_seconds() - begin;
             if (view == View::none && shaft.blocker().is_none()) continue;  // turned away
-            ++pairs;
-            of_shafts += view == View::mixed ? found.size() : view == View::none ? 1 : 0;
-            hidden += view == View::none;
-            begin = cpu_seconds();
-            bool is_umbra = false;
-            for (const auto& [p, volume] : all) {
-                if (pieces[p].region == pieces[r].region) continue;
-                if (volume.in_penumbra(receiver.corners, tests) == ShadowVolume::Place::outside) continue;
-                ++survivors;
-                is_umbra |= volume.in_umbra(receiver.corners, tests) == ShadowVolume::Place::inside;
-            }
-            testing += cpu_seconds() - begin;
-            umbra += is_umbra;
+            ++pairs_;
+            of_shafts_ += view == View::mixed ? found.size() : view == View::none ? 1 : 0;
+            hidden_ += view == View::none;
+            ask_apart(all, r);
+            ask_merged(all, tree, r);
         }
     }
-    const double each = pairs > 0 ? 1.0 / static_cast<double>(pairs) : 0;
-    out.print("%s,%zu,%zu,%zu,%.2f,%.2f,%.1f,%zu,%zu,%.2f,%.2f,%.2f\n", name, pieces.size(), pairs, made,
-              each * static_cast<double>(survivors), each * static_cast<double>(of_shafts),
-              each * static_cast<double>(tests), umbra, hidden,
-              1e6 * making / static_cast<double>(std::max<std::size_t>(1, made)), 1e6 * each * testing,
-              1e6 * each * shaft_seconds);
+
+    void ask_apart(const Volumes& all, PieceId r) {
+        const double begin = cpu_seconds();
+        const auto corners = occluders_.corners(r);
+        bool is_umbra = false;
+        for (const auto& [p, volume] : all) {
+            if (occluders_.pieces()[p].region == occluders_.pieces()[r].region) continue;
+            if (volume.in_penumbra(corners, apart_.tests) == ShadowVolume::Place::outside) continue;
+            ++apart_.survivors;
+            is_umbra |= volume.in_umbra(corners, apart_.tests) == ShadowVolume::Place::inside;
+        }
+        apart_.testing += cpu_seconds() - begin, apart_.umbra += is_umbra;
+    }
+
+    void ask_merged(const Volumes& all, const MergedVolumes& tree, PieceId r) {
+        const double begin = cpu_seconds();
+        tree.classify(occluders_.corners(r), classes_, merged_.tests);
+        for (const std::uint32_t i : classes_.reached)
+            merged_.survivors += occluders_.pieces()[all[i].first].region != occluders_.pieces()[r].region;
+        merged_.testing += cpu_seconds() - begin, merged_.umbra += classes_.is_hidden;
+    }
+
+    const Scene& scene_;
+    Occluders occluders_;
+    MergedVolumes::Classes classes_;
+    VolumeCounts apart_, merged_;
+    std::size_t pairs_ = 0, of_shafts_ = 0, hidden_ = 0, made_ = 0, nodes_ = 0, unmerged_ = 0;
+    double shaft_seconds_ = 0;
+};
+
+void volumes(const char* name, const Scene& scene, CsvText& out) {
+    VolumeStudy(scene).print(name, out);
 }
 
 // ------------------------------------------------------------------------------------------------------- rays
@@ -213,7 +260,8 @@ std::span<const SceneStudy> thesis_visibility_studies() {
          candidates},
         {"volumes",
          "scene,polygons,pairs,volumes,volume_survivors,shaft_survivors,plane_tests,umbra_by_volume,hidden_by_shaft,us_"
-         "a_volume,us_testing,us_a_shaft",
+         "a_volume,us_testing,us_a_shaft,merged_survivors,merged_plane_tests,umbra_by_merged,merged_nodes,unmerged,us_"
+         "merging_a_volume,us_testing_merged",
          volumes},
         {"rays",
          "scene,polygons,fragments,bytes,build_seconds,bsp_rays_per_second,embree_rays_per_second,other_hits,other_"

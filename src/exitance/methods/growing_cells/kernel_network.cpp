@@ -17,6 +17,7 @@ constexpr std::size_t most_tries = 64;        ///< To draw a pair that faces eac
 constexpr double resampled_weight = 0.3;      ///< Of samples near units of much resource, in fits over all pairs.
 constexpr double idle = 0.01;           ///< Of the mean number of samples won: units between surfaces win next to none.
 constexpr std::size_t thinnings = 4;    ///< Looks for idle units while a network grows to twice its size.
+constexpr std::size_t patience = 64;    ///< Insertions, or as many as there are units, that have left no more of them.
 constexpr double surely = 1e-3;         ///< Share of samples that may differ where a network is sure.
 constexpr double narrow = 0.6;          ///< Width of units of linear maps by their edges: maps reach on by themselves.
 constexpr double density_share = 0.05;  ///< Of resource that every sample brings, by the mean squared target.
@@ -193,7 +194,10 @@ bool KernelNetwork::grow(std::size_t units, const StopRequest& stop, Progress* p
         make_cells(fresh);
         for (const Sample& s : fresh) learn(s);
     }
+    std::size_t most = 0, most_at = inserted_;
     while (cells_->unit_count() < units && !stop.requested()) {
+        if (cells_->unit_count() > most) most = cells_->unit_count(), most_at = inserted_;
+        if (inserted_ - most_at > std::max(patience, most)) return true;
         draw(options_.samples_a_unit, fresh);
         if (fresh.empty()) return false;
         for (const Sample& s : fresh) learn(s);
@@ -202,7 +206,6 @@ bool KernelNetwork::grow(std::size_t units, const StopRequest& stop, Progress* p
         ++inserted_;
         if (options_.normal_scale > 0 && ++since_look_ > 8 + cells_->unit_count() / thinnings)
             cells_->remove_idle(idle, false), since_look_ = 0;
-        if (inserted_ > most_insertions * units) return true;
         if (progress && cells_->unit_count() % 32 == 0)
             progress->advance(static_cast<double>(cells_->unit_count()) / static_cast<double>(units));
     }

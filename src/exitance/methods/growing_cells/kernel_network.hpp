@@ -39,7 +39,11 @@ double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Nor
 /// batches, learned in order.
 class KernelNetwork {
   public:
-    static constexpr std::size_t most_insertions = 2;  ///< By units asked for: where as many go as come.
+    struct Sample {
+        std::uint32_t x = 0, y = 0;  ///< Where it ends and where it begins, in the pool.
+        bool visible = false;
+        bool resampled = false;  ///< Drawn near a unit of much resource.
+    };
 
     /// All must outlive it. `radiosity`: B of every point of the pool, W/m^2, which sources are drawn by.
     KernelNetwork(const Stage& stage, const SurfacePool& pool, const KernelNetworkOptions& options,
@@ -84,17 +88,13 @@ class KernelNetwork {
     const GrowingCells& cells() const { return *cells_; }
     std::size_t rays() const { return rays_; }
     std::size_t sample_count() const { return samples_.size(); }
+    std::span<const Sample> samples() const { return samples_; }  ///< As they were learned.
     Point place_x(GrowingCells::Unit u) const;
     Point place_y(GrowingCells::Unit u) const;
     /// Of one unit: coordinates, width and outputs, as it would be stored.
     std::size_t bytes_a_unit() const;
 
   private:
-    struct Sample {
-        std::uint32_t x = 0, y = 0;  ///< In the pool.
-        bool visible = false;
-        bool resampled = false;
-    };
     static constexpr std::size_t no_unit = 0xffffffffu;
 
     void draw(std::size_t count, std::vector<Sample>& out);

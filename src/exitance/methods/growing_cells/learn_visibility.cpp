@@ -335,14 +335,14 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
     return out;
 }
 
-/// Between surfaces units come and go, so that insertions end at their limit. Of a network of so few units all that are
-/// near a pair have seen through only where nothing is between any surfaces: else rays find what is seen, twice.
+/// Between surfaces as many units go as come, until growth ends. Of a network of so few units all that are near a pair
+/// have seen through only where nothing is between any surfaces: else rays find what is seen, twice.
 CellsForecast forecast_cells(std::size_t units, double facing, bool blocked) {
     constexpr double units_near = 32;    // a sample: 24 to 54 on the scenes of forecast.cpp
+    constexpr double insertions = 2;     // by units asked for
     constexpr double vector_room = 1.5;  // of vectors that grow, on average
     const double n = static_cast<double>(units);
-    const double samples =
-        static_cast<double>(KernelNetwork::most_insertions * KernelNetworkOptions().samples_a_unit) * n;
+    const double samples = insertions * static_cast<double>(KernelNetworkOptions().samples_a_unit) * n;
     CellsForecast out{.rays = samples, .bytes = sizeof(Spectrum) * n * n};
     if (blocked) out.rays += 2 * facing * n * n * rays_a_pair;
     out.bytes += samples * units_near * vector_room * sizeof(std::pair<std::uint32_t, double>);

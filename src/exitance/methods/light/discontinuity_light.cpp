@@ -97,7 +97,8 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     ask.triangulation = choice.triangulation.value_or(TriangulationScheme::delaunay);
     ask.penumbra_first = choice.premesh == Premesh::penumbra_first;
     ask.premesh = choice.premesh == Premesh::coarse;
-    ask.by_orderings = choice.structure == OccluderStructure::bsp;
+    ask.merges_volumes = choice.structure == OccluderStructure::merged;
+    ask.by_orderings = choice.structure == OccluderStructure::bsp || ask.merges_volumes;
     ask.refined = choice.quality == MeshQuality::delaunay;
     ask.clough_tocher = choice.element == MeshElement::clough_tocher;
     if (choice.sources && options.bounces != 0)

@@ -73,7 +73,7 @@ class Builder {
 
     /// Where emitters are many, most matter little wherever one looks.
     void find_weak_light() {
-        if (options_.by_orderings) ordered_.emplace(stage_.direct);
+        if (options_.by_orderings) ordered_.emplace(stage_.direct, options_.merges_volumes);
         if (stop_.requested() || ordered_ || !WeakLight::pays(stage_.direct)) return;
         // Triangles smaller than a region's share of the area may have more noise, as their bisection allows it.
         constexpr double part = mesh_limits::ray_noise;

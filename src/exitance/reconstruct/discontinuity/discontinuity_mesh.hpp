@@ -26,6 +26,7 @@ struct DiscontinuityOptions {
     bool penumbra_first = false;  ///< Longest curves of half-shadows first; not with Delaunay's triangulation.
     bool premesh = false;         ///< A coarse grid before all curves, likewise.
     bool by_orderings = false;    ///< What hides sources is found by a BSP tree's orderings, not by a tree of boxes.
+    bool merges_volumes = false;  ///< With orderings: the shadow volumes of a source are one tree.
     bool refined = false;         ///< Delaunay refinement before light is looked at, with Delaunay's alone.
     bool clough_tocher = false;   ///< Elements with tangent planes that agree, in place of quadratic ones.
     /// What both errors are relative to, W/m^2 of rho E; 0: the mean and the largest value at places.

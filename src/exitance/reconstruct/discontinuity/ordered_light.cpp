@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/visibility/bsp/shadow_volume.hpp"
+#include "exitance/visibility/bsp/merged_volumes.hpp"
 
 namespace exitance {
 
@@ -17,7 +17,13 @@ struct OrderedLight::Volume {
     }
 };
 
-OrderedLight::OrderedLight(const DirectLight& direct) : direct_(&direct) {
+/// What all candidates hide of one source.
+struct OrderedLight::SourceVolumes {
+    std::vector<Volume> all;
+    std::optional<MergedVolumes> merged = {};
+};
+
+OrderedLight::OrderedLight(const DirectLight& direct, bool merges_volumes) : direct_(&direct), merges_(merges_volumes) {
     std::vector<Normal> normals;
     for (std::uint32_t e = 0; e < direct.emitters().size() && !direct.is_distant(e); ++e) {
         const DirectLight::Emitter& emitter = direct.emitters()[e];
@@ -132,44 +138,56 @@ ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region
     return light;
 }
 
-/// Of the volumes before a source, those whose half-shadow reaches a face; none, and false, where the face cannot see
-/// the source at all.
-bool OrderedLight::find_candidates(const DirectLight::SourceName& source, std::span<const Point> face, const Normal& n,
-                                   const MinimumLists::Limits& limits, std::span<const Volume> volumes,
-                                   std::vector<const Volume*>& candidates, Counts& counts) const {
-    candidates.clear();
+/// What all candidates hide of one source from places within a space.
+OrderedLight::SourceVolumes OrderedLight::volumes_of(const ReceiverLight& whole, const ReceiverLight::Source& source,
+                                                     const Box& space) const {
+    const Occluders& occluders = direct_->occluders();
+    SourceVolumes out;
+    for (const PieceId p : std::span(whole.candidates).subspan(source.first, source.count))
+        out.all.push_back({p, ShadowVolume(occluders.corners(source.piece), direct_->emitters()[source.emitter].plane,
+                                           occluders.corners(p), occluders.pieces()[p].plane, occluders.rounding())});
+    if (!merges_) return out;
+    out.merged.emplace(space, occluders.rounding());
+    for (const Volume& v : out.all) out.merged->add(v.shadow);
+    return out;
+}
+
+/// Is all of a source hidden from a face? If not, `candidates` are what may hide parts of it.
+bool OrderedLight::hides(const SourceVolumes& volumes, std::span<const Point> face, const ReceiverLight& whole,
+                         const ReceiverLight::Source& source, std::vector<PieceId>& candidates, Counts& counts) const {
+    const MinimumLists::Limits limits = lists_->limits(source.emitter, whole.own, face, whole.n);
+    MergedVolumes::Classes classes;
+    if (volumes.merged) volumes.merged->classify(face, classes, counts.plane_tests);
+    if (classes.is_hidden) return true;
     std::uint64_t before = 0;
-    for (const Volume& v : volumes) {
+    std::vector<const Volume*> reaching;
+    for (std::uint32_t i = 0; i < volumes.all.size(); ++i) {
+        const Volume& v = volumes.all[i];
         const std::uint64_t corners = lists_->stands_before(source.emitter, v.piece, limits);
         before |= corners;
-        if (corners != 0 && v.shadow.in_penumbra(face, counts.plane_tests) != ShadowVolume::Place::outside)
-            candidates.push_back(&v);
+        if (corners == 0) continue;
+        const bool reaches = volumes.merged
+                                 ? std::binary_search(classes.reached.begin(), classes.reached.end(), i)
+                                 : v.shadow.in_penumbra(face, counts.plane_tests) != ShadowVolume::Place::outside;
+        if (reaches) reaching.push_back(&v);
     }
-    const bool hidden =
-        (corners_over(source.emitter, face, n) & ~before) == 0 &&
-        std::any_of(candidates.begin(), candidates.end(), [&](const Volume* v) { return v->hides(face, counts); });
-    return !hidden;
+    for (const Volume* v : reaching) candidates.push_back(v->piece);
+    return !volumes.merged && (corners_over(source.emitter, face, whole.n) & ~before) == 0 &&
+           std::any_of(reaching.begin(), reaching.end(), [&](const Volume* v) { return v->hides(face, counts); });
 }
 
 /// The volumes before each source of a light, if any; what shafts look at goes to `others`: the sky, lights without
 /// extent, and all sources of both sides.
-std::vector<std::vector<OrderedLight::Volume>> OrderedLight::volumes_of(const ReceiverLight& whole,
-                                                                        ReceiverLight& others) const {
-    const Occluders& occluders = direct_->occluders();
-    std::vector<std::vector<Volume>> out;
+std::vector<OrderedLight::SourceVolumes> OrderedLight::volumes_of(const ReceiverLight& whole, const Box& space,
+                                                                  ReceiverLight& others) const {
+    std::vector<SourceVolumes> out;
     others.n = whole.n, others.own = whole.own;
     others.behind = whole.behind, others.through = whole.through;
     others.beams = whole.beams, others.candidates = whole.candidates;
     for (const ReceiverLight::Source& s : whole.sources) {
-        std::vector<Volume>& of_source = out.emplace_back();
-        if (!whole.behind.empty() || !is_listed(s.emitter) || s.count == 0) {
-            others.sources.push_back(s);
-            continue;
-        }
-        for (const PieceId p : std::span(whole.candidates).subspan(s.first, s.count))
-            of_source.push_back(
-                {p, ShadowVolume(occluders.corners(s.piece), direct_->emitters()[s.emitter].plane, occluders.corners(p),
-                                 occluders.pieces()[p].plane, occluders.rounding())});
+        const bool by_shafts = !whole.behind.empty() || !is_listed(s.emitter) || s.count == 0;
+        if (by_shafts) others.sources.push_back(s);
+        out.push_back(by_shafts ? SourceVolumes() : volumes_of(whole, s, space));
     }
     return out;
 }
@@ -179,26 +197,28 @@ void OrderedLight::look(const FaceOutlines& outlines, const ReceiverLight& whole
     for (ReceiverLight& light : lights) light.n = whole.n, light.own = whole.own;
     if (whole.is_dark()) return;
     const Occluders& occluders = direct_->occluders();
+    Box space;
+    for (const auto& face : outlines.faces)
+        for (const Point& p : face) space.add(p);
     ReceiverLight others, open;
-    const std::vector<std::vector<Volume>> volumes = volumes_of(whole, others);
-    std::vector<const Volume*> candidates;
+    const std::vector<SourceVolumes> volumes = volumes_of(whole, space, others);
     for (std::size_t f = 0; f < lights.size() && !stop.requested(); ++f) {
         const std::span<const Point> face = outlines.faces[f];
         open = others;
         std::vector<std::pair<std::size_t, std::vector<PieceId>>> partly;
         std::vector<PieceId> listed;
         for (std::size_t k = 0; k < volumes.size(); ++k) {
-            if (volumes[k].empty()) continue;
+            if (volumes[k].all.empty()) continue;
             const ReceiverLight::Source& s = whole.sources[k];
             if (!face_each_other(face, whole.n, {s.emitter, s.piece})) continue;
-            const MinimumLists::Limits limits = lists_->limits(s.emitter, whole.own, face, whole.n);
-            if (!find_candidates({s.emitter, s.piece}, face, whole.n, limits, volumes[k], candidates, counts)) continue;
+            std::vector<PieceId> candidates;
+            if (hides(volumes[k], face, whole, s, candidates, counts)) continue;
             if (candidates.empty()) {
                 open.sources.push_back({s.emitter, s.piece});
                 continue;
             }
-            auto& [source, pieces] = partly.emplace_back(k, std::vector<PieceId>());
-            for (const Volume* v : candidates) pieces.push_back(v->piece);
+            partly.emplace_back(k, std::move(candidates));
+            const MinimumLists::Limits limits = lists_->limits(s.emitter, whole.own, face, whole.n);
             for (const PieceId p : occluders.pieces().ids())
                 if (!occluders.is_distant(p) && lists_->stands_before(s.emitter, p, limits) != 0) listed.push_back(p);
         }

@@ -28,11 +28,11 @@ Scene crowd(std::uint64_t seed, int count) {
 }
 
 TEST(OrderedLight, IsTheLightThatShaftsFind) {
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const Scene scene = crowd(seed, 14);
         const Occluders occluders(scene);
         const DirectLight direct(scene, occluders);
-        const OrderedLight ordered(direct);
+        const OrderedLight ordered(direct, seed % 2 == 0);
         DirectLight::Workspace workspace;
         RandomStream random(seed, Stream::mesh, 1);
         for (const RegionId r : scene.regions().ids()) {
@@ -84,6 +84,7 @@ TEST(OrderedLight, WedgesAreClippedToTheSameCurvesAsByATreeOfBoxes) {
             return out;
         };
         EXPECT_EQ(set_of(by_lists), set_of(by_boxes)) << seed;
+        EXPECT_EQ(set_of(curves(scene, OccluderStructure::merged)), set_of(by_boxes)) << seed;
         found += by_lists.discontinuity.curves.size();
         const auto& figures = by_lists.statistics.figures;
         EXPECT_GT(figures.at("plane_tests"), 0);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/reconstruct/light_maps/mesh_texels.hpp"
 #include "exitance/reconstruct/light_maps/texel_cover.hpp"
 #include "exitance/reconstruct/open_points.hpp"
 #include "exitance/reconstruct/pictures/tile_light.hpp"
@@ -34,11 +35,18 @@ std::vector<Tile> cut_into_tiles(std::span<const Chart> charts) {
 /// Bakes one tile after the other. One a thread.
 class TileBaker {
   public:
-    TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines)
-        : stage_(light.stage()), outlines_(outlines), light_(light, texel_points, 0, 1, SpotPoints::mirrored) {}
+    TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
+              const MeshTexels& mesh)
+        : stage_(light.stage()),
+          outlines_(outlines),
+          mesh_(mesh),
+          light_(light, texel_points, 0, 1, SpotPoints::mirrored) {
+        light_.use(mesh.light());
+    }
 
     void bake(const Tile& tile, const Chart& chart, LightMap& map) {
         cutter_.cut(outlines_[tile.chart], tile.rectangle, covers_, places_);
+        mesh_.integrate(tile.chart, tile.rectangle, integrals_);
         points_.clear(), spots_.clear();
         for (const TexelCover& cover : covers_) {
             const std::size_t texel = map.index(chart.x + cover.x, chart.y + cover.y);
@@ -48,6 +56,9 @@ class TileBaker {
                       static_cast<std::uint32_t>(texel), static_cast<std::uint32_t>(points_.size())};
             add_open_points(chart, cover);
             spot.count = static_cast<std::uint32_t>(points_.size()) - spot.first;
+            if (!integrals_.empty())
+                spot.meshed =
+                    integrals_[static_cast<std::size_t>(spot.y * tile.rectangle.width + spot.x)].mean(cover.share);
             if (spot.count > 0) spots_.push_back(spot);
         }
         light_.evaluate(points_, spots_);
@@ -73,8 +84,10 @@ class TileBaker {
 
     const Stage& stage_;
     std::span<const std::vector<TexelOutline>> outlines_;
+    const MeshTexels& mesh_;
     TileLight light_;
     TexelCutter cutter_;
+    std::vector<MeshTexels::Integral> integrals_;
     std::vector<TexelCover> covers_;
     std::vector<Vec2> places_;
     std::vector<Point> points_;
@@ -135,12 +148,14 @@ Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOpti
     LightMaps& out = *made;
     progress.phase("bake");
     const std::vector<std::vector<TexelOutline>> outlines = make_outlines(light.stage(), out.charts);
+    const MeshLight mesh_light(light);
+    const MeshTexels mesh(mesh_light, light.stage(), out.charts);
     const std::vector<Tile> tiles = cut_into_tiles(out.charts);
     constexpr std::size_t at_once = 256, grain = 4;
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles.size()));
         parallel_ranges(std::min(at_once, tiles.size() - first), grain, [&](std::size_t begin, std::size_t end) {
-            TileBaker baker(light, outlines);
+            TileBaker baker(light, outlines, mesh);
             for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
                 const Chart& chart = out.charts[tiles[i].chart];
                 baker.bake(tiles[i], chart, out.maps[chart.map]);

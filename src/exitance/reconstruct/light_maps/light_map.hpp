@@ -56,7 +56,9 @@ double automatic_density(const Scene& scene);
 
 /// Bakes the function that `probe` evaluates: exact direct light, indirect light from the elements. A texel holds the
 /// mean over the part of it that lies on its region in the open, by 16 stratified points where direct light may have an
-/// edge and by one where it certainly has none (TileLight): texels in lit and umbra parts cost no visibility. Points
+/// edge and by one where it certainly has none (TileLight): texels in lit and umbra parts cost no visibility. Where the
+/// solution has a discontinuity mesh, its polynomials are integrated over the texel, exactly, and the points count what
+/// they are off by: shadow edges are as sharp as the mesh and noiseless. Points
 /// that another surface covers, or that lie inside a closed body, do not count, so that no darkness leaks from below
 /// what stands on a surface; texels that have no other points, and those outside of the region, are extrapolated from
 /// the texels next to them: outside linearly in the first ring, else by means (extrapolate_texels).

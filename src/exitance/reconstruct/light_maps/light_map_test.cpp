@@ -5,10 +5,13 @@
 #include <random>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
 #include "exitance/reconstruct/light_maps/texel_cover.hpp"
+#include "exitance/reconstruct/open_points.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 #include "support/sample_solution.hpp"
+#include "support/solved.hpp"
 
 namespace exitance {
 namespace {
@@ -192,6 +195,80 @@ TEST(LightMap, NoDarknessLeaksFromBelowABody) {
     EXPECT_GT(at(6), 0.5 * at(3));  // extrapolated: read by lookups in texel 5
     EXPECT_EQ(at(8), 0);
     EXPECT_EQ(map.source[map.index(floor.x + 8, floor.y + 10)], Source::buried);
+}
+
+/// A floor of 2 x 2 m that a body stands on, askew, a board over it, and a small lamp: half-shadows are narrower than
+/// texels of an eighth of a metre.
+Scene sharp_shadows() {
+    SceneDescription d;
+    d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(), Spectrum(1000)}};
+    d.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+    for (const double z : {0.0, 0.1})
+        d.points.insert(d.points.end(), {{0.31, 0.53, z}, {1.01, 0.36, z}, {1.17, 0.84, z}, {0.47, 1.01, z}});
+    d.points.insert(d.points.end(), {{1.2, 1.1, 0.2}, {1.9, 1.3, 0.2}, {1.5, 1.8, 0.2}});
+    d.points.insert(d.points.end(), {{0.95, 0.95, 2}, {0.95, 1.05, 2}, {1.05, 1.05, 2}, {1.05, 0.95, 2}});
+    d.points.insert(d.points.end(), {{0.05, 1.8, 2}, {0.05, 1.9, 2}, {0.15, 1.9, 2}, {0.15, 1.8, 2}});
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1},
+               {{8, 9, 10, 11}, 0, 0, 2},
+               {{12, 13, 14}, 0, 0, 3},
+               {{15, 16, 17, 18}, 1, 0, 4},
+               {{19, 20, 21, 22}, 1, 0, 5}};
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        const std::uint32_t j = (i + 1) % 4;
+        d.faces.push_back({{4 + i, 4 + j, 8 + j, 8 + i}, 0, 0, 6});
+    }
+    return made(std::move(d));
+}
+
+/// Of the first chart's texels, the mean light at many points in the open; -1 where these are less than half of all.
+std::vector<double> means_of_many(const Solution& s, const Chart& chart) {
+    constexpr int side = 32;
+    const RadiosityFunction light(s);
+    RandomStream random(3, Stream::mesh);
+    std::vector<double> out;
+    for (int y = 0; y < chart.height; ++y)
+        for (int x = 0; x < chart.width; ++x) {
+            std::vector<ProbePoint> points;
+            for (int k = 0; k < side * side; ++k) {
+                const Point p =
+                    chart.at({x + (k % side + random.uniform()) / side, y + (k / side + random.uniform()) / side});
+                if (is_in_open(light.stage(), p, {0, 0, 1}, chart.region)) points.push_back({p, {0, 0, 1}});
+            }
+            double sum = 0;
+            for (const Light& there : light.at(points)) sum += mean(there.irradiance);
+            out.push_back(2 * points.size() < side * side ? -1 : sum / static_cast<double>(points.size()));
+        }
+    return out;
+}
+
+/// RMS of what the first chart's texels are off, by their mean light.
+double error_of(const LightMaps& maps, const std::vector<double>& expected) {
+    const Chart& chart = maps.charts[0];
+    const LightMap& map = maps.maps[chart.map];
+    double square = 0, level = 0, count = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (expected[i] < 0) continue;
+        const int x = static_cast<int>(i) % chart.width, y = static_cast<int>(i) / chart.width;
+        const double there = mean(map.at(map.index(chart.x + x, chart.y + y)));
+        square += std::pow(there - expected[i], 2), level += expected[i], ++count;
+    }
+    return std::sqrt(square / count) / (level / count);
+}
+
+TEST(LightMap, ShadowEdgesAreIntegratedWhereThereIsADiscontinuityMesh) {
+    SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
+    std::vector<double> expected;
+    for (int kind = 0; kind < 3; ++kind) {
+        if (kind == 1) options.discontinuity.element = MeshElement::clough_tocher;
+        if (kind == 2) options.discontinuity.element = {}, options.discontinuity.layers = true;
+        Solution s = solved(sharp_shadows(), options);
+        const LightMaps integrated = bake(s, 8);
+        if (kind == 0) expected = means_of_many(s, integrated.charts[0]);
+        s.discontinuity = {}, s.layers = {};
+        const double of_points = error_of(bake(s, 8), expected);
+        EXPECT_LT(error_of(integrated, expected), 0.004) << kind;  // 1024 points of an edge miss its mean by as much
+        EXPECT_LT(error_of(integrated, expected), 0.3 * of_points) << kind;  // 16 points miss it by up to a sixteenth
+    }
 }
 
 TEST(LightMap, HasTheSameBitsOnAnyNumberOfThreads) {

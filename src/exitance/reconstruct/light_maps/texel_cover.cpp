@@ -44,6 +44,11 @@ void clip(std::vector<Vec2>& polygon, Vec2 normal, double offset, std::vector<Ve
 
 }  // namespace
 
+void clip_to_texel(std::vector<Vec2>& polygon, int x, int y, std::vector<Vec2>& rest) {
+    clip(polygon, {-1, 0}, -x, rest), clip(polygon, {1, 0}, x + 1, rest);
+    clip(polygon, {0, -1}, -y, rest), clip(polygon, {0, 1}, y + 1, rest);
+}
+
 TexelOutline::TexelOutline(const Chart& chart, const Patch& patch) : corners(patch.is_triangle() ? 3 : 4) {
     for (std::size_t i = 0; i < corners; ++i) corner[i] = chart.place(patch.corner(static_cast<int>(i)));
     if (cross(corner[1] - corner[0], corner[2] - corner[0]) < 0)
@@ -58,8 +63,7 @@ TexelOutline::TexelOutline(const Chart& chart, const Patch& patch) : corners(pat
 /// The part of one outline in one texel, as triangles.
 void TexelCutter::add_part(const TexelOutline& outline, int x, int y, std::size_t texel) {
     polygon_.assign(outline.corner.begin(), outline.corner.begin() + static_cast<std::ptrdiff_t>(outline.corners));
-    clip(polygon_, {-1, 0}, -x, rest_), clip(polygon_, {1, 0}, x + 1, rest_);
-    clip(polygon_, {0, -1}, -y, rest_), clip(polygon_, {0, 1}, y + 1, rest_);
+    clip_to_texel(polygon_, x, y, rest_);
     for (std::size_t i = 2; i < polygon_.size(); ++i) {
         const double area = 0.5 * cross(polygon_[i - 1] - polygon_[0], polygon_[i] - polygon_[0]);
         if (!(area > 0)) continue;

@@ -29,6 +29,9 @@ struct TexelCover {
     std::size_t first = 0;  ///< Of its `texel_points` places.
 };
 
+/// The part of a convex polygon in the texel whose corner nearest to (0, 0) is (x, y); `rest` is scratch memory.
+void clip_to_texel(std::vector<Vec2>& polygon, int x, int y, std::vector<Vec2>& rest);
+
 /// Cuts the texels of a chart along its region's border. One a thread; keeps its memory.
 class TexelCutter {
   public:

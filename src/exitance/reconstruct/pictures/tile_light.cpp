@@ -147,19 +147,25 @@ Spectrum TileLight::elements(const Spot& spot) {
     return sum / spot.count;
 }
 
+/// Direct light, less what the mesh has there where that is integrated.
 Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const Point& x) {
     const Stage& stage = light_.stage();
-    if (known) return direct_share_ * stage.direct.irradiance(*known, x, visibility_);
+    const Spectrum meshed = spot.meshed ? mesh_->at(spot.region, x) : Spectrum();
+    if (known) return direct_share_ * stage.direct.irradiance(*known, x, visibility_) - meshed;
     const Normal& n = stage.scene.regions()[spot.region].plane.n;
-    return direct_share_ * stage.direct.irradiance(x, n, spot.region, visibility_);
+    return direct_share_ * stage.direct.irradiance(x, n, spot.region, visibility_) - meshed;
 }
 
-/// Direct light at one place of a spot; true if that is certainly the mean over all of it.
-bool TileLight::first_guess(const Spot& spot, const ReceiverLight* known, Spectrum& light) {
-    if (squared(direct_share_) == 0 || (known && known->is_dark())) return true;
+/// Direct light at one place of a spot; true if that is certainly the mean over all of it, which then needs no mesh.
+bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& light) {
+    if (squared(direct_share_) == 0 || (known && known->is_dark())) {
+        spot.meshed.reset();
+        return true;
+    }
     Point middle;
     for (std::uint32_t i = 0; i < spot.count; ++i) middle += points_[spot.first + i] / spot.count;
     const bool smooth = known && known->is_unshadowed() && looks_small(spot, *known, middle);
+    if (smooth || spot.count == 1) spot.meshed.reset();
     // The middle of what shows beside something else may be hidden behind that, and lie in another light.
     light = direct(spot, known, smooth || spot.count == samples_ ? middle : points_[spot.first]);
     return smooth || spot.count == 1;
@@ -225,7 +231,7 @@ void TileLight::evaluate_region(std::span<Spot> spots) {
             if (settled_[i]) continue;
             Spectrum light;
             settled_[i] = first_guess(spots[i], known_[block], light);
-            rest_[i] = elements(spots[i]);
+            rest_[i] = elements(spots[i]) + spots[i].meshed.value_or(Spectrum());
             spots[i].irradiance = rest_[i] + light;
         }
     });

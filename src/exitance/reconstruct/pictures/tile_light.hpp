@@ -1,11 +1,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "exitance/direct/shared_rays.hpp"
 #include "exitance/reconstruct/gather.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/reconstruct/mesh_light.hpp"
 
 namespace exitance {
 
@@ -18,6 +19,9 @@ struct Spot {
     std::uint32_t pixel = 0;             ///< Names the random numbers of its gather.
     std::uint32_t first = 0, count = 0;  ///< Of the points seen, in an order in which the first four are well spread.
     Spectrum irradiance = {};            ///< Mean over the points, W/m^2.
+    /// Where the solution's mesh is integrated over the spot: the mean of its MeshLight. Points then count
+    /// what the mesh is off by there, which has no edges.
+    std::optional<Spectrum> meshed = {};
 };
 
 /// Whose points the spots are.
@@ -35,6 +39,9 @@ class TileLight {
     /// brightness  irradiance that is usual in the picture, W/m^2: how much noise is worth in dark pixels; 0: none
     TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed,
               SpotPoints kind = SpotPoints::any, double brightness = 0);
+
+    /// The mesh whose means spots may have; it must outlive this.
+    void use(const MeshLight& mesh) { mesh_ = &mesh; }
 
     /// Fills in the irradiance of every spot and brings the spots into an order of its own. `points` are places in the
     /// open on the spots' regions, metres.
@@ -63,7 +70,7 @@ class TileLight {
     const ReceiverLight* look_at_block(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& room);
     bool prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out);
     Spectrum direct(const Spot& spot, const ReceiverLight* known, const Point& x);
-    bool first_guess(const Spot& spot, const ReceiverLight* known, Spectrum& light);
+    bool first_guess(Spot& spot, const ReceiverLight* known, Spectrum& light);
     Spectrum elements(const Spot& spot);
     bool looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const;
     bool suits_clusters(std::span<const Spot> spots);
@@ -81,6 +88,7 @@ class TileLight {
     Spectrum mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known);
 
     const RadiosityFunction& light_;
+    const MeshLight* mesh_ = nullptr;
     std::uint32_t samples_;
     unsigned gather_;
     std::uint64_t seed_;
