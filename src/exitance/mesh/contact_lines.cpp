@@ -281,7 +281,9 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
     return out;
 }
 
-void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts) {
+void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts,
+                        const StopRequest* stop) {
+    const auto stops = [&] { return stop && stop->requested(); };
     // Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at.
     // But around a point where many meet there is no end to it: what has been halved some times in vain is left as it
     // is.
@@ -301,6 +303,7 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
     find_together(
         of_given, 64,
         [&](std::size_t i) {
+            if (stops()) return std::vector<ContactLines::Line>();
             std::vector<ContactLines::Line> lines = contacts.around(tree, from[i], tree.area(from[i]));
             contacts.inside(tree, from[i], lines);
             return lines;
@@ -314,7 +317,7 @@ void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, c
                             .lines = ~std::size_t(0),
                             .in_vain = 0,
                             .around = std::make_shared<std::vector<ContactLines::Line>>(std::move(of_given[i]))});
-    while (!open.empty()) {
+    while (!open.empty() && !stops()) {
         Open now = std::move(open.back());
         const ElementId e = now.element;
         open.pop_back();

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/core/progress.hpp"
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/mesh/element_tree.hpp"
 
@@ -58,7 +59,8 @@ class ContactLines {
 };
 
 /// Cuts every leaf of `from` along the contacts inside it: into parallelograms where they run in its directions, else
-/// into cells.
-void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts);
+/// into cells. Leaves those that are still to be cut as they are where a stop is asked for.
+void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts,
+                        const StopRequest* stop = nullptr);
 
 }  // namespace exitance

@@ -33,6 +33,16 @@ TEST(ContactLines, AnElementIsCutWhereAPlateStandsOnIt) {
     EXPECT_FALSE(tree.is_cell(left) || tree.is_cell(right));
 }
 
+TEST(ContactLines, NothingIsCutOnceAStopIsAskedFor) {
+    const Scene scene = floor_and_plate(0);
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
+    StopRequest stop;
+    stop.interrupt();
+    cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene), &stop);
+    EXPECT_TRUE(tree.is_leaf(ElementId(0)));
+}
+
 TEST(ContactLines, AcrossItsDirectionsAnElementIsCutIntoCells) {
     const Scene scene = floor_and_plate(0);
     ElementTree tree;

@@ -304,7 +304,7 @@ double share_in_crowd(const DirectProjection& light, const Field<ElementId, doub
 
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
                                       const StopRequest& stop) {
-    DirectProjection out{stage.make_elements(options.mesh), {}};
+    DirectProjection out{stage.make_elements(options.mesh, &stop), {}};
     std::vector<ElementId> active = out.tree.leaves();
     const double mean_area = stage.area / static_cast<double>(active.size());
     const auto share_of = [&](double flux) {

@@ -254,19 +254,24 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     constexpr std::size_t elements = 600;  // beyond those that the pieces are
     const std::vector<Piece> pieces = stage.lit_pieces();
     auto tree = std::make_shared<const ElementTree>(
-        stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}));
+        stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop));
     auto locator = std::make_shared<const ElementLocator>(*tree, stage.scene.regions().size());
     const LeafNumbering numbering(*tree);
     const RayRows rows(stage, *tree, numbering, *locator,
-                       {.average = 24, .least = 16, .most = 256, .front_alone = true}, seed);
+                       {.average = 24, .least = 16, .most = 256, .front_alone = true}, seed, Dealing::by_element,
+                       RowsHeld::everywhere, &stop);
     const DistantLight& outside = stage.scene.distant();
     const bool has_sky = !outside.domes.empty();
     const std::vector<Part> parts = RoomFinder(rows, *tree, numbering, seed, has_sky).find(stop);
     LightRooms out;
     out.lost_.resize(tree->size());
+    if (stop.requested()) {  // rows that were not cast tell nothing
+        out.tree_ = std::move(tree), out.locator_ = std::move(locator);
+        return out;
+    }
     const std::vector<double> kept = rows.kept();
     for (std::size_t i = 0; i < kept.size(); ++i) out.lost_[numbering.leaves[i]] = static_cast<float>(1 - kept[i]);
-    if (parts.size() < 2 || stop.requested()) {
+    if (parts.size() < 2) {
         out.tree_ = std::move(tree), out.locator_ = std::move(locator);
         return out;
     }

@@ -49,6 +49,15 @@ TEST(LightRooms, RoomsThatADoorJoinsAreTwo) {
     EXPECT_NEAR(rooms.area(0), rooms.area(1), 0.05 * rooms.area(0));
 }
 
+TEST(LightRooms, WhatStoppedBeforeItsRaysTellsOfNoRoomsAndNoLoss) {
+    const Scene scene = boxes({{{0, 0, 0}, {4, 4, 4}}, {{10, 0, 0}, {12, 2, 2}}});
+    StopRequest stop;
+    stop.interrupt();
+    const LightRooms rooms = find_light_rooms(Stage(scene), 1, stop);
+    EXPECT_EQ(rooms.count(), 0u);
+    EXPECT_EQ(rooms.lost_share(RegionId(0), {1, 1, 0}), 0);
+}
+
 TEST(LightRooms, WhatIsSealedIsApartAndCountsAlike) {
     const Scene scene = boxes({{{0, 0, 0}, {4, 4, 4}}, {{10, 0, 0}, {12, 2, 2}}});
     const Stage stage(scene);

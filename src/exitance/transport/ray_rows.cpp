@@ -57,7 +57,8 @@ std::vector<Deal> deal(const ElementTree& tree, const LeafNumbering& numbering, 
 }  // namespace
 
 RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                 const ElementLocator& locator, RayBudget budget, std::uint64_t seed, Dealing dealing, RowsHeld held)
+                 const ElementLocator& locator, RayBudget budget, std::uint64_t seed, Dealing dealing, RowsHeld held,
+                 const StopRequest* stop)
     : held_(held) {
     const std::size_t n = numbering.leaves.size();
     const double mean_area = stage.area / static_cast<double>(n);
@@ -78,7 +79,7 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
                             ElementRays rays(stage, tree, locator);
                             const auto leave =
                                 budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
-                            for (std::size_t i = begin; i < end; ++i) {
+                            for (std::size_t i = begin; i < end && !(stop && stop->requested()); ++i) {
                                 const std::size_t count = first_[i + 1] - first_[i];
                                 rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count),
                                           dealt[i].first, leave);

@@ -32,12 +32,13 @@ enum class RowsHeld : std::uint8_t { everywhere, by_owner };
 /// Transport by rays: row i holds the elements that n_i rays, spread over element i with density cos / pi around its
 /// normal, hit first on their fronts: F_ij is the share of them that hits j. Unbiased; a row of a closed scene sums to
 /// 1 exactly. The points (four dimensions: place and direction) are scrambled Sobol points, so that the error of what
-/// is gathered falls like n^-3/4. O(n log n) a row to make, O(rays) to apply, 4 bytes a ray.
+/// is gathered falls like n^-3/4. O(n log n) a row to make, O(rays) to apply, 4 bytes a ray. Where a stop is asked for
+/// in the making, the rows that are left miss everything.
 class RayRows final : public TransportOperator {
   public:
     RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
             RayBudget budget, std::uint64_t seed, Dealing dealing = Dealing::by_element,
-            RowsHeld held = RowsHeld::everywhere);
+            RowsHeld held = RowsHeld::everywhere, const StopRequest* stop = nullptr);
 
     std::size_t size() const override { return first_.size() - 1; }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;

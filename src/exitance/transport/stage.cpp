@@ -34,14 +34,14 @@ void cut_to_rooms(ElementTree& tree, const LightRooms& rooms, double edge) {
 
 }  // namespace
 
-ElementTree Stage::make_elements(MeshSize size) const {
+ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
     std::vector<double> finer;
     for (std::size_t k = 0; k < pieces.size() && rooms.count() > 0; ++k)
         finer.push_back(finer_by(rooms.importance_of_piece(k)));
     ElementTree tree = make_mesh(pieces, concave, size, unlit, finer);
     std::vector<ElementId> leaves = tree.leaves();
     std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
-    cut_along_contacts(tree, leaves, contacts);
+    cut_along_contacts(tree, leaves, contacts, stop);
     if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);
     return tree;
 }

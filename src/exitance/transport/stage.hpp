@@ -61,8 +61,8 @@ struct Stage {
     }
 
     /// Elements over all pieces, graded towards concave edges and cut where other polygons touch them; finer in rooms
-    /// that are small beside others.
-    ElementTree make_elements(MeshSize size) const;
+    /// that are small beside others. Where a stop is asked for, not all are cut.
+    ElementTree make_elements(MeshSize size, const StopRequest* stop = nullptr) const;
 
     double area = 0;                      ///< Of all surfaces but those left out, m^2.
     Field<RegionId, std::uint8_t> unlit;  ///< What is left out; empty: nothing.
