@@ -124,7 +124,7 @@ TEST(ClusteredLight, IsNotAskedForOnceAStopIs) {
     stop.interrupt();
     const DirectProjectionOptions options{.mesh = {1, 0}, .tolerance = 1e-3};
     const DirectProjection light = project_direct_light(panel.stage, options, stop);
-    EXPECT_EQ(light.tree.size(), panel.stage.make_elements(options.mesh).size());  // nothing is cut
+    EXPECT_EQ(light.tree.size(), panel.stage.make_elements(options.mesh, &stop).size());  // nothing is cut
 }
 
 }  // namespace
