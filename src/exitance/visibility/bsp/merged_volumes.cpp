@@ -2,22 +2,10 @@
 
 #include <algorithm>
 
+#include "exitance/visibility/bsp/plane_sides.hpp"
+
 namespace exitance {
 namespace {
-
-/// Bit 0: something in front of a plane; bit 1: something behind it.
-int sides(std::span<const Point> points, const Plane& plane, double thickness) {
-    int out = 0;
-    for (const Point& p : points) {
-        const double d = plane.signed_distance(p);
-        out |= d > thickness ? 1 : d < -thickness ? 2 : 0;
-    }
-    return out;
-}
-
-Plane turned(const Plane& plane) {
-    return {-plane.n, -plane.offset};
-}
 
 /// A square in a plane around the foot of a point, counter-clockwise about the normal.
 std::vector<Point> square_in(const Plane& plane, const Point& near, double reach) {

@@ -2,24 +2,9 @@
 
 #include <algorithm>
 
+#include "exitance/visibility/bsp/plane_sides.hpp"
+
 namespace exitance {
-namespace {
-
-/// Bit 0: something in front of a plane; bit 1: something behind it.
-int sides(std::span<const Point> points, const Plane& plane, double thickness) {
-    int out = 0;
-    for (const Point& p : points) {
-        const double d = plane.signed_distance(p);
-        out |= d > thickness ? 1 : d < -thickness ? 2 : 0;
-    }
-    return out;
-}
-
-Plane turned(const Plane& plane) {
-    return {-plane.n, -plane.offset};
-}
-
-}  // namespace
 
 ShadowVolume::ShadowVolume(std::span<const Point> source, const Plane& source_plane, std::span<const Point> occluder,
                            const Plane& occluder_plane, double thickness)
