@@ -10,7 +10,8 @@ namespace {
 
 std::string seconds_line(const std::map<std::string, double>& seconds) {
     std::string parts;
-    for (const char* phase : {"read", "mesh", "link", "solve", "certify", "reconstruct", "write"}) {
+    for (const char* phase :
+         {"read", "mesh", "direct", "link", "solve", "gather", "certify", "reconstruct", "light_groups", "write"}) {
         const auto at = seconds.find(phase);
         if (at == seconds.end() || at->second < 0.0005) continue;
         parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", phase, at->second);
