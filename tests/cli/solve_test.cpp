@@ -78,6 +78,18 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     EXPECT_EQ(kept, made);
 }
 
+TEST(ProgramSolve, TheLineOfTimesTellsEveryPhaseThatTookAny) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.05"}).status, 0);
+    const Json seconds = Json::parse(run_program({"stats", solution, "--json"}).out)["seconds"];
+    const std::string text = run_program({"stats", solution}).out;
+    const std::string line = text.substr(text.find("\ntime "));
+    for (const char* phase : {"read", "mesh", "direct", "link", "solve", "gather", "certify", "reconstruct"})
+        EXPECT_TRUE(seconds[phase] < 0.001 || line.find(phase) != std::string::npos) << phase << line;
+    EXPECT_GT(seconds["gather"], 0.001);
+}
+
 TEST(ProgramSolve, ContactsCloserThanRoundingCutElementsOnlySoOften) {
     const TemporaryFolder folder;
     const std::string scene = std::string(EXITANCE_SOURCE_DIR) + "/tests/data/nearly_parallel_boxes.obj";
