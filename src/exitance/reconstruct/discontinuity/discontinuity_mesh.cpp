@@ -44,7 +44,7 @@ class Builder {
         report_.interrupted = stop_.requested();
         if (report_.interrupted) return {};
         constexpr int most_attempts = 5;
-        double tolerance = calibrated::method_aim * options_.error * report_.scale;
+        double tolerance = calibrated::part_aim * options_.error * report_.scale;
         SixNodeMesh out;
         for (int attempt = 1;; ++attempt) {
             refine(tolerance);
@@ -77,7 +77,7 @@ class Builder {
         if (stop_.requested() || ordered_ || !WeakLight::pays(stage_.direct)) return;
         // Triangles smaller than a region's share of the area may have more noise, as their bisection allows it.
         constexpr double part = mesh_limits::ray_noise;
-        const double rms = calibrated::method_aim * options_.error * report_.scale,
+        const double rms = calibrated::part_aim * options_.error * report_.scale,
                      most = options_.largest_error * largest_;
         const auto regions = static_cast<double>(stage_.scene.regions().size());
         weak_.emplace(
@@ -302,7 +302,7 @@ class Builder {
     void refine(double tolerance) {
         // Of the largest error, too, places that are tried miss some of what lies between them.
         const MisfitLimits limits{
-            tolerance * tolerance * area_, calibrated::method_aim * options_.largest_error * largest_,
+            tolerance * tolerance * area_, calibrated::part_aim * options_.largest_error * largest_,
             (weak_ ? mesh_limits::unfindable_area_among_many : mesh_limits::unfindable_area) * area_,
             mesh_limits::shortest_edge * stage_.scene.size()};
         constexpr int most_rounds = 60;
