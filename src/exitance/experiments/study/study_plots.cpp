@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double gnuplot_seconds = 60;
-constexpr std::size_t most_marked = 60;  // points of a curve that are marked
+constexpr std::size_t most_marked = 60;   // points of a curve that are marked
+constexpr double room_for_labels = 0.08;  // of the span of the data
 
 struct PlotCurve {
     std::string name;
@@ -113,22 +114,40 @@ std::vector<std::string> panels_of(const Table& table, const StudyPlot& plot) {
     return panels;
 }
 
-/// Range and marks of an axis that is drawn as a logarithm: what the data take and a little more; 1, 2 and 5 of each
-/// power of ten where there are few of these.
-std::string log_axis(char axis, const std::vector<PlotCurve>& curves, double room) {
-    double lo = HUGE_VAL, hi = 0;
+struct Range {
+    double lo = HUGE_VAL, hi = -HUGE_VAL;
+};
+
+Range range_of(char axis, const std::vector<PlotCurve>& curves) {
+    Range range;
     for (const PlotCurve& curve : curves)
         for (const auto& [x, y] : curve.points)
-            lo = std::min(lo, axis == 'x' ? x : y), hi = std::max(hi, axis == 'x' ? x : y);
-    const double margin = std::max(1.1, std::pow(hi / lo, 0.05));
-    lo /= margin, hi *= margin * room;
+            range = {std::min(range.lo, axis == 'x' ? x : y), std::max(range.hi, axis == 'x' ? x : y)};
+    return range;
+}
+
+/// Where an axis ends: what the data take and a little more, `room` of it above for labels; not below zero where no
+/// value is.
+std::string linear_axis(char axis, Range data, double room) {
+    constexpr double margin = 0.04;
+    const double span = data.hi > data.lo ? data.hi - data.lo : std::max(1.0, std::abs(data.hi));
+    const double lo = data.lo - margin * span, hi = data.hi + (margin + room) * span;
+    return fmt::format("set {}range [{:.6g}:{:.6g}]\n", axis, data.lo >= 0 ? std::max(0.0, lo) : lo, hi);
+}
+
+/// The same of a logarithm. Where there are few powers of ten, digits between them are marked, too.
+std::string log_axis(char axis, Range data, double room) {
+    constexpr double share = 0.05, least_margin = 1.1, few = 100, fewest = 10;
+    const double ratio = data.hi / data.lo, margin = std::max(least_margin, std::pow(ratio, share));
+    const double lo = data.lo / margin, hi = data.hi * margin * std::pow(std::max(ratio, least_margin), room);
     std::string text =
         fmt::format("set logscale {0}\nset format {0} '%g'\nset {0}range [{1:.6g}:{2:.6g}]\n", axis, lo, hi);
-    constexpr double few = 100;
     if (hi / lo > few) return text;
+    const std::vector<double> digits =
+        hi / lo > fewest ? std::vector<double>{1, 2, 5} : std::vector<double>{1, 1.5, 2, 3, 4, 5, 6, 8};
     std::vector<std::string> marks;
     for (double power = std::pow(10, std::floor(std::log10(lo))); power <= hi; power *= 10)
-        for (const double digit : {1.0, 2.0, 5.0})
+        for (const double digit : digits)
             if (digit * power >= lo && digit * power <= hi) marks.push_back(fmt::format("{:.6g}", digit * power));
     return text + fmt::format("set {}tics ({})\n", axis, fmt::join(marks, ", "));
 }
@@ -168,10 +187,12 @@ std::string script(const StudyPlot& plot, const std::string& title, const std::v
     text += fmt::format("set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\n", quoted(title),
                         quoted(plot.x_label), quoted(plot.y_label));
     text += "set key outside right top noenhanced\nset grid back lc rgb '#dddddd' lt 1\nset border lc rgb '#555555'\n";
-    text += "set tics nomirror\nset offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\n";
-    const double room = labels.empty() ? 1 : 1.3;
-    for (const char axis : {'x', 'y'})
-        if (is_log(plot, axis)) text += log_axis(axis, curves, axis == 'y' ? room : 1);
+    text += "set tics nomirror\n";
+    for (const char axis : {'x', 'y'}) {
+        const double room = axis == 'y' && !labels.empty() ? room_for_labels : 0;
+        const Range data = range_of(axis, curves);
+        text += is_log(plot, axis) ? log_axis(axis, data, room) : linear_axis(axis, data, room);
+    }
     // Colours that people who see few of them tell apart [Okabe08].
     constexpr std::array colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
     std::vector<std::string> parts;
