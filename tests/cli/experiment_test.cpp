@@ -19,6 +19,7 @@ const std::string tiny =
     "[[row]]\nlabel = \"Haar\"\noptions = \"--method wavelet --basis haar --direct carried --gather off --oracle bf "
     "--threshold {setting}\"\nsettings = [\"1\"]\nmost = 0.5\n"
     "[[row]]\nlabel = \"wrong\"\noptions = \"--method matrix --basis haar\"\n"
+    "[[picture]]\nrow = \"matrix\"\nvalue = 0.3\nat = 1000\noptions = \"--size 32x24\"\n"
     "[[plot]]\nname = \"error\"\nx = \"parameter\"\ny = \"relative_rms_error\"\n"
     "[[conclusion]]\nsays = \"The matrix is run\"\nmeasure = \"largest\"\ny = \"iterations\"\n"
     "where = { row = \"matrix\" }\nleast = 1\n";
@@ -77,6 +78,7 @@ TEST(ProgramExperiment, RunsAStudyAndDoesNotRepeatIt) {
     const std::string all = read_text(folder / "out/results.csv");
     for (const char* status : {"on the way", "done", "not run: beyond 0.5", "failed: "})
         EXPECT_NE(all.find(status), std::string::npos) << status;
+    EXPECT_TRUE(fs::exists(folder / "out/pictures/1_light.png")) << "of the last solution on the way";
     const std::string page = read_text(folder / "out/index.html");
     EXPECT_NE(page.find("The matrix is run"), std::string::npos);
     EXPECT_NE(page.find("exitance solve scenes/tube_0.3.obj"), std::string::npos);
@@ -87,6 +89,28 @@ TEST(ProgramExperiment, RunsAStudyAndDoesNotRepeatIt) {
     for (const auto& entry : fs::directory_iterator(folder / "out/runs"))
         EXPECT_EQ(made[entry.path()], entry.last_write_time());
     EXPECT_EQ(read_text(folder / "out/results.csv"), all);
+}
+
+TEST(ProgramExperiment, DoesNotRepeatTheScenesOfATable) {
+    const TemporaryFolder folder;
+    const std::string text =
+        "title = \"Faces\"\ntable = \"premesh\"\n[[scene]]\nname = \"boxes\"\ngenerate = \"boxes\"\n";
+    write_text(folder / "s.toml", text);
+    ASSERT_EQ(run_program({"experiment", folder / "s.toml", "-o", folder / "out"}).status, 0);
+    // What is in place of the scene's rows is taken: nothing is made again.
+    std::string kept;
+    for (const auto& entry : fs::directory_iterator(folder / "out/runs")) kept = entry.path().string();
+    std::string rows = read_text(kept);
+    const std::size_t at = rows.find("longest first");
+    ASSERT_NE(at, std::string::npos) << rows;
+    rows.replace(at, 13, "kept");
+    write_text(kept, rows);
+    write_text(folder / "s.toml", text + "[[scene]]\nname = \"table\"\ngenerate = \"table\"\n");
+    ASSERT_EQ(run_program({"experiment", folder / "s.toml", "-o", folder / "out"}).status, 0);
+    const std::string all = read_text(folder / "out/results.csv");
+    EXPECT_NE(all.find("boxes,"), std::string::npos);
+    EXPECT_NE(all.find(",kept,"), std::string::npos);
+    EXPECT_NE(all.find("table,"), std::string::npos);
 }
 
 TEST(ProgramExperiment, GoesOnWhereItWasStopped) {

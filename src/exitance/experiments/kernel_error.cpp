@@ -193,16 +193,17 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
     const auto emission = [&](const Pair& p) {
         return of_emitters ? stage.scene.material(p.y.region).exitance : Spectrum(1);
     };
-    const auto tell = [&](const char* row, std::size_t n, double error, std::size_t bytes, double seconds) {
-        out.print("%s,%s,%s,%llu,%zu,%.5g,%zu,%.3f\n", scene.c_str(), of_emitters ? "light" : "touching", row,
-                  static_cast<unsigned long long>(seed), n, error, bytes, seconds);
+    const auto tell = [&](const char* row, std::size_t asked, std::size_t n, double error, std::size_t bytes,
+                          double seconds) {
+        out.print("%s,%s,%s,%llu,%zu,%zu,%.5g,%zu,%.3f\n", scene.c_str(), of_emitters ? "light" : "touching", row,
+                  static_cast<unsigned long long>(seed), asked, n, error, bytes, seconds);
     };
     LinkedKernel links(stage, of_emitters, seed);
     for (const std::size_t n : counts) {
         const Stopwatch watch;
         links.refine(n);
         // A link holds two elements' numbers and its factor.
-        tell("links", links.count(),
+        tell("links", n, links.count(),
              error_of(pairs, of_emitters, [&](const Pair& p) { return links(p) * emission(p); }), links.count() * 16,
              watch.seconds());
     }
@@ -231,14 +232,14 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
                 return flow ? a : a * (p.kernel * emission(p));
             };
             const std::size_t bytes = network.bytes_a_unit() * network.cells().unit_count();
-            if (flow) tell("cells delta rule", n, error_of(pairs, of_emitters, answer), bytes, grown);
+            if (flow) tell("cells delta rule", n, n, error_of(pairs, of_emitters, answer), bytes, grown);
             watch.restart();
             KernelNetwork* fitted = &network;
             const std::vector<double> kept = network.outputs_as_learned();
             fitted->fit();
             const double fit_seconds = watch.seconds();
-            tell(flow ? "cells least squares" : "cells improved", n, error_of(pairs, of_emitters, answer), bytes,
-                 grown + fit_seconds);
+            tell(flow ? "cells least squares" : "cells improved", n, network.cells().unit_count(),
+                 error_of(pairs, of_emitters, answer), bytes, grown + fit_seconds);
             network.restore_outputs(kept);
         }
     }

@@ -16,9 +16,10 @@ struct KernelErrorOptions {
     std::size_t pairs = 100'000;
 };
 
-inline constexpr const char* kernel_error_header = "scene,pairs,row,seed,functions,relative_error,bytes,seconds";
+inline constexpr const char* kernel_error_header = "scene,pairs,row,seed,asked,functions,relative_error,bytes,seconds";
 
 /// How well so many basis functions hold the kernel of a scene: rows under the header above.
+/// `asked` is the number of functions that was wanted, `functions` what there is: links come in fours.
 ///
 /// Pairs that touch are measured with the first seed alone. Pairs whose source emits: relative L2 of G V M over x of
 /// all surfaces and y of emitters, both uniform in area. Pairs that touch (neither emits; the square of G has no

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exitance/core/parallel.hpp"
@@ -87,6 +88,16 @@ Measured measure(const Stage& stage, TaskOptions options, int repeats, Recorded*
     return out;
 }
 
+/// What most of the processors' time went to beside tasks. Behind barriers one works and all others are idle.
+const char* limit_of(const SimulatedRun& run, std::size_t processors) {
+    const double behind = run.serial * static_cast<double>(processors - 1);
+    const std::pair<double, const char*> parts[] = {{run.idle - behind, "no task to do"},
+                                                    {run.queue, "queues"},
+                                                    {run.remote, "memory of others"},
+                                                    {behind, "barriers"}};
+    return std::max_element(std::begin(parts), std::end(parts))->second;
+}
+
 void add_replays(const TaskGraph& graph, Schedule schedule, const Rows& rows, Table& runs) {
     for (const MachineModel& machine : machine_models) {
         const double alone = simulate_schedule(graph, schedule, 1, machine).seconds;
@@ -94,8 +105,10 @@ void add_replays(const TaskGraph& graph, Schedule schedule, const Rows& rows, Ta
             const SimulatedRun run = simulate_schedule(graph, schedule, P, machine);
             rows.add(runs, "simulated", P, run.seconds, alone, run.tasks, run.stolen);
             runs.set("machine", std::string(machine.name)), runs.set("queue_seconds", field(run.queue));
-            runs.set("remote_seconds", field(run.remote)), runs.set("idle_seconds", field(run.idle));
-            runs.set("serial_seconds", field(run.serial));
+            // What is left of a difference of sums is rounding where one processor works.
+            const double idle = P > 1 ? run.idle : 0;
+            runs.set("remote_seconds", field(run.remote)), runs.set("idle_seconds", field(idle));
+            runs.set("serial_seconds", field(run.serial)), runs.set("limit", P > 1 ? limit_of(run, P) : "");
         }
     }
 }

@@ -14,7 +14,8 @@ namespace exitance {
 /// What is known of schedules; seconds everywhere. The first column of all tables is the scene.
 struct ScheduleTables {
     /// `program` (engine: the tasks of 1995; production: a solve as users have it), `kind`, `schedule`, `machine`,
-    /// `processors`, `seconds`, `speedup`, and what the seconds of all processors went to. `measured` rows have the
+    /// `processors`, `seconds`, `speedup`, what the seconds of all processors went to, and the largest of these beside
+    /// tasks, `limit`. `measured` rows have the
     /// wall clock, `busiest` ones the processor time of the busiest thread of every iteration (the wall clock of a
     /// machine with nothing else to do), `simulated` ones that of `simulate_schedule`.
     Table runs;

@@ -100,6 +100,12 @@ std::pair<RayEnds, RayEnds> PatchTransfer::rays(ElementId receiver, ElementId so
 }
 
 double PatchTransfer::visible_share(ElementId receiver, ElementId source, Workspace& w) const {
+    if (joins_middles_) {
+        bool hidden = false;
+        w.rays += stage_.tracer.occluded({&centres_[receiver.value], 1}, {&centres_[source.value], 1},
+                                         tree_.region(receiver), tree_.region(source), {&hidden, 1});
+        return hidden ? 0 : 1;
+    }
     unsigned blocked = 0;
     for (std::size_t group = 0; group < samples_ / RayEnds::size; ++group) {
         const auto [from, to] = rays(receiver, source, group);

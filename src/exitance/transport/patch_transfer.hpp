@@ -34,11 +34,16 @@ struct PatchLevel {
 /// F_ij is taken at the receiver's middle, exactly, towards the whole source polygon [Baum89], and times the share of
 /// `samples` rays between the two that meet nothing. Every element has its own places, one in each cell of a 4 x 4
 /// grid; which of them a ray joins follows an orthogonal array of strength 2, turned by the pair of elements: each pair
-/// of the four coordinates is stratified [Owen92].
+/// of the four coordinates is stratified [Owen92]. One sample is one ray from middle to middle, as [Cohen88] and
+/// [Willmott97] shoot; other numbers are taken up to a multiple of 16.
 class PatchTransfer {
   public:
     PatchTransfer(const Stage& stage, const ElementTree& tree, unsigned samples, std::uint64_t seed)
-        : stage_(stage), tree_(tree), samples_(std::clamp((samples + 15) / 16 * 16, 16u, most_samples)), seed_(seed) {
+        : stage_(stage),
+          tree_(tree),
+          samples_(std::clamp((samples + 15) / 16 * 16, 16u, most_samples)),
+          joins_middles_(samples == 1),
+          seed_(seed) {
         update_places();
     }
 
@@ -84,7 +89,8 @@ class PatchTransfer {
     /// Sixteen places a group, `samples_` of every element. As a source, they lie in the order of the cells that rays
     /// from cells 0 to 15 lead to.
     std::vector<RayEnds> receiving_, sending_;
-    unsigned samples_;  ///< A multiple of 16.
+    unsigned samples_;    ///< A multiple of 16.
+    bool joins_middles_;  ///< By one ray, in place of samples.
     std::uint64_t seed_;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
 };

@@ -96,6 +96,28 @@ TEST(DenseTransport, BringsWhatTheClosedFormSays) {
     }
 }
 
+TEST(PatchTransfer, OneSampleIsOneRayFromMiddleToMiddle) {
+    const Scene scene = built_scene("blocker", {{"h", "0.7"}});
+    const Stage stage(scene);
+    const ElementTree tree = stage.make_elements({.edge = 0.5, .grading_levels = 1});
+    const PatchTransfer transfer(stage, tree, 1, 1);
+    PatchTransfer::Workspace w;
+    std::size_t open = 0, hidden = 0;
+    for (ElementId source : tree.leaves()) {
+        if (!scene.material(tree.region(source)).emits()) continue;
+        for (ElementId receiver : tree.leaves()) {
+            const double whole = transfer.form_factor_in_the_open(receiver, source);
+            if (!(whole > 0)) continue;
+            const double F = transfer.form_factor(receiver, source, w);
+            EXPECT_TRUE(F == 0 || F == whole);
+            (F > 0 ? open : hidden) += 1;
+        }
+    }
+    EXPECT_GT(open, 0u);
+    EXPECT_GT(hidden, 0u);
+    EXPECT_EQ(w.rays, open + hidden);
+}
+
 TEST(PatchLevel, PullsMeansOverItsPatches) {
     const Cube cube;
     const PatchLevel patches(cube.tree, cube.numbering, 1);

@@ -53,7 +53,9 @@ struct StudyPlot {
     std::string series = "row";  ///< A curve for each text of this column.
     std::string panel;           ///< A picture for each text of this column; empty: one.
     std::string x_label, y_label;
-    std::string log;  ///< "", "x", "y" or "xy"
+    std::string log;     ///< "", "x", "y" or "xy"
+    std::string labels;  ///< A column whose numbers stand above the points of every x; empty: none.
+    std::string fit;     ///< "power": exponents of the curves in the legend; "quadratic": a x^2 + b x, drawn, too.
     RowFilter where;
     bool checkpoints = false;  ///< Take solutions on the way, too?
 };
@@ -62,6 +64,8 @@ struct StudyPlot {
 struct ChosenSolution {
     std::string row, scene, setting;
     double value = std::numeric_limits<double>::quiet_NaN();  ///< Of the parameter.
+    /// Seconds of the method: the last solution on the way that is no later. NaN: the one at the end.
+    double at = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Light along a line, for the table `profiles`.

@@ -170,6 +170,10 @@ void read_plot(Keys& keys, StudyPlot& plot) {
     keys.take("x_label", plot.x_label);
     keys.take("y_label", plot.y_label);
     keys.take("log", plot.log);
+    keys.take("labels", plot.labels);
+    keys.take("fit", plot.fit);
+    if (!plot.fit.empty() && plot.fit != "power" && plot.fit != "quadratic")
+        keys.fail(*keys.find("fit"), fmt::format("'{}' is not power or quadratic", plot.fit));
     keys.take("where", plot.where);
     keys.take("checkpoints", plot.checkpoints);
     if (plot.name.find_first_of("/\\ ") != std::string::npos)
@@ -203,6 +207,7 @@ void read_picture(Keys& keys, StudyPicture& picture) {
     read_chosen(keys, picture.of);
     keys.take("caption", picture.caption);
     keys.take("options", picture.options);
+    keys.take("at", picture.of.at);
     std::string shows = "light";
     keys.take("shows", shows);
     if (shows != "light" && shows != "mesh" && shows != "halves")

@@ -68,10 +68,16 @@ bool is_chosen(const ChosenSolution& of, const Table& table, std::size_t row) {
 std::string kept_solution(const ChosenSolution& of, const std::string& folder) {
     for (fs::path path : kept_records(folder)) {
         const Result<Table> record = read_csv(path.string());
-        if (record && !record->rows.empty() && is_chosen(of, *record, record->rows.size() - 1))
-            return path.replace_extension(".h5").string();
+        if (!record || record->rows.empty() || !is_chosen(of, *record, record->rows.size() - 1)) continue;
+        if (std::isnan(of.at)) return path.replace_extension(".h5").string();
+        const std::string instant = instant_path(path.replace_extension().string(), of.at);
+        return fs::exists(instant) ? instant : "";
     }
     return "";
+}
+
+std::string instant_path(const std::string& stem, double at) {
+    return fmt::format("{}_at_{:g}.h5", stem, at);
 }
 
 Result<Table> profile_table(const Study& study, const StudyOptions& options, Progress& progress,

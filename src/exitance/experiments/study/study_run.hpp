@@ -41,6 +41,8 @@ bool is_chosen(const ChosenSolution& of, const Table& table, std::size_t row);
 /// The path of the chosen solution, which stays in the folder where a study shows something of it; empty where there
 /// is none.
 std::string kept_solution(const ChosenSolution& of, const std::string& folder);
+/// The path of a solution on the way, beside the record of its run.
+std::string instant_path(const std::string& stem, double at);
 
 /// Light along the study's lines: rows of line, scene, parameter, row, setting, s (metres from the line's beginning),
 /// irradiance, interpolant (W/m^2, means of the bands), and error of either (relative to the largest of the reference,

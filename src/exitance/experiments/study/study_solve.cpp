@@ -48,15 +48,41 @@ std::string status_of(const StudySolve& run, const ProgramRun& program) {
     return "failed: " + first_error(program.err);
 }
 
+bool fits(const StudySolve& run, const ChosenSolution& of) {
+    return of.row == run.row.label && (of.scene.empty() || of.scene == run.scene.name) &&
+           (of.setting.empty() || of.setting == run.setting) && (std::isnan(of.value) || of.value == run.value);
+}
+
 /// Is there a picture of this run, or a line through it?
 bool is_shown(const StudySolve& run) {
-    const auto fits = [&](const ChosenSolution& of) {
-        return of.row == run.row.label && (of.scene.empty() || of.scene == run.scene.name) &&
-               (of.setting.empty() || of.setting == run.setting) && (std::isnan(of.value) || of.value == run.value);
-    };
     const Study& study = run.study;
-    return std::any_of(study.pictures.begin(), study.pictures.end(), [&](const auto& p) { return fits(p.of); }) ||
-           std::any_of(study.lines.begin(), study.lines.end(), [&](const auto& l) { return fits(l.of); });
+    return std::any_of(study.pictures.begin(), study.pictures.end(), [&](const auto& p) { return fits(run, p.of); }) ||
+           std::any_of(study.lines.begin(), study.lines.end(), [&](const auto& l) { return fits(run, l.of); });
+}
+
+/// Was a run ended by another limit of time than it would have now?
+bool has_other_limit(const Table& record, const std::string& command) {
+    const std::size_t last = record.rows.size() - 1;
+    return record.text(last, "status") == "time limit" && record.text(last, "command") != command;
+}
+
+/// The seconds of its solutions on the way that pictures show.
+std::vector<double> shown_instants(const StudySolve& run) {
+    std::vector<double> instants;
+    for (const StudyPicture& picture : run.study.pictures)
+        if (fits(run, picture.of) && !std::isnan(picture.of.at)) instants.push_back(picture.of.at);
+    return instants;
+}
+
+/// Does a record have a solution that a picture shows, and is that not there?
+bool lacks_picture(const StudySolve& run, const Table& record) {
+    const std::string stem = (fs::path(run.options.folder) / "runs" / run_name(run)).string();
+    if (record.text(record.rows.size() - 1, "status") == "done" && is_shown(run) && !fs::exists(stem + ".h5"))
+        return true;
+    for (const double at : shown_instants(run))
+        for (std::size_t row = 0; row + 1 < record.rows.size(); ++row)
+            if (record.number(row, "processor_seconds") <= at && !fs::exists(instant_path(stem, at))) return true;
+    return false;
 }
 
 std::string get(const Facts& facts, const std::string& key) {
@@ -121,6 +147,16 @@ std::string checkpoint_path(const std::string& stem, std::size_t number) {
     return fmt::format("{}.{:04}.h5", stem, number);
 }
 
+/// Keeps a solution on the way for the pictures of instants that it is no later than, or removes it.
+void keep_or_remove(const StudySolve& run, const std::string& path, double seconds) {
+    std::error_code ignored;
+    for (const double at : shown_instants(run))
+        if (seconds <= at)
+            fs::copy_file(path, instant_path((fs::path(run.options.folder) / "runs" / run_name(run)).string(), at),
+                          fs::copy_options::overwrite_existing, ignored);
+    fs::remove(path, ignored);
+}
+
 /// Measures what a run left, and removes it.
 Table measured(const StudySolve& run, const std::string& stem, const ProgramRun& program, const std::string& command) {
     Table table{result_columns, {}};
@@ -129,8 +165,9 @@ Table measured(const StudySolve& run, const std::string& stem, const ProgramRun&
     for (;; ++number) {
         const std::string path = checkpoint_path(stem, number);
         if (!fs::exists(path)) break;
-        if (const Result<Solution> solution = load_solution(path)) add_checkpoint(table, run, number, *solution);
-        fs::remove(path, ignored);
+        const Result<Solution> solution = load_solution(path);
+        if (solution) add_checkpoint(table, run, number, *solution);
+        keep_or_remove(run, path, solution ? table.number(table.rows.size() - 1, "processor_seconds") : HUGE_VAL);
     }
     add_last(table, run, number, program, facts_of_json(program.out), command);
     if (const Result<Solution> solution = load_solution(stem + ".h5")) {
@@ -187,6 +224,9 @@ std::vector<std::string> solve_words(const StudySolve& run) {
 std::string run_name(const StudySolve& run) {
     std::vector<std::string> words = solve_words(run);
     words[1] = run.scene.name;
+    // A run that ended by itself is the same under another limit of the study.
+    const auto limit = std::find(words.begin(), words.end(), "--time-limit");
+    if (!has(split_words(run.row.options), "--time-limit")) words.erase(limit, limit + 2);
     return fmt::format("{}_{:016x}", run.scene.name,
                        hash(run.stage.key, key_of(fmt::format("{}", fmt::join(words, " ")))));
 }
@@ -194,17 +234,16 @@ std::string run_name(const StudySolve& run) {
 Result<std::optional<Table>> solve_for_study(const StudySolve& run, std::mutex& files, const StopRequest& stop) {
     const fs::path folder = run.options.folder;
     const std::string name = run_name(run), record = (folder / "runs" / (name + ".csv")).string();
-    if (fs::exists(record)) {
-        Result<Table> before = read_csv(record);
-        const bool lacks_picture = before && is_shown(run) && !fs::exists(folder / "runs" / (name + ".h5")) &&
-                                   before->text(before->rows.size() - 1, "status") == "done";
-        if (before && !lacks_picture) return std::optional(std::move(*before));
-    }
     std::vector<std::string> words = solve_words(run);
     const std::string stem = (folder / "work" / name).string();
     std::vector<std::string> shown = words;
     shown[1] = run.scene.file.empty() ? "scenes/" + fs::path(run.stage.path).filename().string() : run.stage.words;
     const std::string command = fmt::format("exitance {} -o S.h5", fmt::join(shown, " "));
+    if (fs::exists(record)) {
+        Result<Table> before = read_csv(record);
+        const bool serves = before && !before->rows.empty() && !lacks_picture(run, *before);
+        if (serves && !has_other_limit(*before, command)) return std::optional(std::move(*before));
+    }
     words.insert(words.begin(), run.options.program);
     for (const std::string& word : {std::string("-o"), stem + ".h5", std::string("--json"), std::string("-q")})
         words.push_back(word);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "exitance/core/random.hpp"
 #include "exitance/experiments/cie171.hpp"
 #include "exitance/experiments/flatland/growing_lines.hpp"
 #include "exitance/experiments/flatland/kernel_terms.hpp"
@@ -120,13 +121,13 @@ Result<StudyTables> cie171_tables(const Study&, const StudyOptions& options, Pro
     return StudyTables{{"results", std::move(table)}, {"summary", std::move(summary)}};
 }
 
-/// Calls use(name, scene, path of its file), with the value in the name of a scene that has one, for the scenes of a
-/// study, values in their order.
+/// Calls use(name, scene, its stage), with the value in the name of a scene that has one, for the scenes of a study,
+/// values in their order.
 template <class Use>
 Result<void> for_scenes(const Study& study, const StudyOptions& options, Progress& progress, const StopRequest& stop,
                         const Use& use) {
     std::error_code failed;
-    for (const char* folder : {"scenes", "references"})
+    for (const char* folder : {"scenes", "references", "runs"})
         std::filesystem::create_directories(std::filesystem::path(options.folder) / folder, failed);
     progress.phase(study.table);
     for (const StudyScene& scene : study.scenes)
@@ -138,9 +139,60 @@ Result<void> for_scenes(const Study& study, const StudyOptions& options, Progres
             if (!checked.scene) return checked.scene.error();
             progress.advance(0, stage->words);
             const bool varies = scene.generate.find("{value}") != std::string::npos;
-            use(varies ? fmt::format("{} {:g}", scene.name, value) : scene.name, *checked.scene, stage->path);
+            use(varies ? fmt::format("{} {:g}", scene.name, value) : scene.name, *checked.scene, *stage);
         }
     return {};
+}
+
+/// Tables whose rows belong to scenes. What make(name, scene) gives for a scene, a Result<StudyTables> with the tables
+/// `names`, stays in FOLDER/runs, and is not made again when the study goes on.
+template <class Make>
+Result<StudyTables> tables_by_scene(const Study& study, const StudyOptions& options, Progress& progress,
+                                    const StopRequest& stop, const std::vector<std::string>& names, const Make& make) {
+    StudyTables all;
+    std::optional<Error> failure;
+    std::string arguments;
+    for (const auto& [name, value] : study.arguments) arguments += name + "=" + value + " ";
+    const auto add_scene = [&](const std::string& name, const Scene& scene, const StudyStage& stage) {
+        if (failure) return;
+        const std::uint64_t key =
+            hash(stage.key, key_of(fmt::format("{} {} {}", study.table, name, arguments)), options.quick);
+        const auto path = [&](const std::string& table) {
+            return (std::filesystem::path(options.folder) / "runs" / fmt::format("{}_{:016x}.csv", table, key))
+                .string();
+        };
+        StudyTables parts;
+        for (const std::string& table : names)
+            if (Result<Table> part = read_csv(path(table))) parts[table] = std::move(*part);
+        if (parts.size() < names.size()) {
+            Result<StudyTables> made = make(name, scene);
+            if (!made) return void(failure = made.error());
+            parts = std::move(*made);
+            for (const std::string& table : names)
+                if (!stop.requested())
+                    if (const Result<void> kept = write_csv(path(table), parts[table]); !kept) failure = kept.error();
+        }
+        for (const std::string& table : names) all[table].append(parts[table]);
+    };
+    const Result<void> done = for_scenes(study, options, progress, stop, add_scene);
+    if (!done) return done.error();
+    if (failure && !stop.requested()) return *failure;
+    return all;
+}
+
+/// The one table of rows that write(name, scene, text) writes under a header.
+template <class Write>
+Result<StudyTables> results_by_scene(const Study& study, const StudyOptions& options, Progress& progress,
+                                     const StopRequest& stop, std::string_view header, const Write& write) {
+    return tables_by_scene(study, options, progress, stop, {"results"},
+                           [&](const std::string& name, const Scene& scene) -> Result<StudyTables> {
+                               CsvText text;
+                               text.print("%s\n", std::string(header).c_str());
+                               write(name, scene, text);
+                               Result<Table> table = parse_csv(text.text(), study.table);
+                               if (!table) return table.error();
+                               return StudyTables{{"results", std::move(*table)}};
+                           });
 }
 
 double argument(const Study& study, const std::string& name, double otherwise) {
@@ -151,19 +203,10 @@ double argument(const Study& study, const std::string& name, double otherwise) {
 /// One of the tables about the thesis's structures, its scenes named after their values where there are several.
 Result<StudyTables> scene_tables(std::span<const SceneStudy> known, const Study& study, const StudyOptions& options,
                                  Progress& progress, const StopRequest& stop) {
-    CsvText text;
-    for (const SceneStudy& part : known) {
-        if (part.name != study.table) continue;
-        text.print("%s\n", std::string(part.header).c_str());
-        const Result<void> done = for_scenes(study, options, progress, stop,
-                                             [&](const std::string& name, const Scene& scene, const std::string&) {
-                                                 part.run(name.c_str(), scene, text);
-                                             });
-        if (!done) return done.error();
-    }
-    Result<Table> table = parse_csv(text.text(), study.table);
-    if (!table) return table.error();
-    return StudyTables{{"results", std::move(*table)}};
+    const auto part = std::find_if(known.begin(), known.end(), [&](const auto& p) { return p.name == study.table; });
+    return results_by_scene(
+        study, options, progress, stop, part->header,
+        [&](const std::string& name, const Scene& scene, CsvText& text) { part->run(name.c_str(), scene, text); });
 }
 
 Result<StudyTables> mesh_tables(const Study& study, const StudyOptions& options, Progress& progress,
@@ -180,32 +223,21 @@ Result<StudyTables> kernel_tables(const Study& study, const StudyOptions& option
                                   const StopRequest& stop) {
     KernelErrorOptions asked;
     if (options.quick) asked = {.seeds = 2, .counts = {16, 64, 256}, .pairs = 20'000};
-    CsvText text;
-    text.print("%s\n", kernel_error_header);
-    const Result<void> done = for_scenes(study, options, progress, stop,
-                                         [&](const std::string& name, const Scene& scene, const std::string&) {
-                                             measure_kernel_error(name, scene, asked, text, stop);
-                                         });
-    if (!done) return done.error();
-    Result<Table> table = parse_csv(text.text(), study.table);
-    if (!table) return table.error();
-    return StudyTables{{"results", std::move(*table)}};
+    return results_by_scene(study, options, progress, stop, kernel_error_header,
+                            [&](const std::string& name, const Scene& scene, CsvText& text) {
+                                measure_kernel_error(name, scene, asked, text, stop);
+                            });
 }
 
 /// `samples` is an argument; units are doubled from 8 to 256.
 Result<StudyTables> sample_tables(const Study& study, const StudyOptions& options, Progress& progress,
                                   const StopRequest& stop) {
     const auto samples = static_cast<std::size_t>(std::clamp(argument(study, "samples", 1000), 1.0, 1e6));
-    CsvText text;
-    text.print("%s\n", sample_distribution_header);
-    const Result<void> done = for_scenes(
-        study, options, progress, stop, [&](const std::string& name, const Scene& scene, const std::string&) {
+    return results_by_scene(
+        study, options, progress, stop, sample_distribution_header,
+        [&](const std::string& name, const Scene& scene, CsvText& text) {
             write_sample_distribution(name, scene, {8, 16, 32, 64, 128, 256}, samples, 1, text, stop);
         });
-    if (!done) return done.error();
-    Result<Table> table = parse_csv(text.text(), study.table);
-    if (!table) return table.error();
-    return StudyTables{{"results", std::move(*table)}};
 }
 
 /// `threshold_W`, `min_area_m2`, `repeats` and `error` (of the production solve) are arguments.
@@ -217,16 +249,15 @@ Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& opti
     };
     ScheduleStudy asked{given("threshold_W"), given("min_area_m2"), 1, argument(study, "error", 0.02)};
     if (!options.quick) asked.repeats = static_cast<int>(argument(study, "repeats", 3));
-    ScheduleTables tables;
-    const Result<void> done = for_scenes(study, options, progress, stop,
-                                         [&](const std::string& name, const Scene& scene, const std::string&) {
-                                             measure_schedules(name, scene, asked, tables, stop);
-                                         });
-    if (!done) return done.error();
-    return StudyTables{{"results", std::move(tables.runs)},
-                       {"graphs", std::move(tables.graphs)},
-                       {"iterations", std::move(tables.iterations)},
-                       {"phases", std::move(tables.phases)}};
+    return tables_by_scene(study, options, progress, stop, {"results", "graphs", "iterations", "phases"},
+                           [&](const std::string& name, const Scene& scene) -> Result<StudyTables> {
+                               ScheduleTables tables;
+                               measure_schedules(name, scene, asked, tables, stop);
+                               return StudyTables{{"results", std::move(tables.runs)},
+                                                  {"graphs", std::move(tables.graphs)},
+                                                  {"iterations", std::move(tables.iterations)},
+                                                  {"phases", std::move(tables.phases)}};
+                           });
 }
 
 /// View factors by several programs; `reference` is the tolerance of the matrix that all are compared with.
@@ -245,21 +276,13 @@ Result<StudyTables> view_factor_tables(const Study& study, const StudyOptions& o
     Table table;
     Result<void> compared;
     const Result<void> done = for_scenes(
-        study, options, progress, stop, [&](const std::string& name, const Scene& scene, const std::string& path) {
-            if (compared) compared = compare_view_factor_programs(name, path, scene, asked, table, stop);
+        study, options, progress, stop, [&](const std::string& name, const Scene& scene, const StudyStage& stage) {
+            if (compared) compared = compare_view_factor_programs(name, stage.path, scene, asked, table, stop);
         });
     std::filesystem::remove_all(work, failed);
     if (!done) return done.error();
     if (!compared) return compared.error();
     return StudyTables{{"results", std::move(table)}};
-}
-
-/// Joins tables of several scenes; their first column names the scene.
-Result<void> append_csv(StudyTables& tables, const std::string& name, const std::string& csv) {
-    const Result<Table> table = parse_csv(csv, name);
-    if (!table) return table.error();
-    tables[name].append(*table);
-    return {};
 }
 
 /// Local passes on global ones, and links against the threshold of initial links.
@@ -268,23 +291,20 @@ Result<StudyTables> local_pass_tables(const Study& study, const StudyOptions& op
     LocalPassStudyOptions asked;
     if (options.quick) asked.points = 200, asked.paths = 256, asked.accuracies.pop_back();
     constexpr double medium = 0.08;
-    StudyTables tables;
-    std::optional<Error> failure;
-    const auto add = [&](const char* name, const Result<std::string>& csv) {
-        const Result<void> added = csv ? append_csv(tables, name, *csv) : Result<void>(csv.error());
-        if (!added && !failure) failure = added.error();
-    };
-    const Result<void> done = for_scenes(
-        study, options, progress, stop, [&](const std::string& name, const Scene& scene, const std::string&) {
+    return tables_by_scene(
+        study, options, progress, stop, {"results", "thresholds"},
+        [&](const std::string& name, const Scene& scene) -> Result<StudyTables> {
             const auto passes = run_local_pass_study(scene, asked, progress, stop);
-            add("results", passes ? Result<std::string>(local_pass_csv(name, *passes)) : passes.error());
+            if (!passes) return passes.error();
             const auto links =
                 run_link_threshold_study(scene, {0, 0.01, 0.03, 0.1, 0.3, 1}, medium, asked, progress, stop);
-            add("thresholds", links ? Result<std::string>(link_threshold_csv(name, *links)) : links.error());
+            if (!links) return links.error();
+            Result<Table> results = parse_csv(local_pass_csv(name, *passes), "results");
+            Result<Table> thresholds = parse_csv(link_threshold_csv(name, *links), "thresholds");
+            if (!results) return results.error();
+            if (!thresholds) return thresholds.error();
+            return StudyTables{{"results", std::move(*results)}, {"thresholds", std::move(*thresholds)}};
         });
-    if (!done) return done.error();
-    if (failure && !stop.requested()) return *failure;
-    return tables;
 }
 
 }  // namespace
