@@ -3,19 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/geometry/quadrature.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr std::size_t least_cells = 32;  ///< Of the receiver before differences are believed.
-constexpr std::size_t most_parts = 48;   ///< Cut under edges.
-constexpr double near_edge = 0.1;        ///< Of the receiver's size: the height of edges that it is cut under.
+constexpr std::size_t most_parts = 48;  ///< Cut under edges.
+constexpr double near_edge = 0.1;       ///< Of the receiver's size: the height of edges that it is cut under.
 /// Of what a dark cell would hold at the slope at which light fades over the whole receiver: a corner that its points
 /// missed.
-constexpr double dark_corner = 0.1;
-constexpr std::size_t halvings_a_look = 64;  ///< At the clock.
-constexpr double unseen_brightness = 0.05;   ///< Of the whole source: what may have been missed where nothing was seen.
+constexpr double dark_corner = 0.03;
+constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may have been missed where nothing was seen.
+constexpr double between_points = 0.125;    ///< Of a cell's size: no strip so wide slips through its rules.
+constexpr double unseen_strip = 0.1;        ///< Of a strip's light: what may be lost where no point met it.
+constexpr double left = 0.5;                ///< Of the largest difference of a cell's rules.
+constexpr int most_halvings = 6;            ///< Of a source.
+constexpr double paying = 1.4;              ///< Blockers before both halves, over those before the whole.
+constexpr double exact_share = 0.1;         ///< Of the tolerance: smaller errors of clear cells stay.
 
 double squared_distance(const Point& x, const Point& a, const Point& b) {
     const Vec3 e = b - a, d = x - a;
@@ -81,14 +86,14 @@ void ClutteredExchange::cut_along_contacts(double slack) {
 }
 
 /// The parts as triangles and quadrilaterals.
-void ClutteredExchange::add_cells() {
+void ClutteredExchange::add_cells(const std::vector<SourcePart>& sources) {
     for (const Part& part : parts_)
         for (std::size_t first = 1; first + 1 < part.size(); first += 2) {
-            Cell cell{{part[0], part[first], part[first + 1]}, 3, 0, 0};
+            Cell cell{{part[0], part[first], part[first + 1]}, 3, 0, 0, {}};
             if (first + 2 < part.size()) cell.corner[3] = part[first + 2], cell.count = 4;
-            look(cell);
+            look(cell, sources);
             total_ += cell.integral;
-            heap_.push_back(cell);
+            heap_.push_back(std::move(cell));
         }
 }
 
@@ -100,39 +105,40 @@ void ClutteredExchange::find_edges(double slack) {
     };
     for (const ConvexBlocker* blocker : pair_.blockers)
         for (const ConvexBlocker::Edge& e : blocker->edges) {
-            const Point a = in_frame(blocker->points[e.a]), b = in_frame(blocker->points[e.b]);
-            if (a.z > slack || b.z > slack) edges_.push_back({a, b, false});
+            Point a = in_frame(blocker->points[e.a]), b = in_frame(blocker->points[e.b]);
+            if (a.z > b.z) std::swap(a, b);
+            if (b.z > slack) edges_.push_back({a, b});
         }
-    std::stable_sort(edges_.begin(), edges_.end(),
-                     [](const Edge& e, const Edge& f) { return std::max(e.a.z, e.b.z) < std::max(f.a.z, f.b.z); });
+    std::stable_sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) { return e.low.z < f.low.z; });
 }
 
 /// Where an edge passes closely over the receiver, what it sees nearly jumps.
 void ClutteredExchange::cut_under_edges(double slack) {
     const double near = near_edge * std::sqrt(area_);
-    for (Edge& e : edges_) {
-        const Vec2 p = {e.a.x, e.a.y}, q = {e.b.x, e.b.y};
-        if (parts_.size() > most_parts || std::max(e.a.z, e.b.z) > near) break;
-        cut_along(p, q, slack);
-        e.is_cut = true;
+    for (const Edge& e : edges_) {
+        if (parts_.size() > most_parts || e.low.z > near) break;
+        if (e.high.z <= near) cut_along({e.low.x, e.low.y}, {e.high.x, e.high.y}, slack);
     }
 }
 
-/// How much of a cell may lie where edges change what is seen, from 0 to 1: all of it when one passes over it within
-/// its size, a strip as wide as the edge is high if it has been cut along that edge.
+/// How much of a cell may lie under an edge that runs closer to it than the points of its rules lie to each other: what
+/// is seen changes within about the edge's height, and a wider strip is met by some points.
 double ClutteredExchange::share_under_edges(const Cell& cell) const {
     Vec2 middle{};
-    for (std::size_t i = 0; i < cell.count; ++i) middle = middle + cell.corner[i];
-    middle = (1.0 / cell.count) * middle;
+    for (std::size_t i = 0; i < cell.count; ++i) middle = middle + (1.0 / cell.count) * cell.corner[i];
     double squared = 0;
-    for (std::size_t i = 0; i < cell.count; ++i)
-        squared = std::max(squared, dot(cell.corner[i] - middle, cell.corner[i] - middle));
+    for (Vec2 p : cell.corners()) squared = std::max(squared, dot(p - middle, p - middle));
     const Point at = {middle.x, middle.y, 0};
+    const double size = std::sqrt(squared), widest = between_points * size;
     double share = 0;
     for (const Edge& edge : edges_) {
-        if (squared_distance(at, edge.a, edge.b) >= squared) continue;
-        if (!edge.is_cut) return 1;
-        share = std::max(share, std::min(1.0, std::max(edge.a.z, edge.b.z) / std::sqrt(squared)));
+        if (edge.low.z > widest) break;
+        const Vec3 along = edge.high - edge.low;
+        const double t = edge.high.z > widest ? (widest - edge.low.z) / along.z : 1;
+        const Point end = edge.low + t * along;
+        if (squared_distance(at, edge.low, end) >= squared) continue;
+        const double height = std::max(0.0, end.z), length = t * std::hypot(along.x, along.y);
+        share = std::max(share, height / size * std::min(1.0, length / size));
     }
     return share;
 }
@@ -140,51 +146,140 @@ double ClutteredExchange::share_under_edges(const Cell& cell) const {
 /// What may have slipped between the points of a cell under an edge: some of what they saw, or of what little the cell
 /// would hold if it saw less than a third of what the receiver sees on average.
 double ClutteredExchange::unseen(const Cell& cell) const {
-    const double area = area_of(std::span(cell.corner).first(cell.count));
-    return 0.3 * std::max(cell.integral, 0.3 * total_ * area / area_);
+    return unseen_strip * std::max(cell.integral, 0.3 * total_ * area_of(cell.corners()) / area_);
 }
 
-/// What a cell of which no point has seen anything may hold. Nothing where one blocker hides all of it; past several
-/// some of it may see through a gap, no more of it than light fades over the cell.
-double ClutteredExchange::dark(const Cell& cell) {
-    std::array<Point, 4> corners;
-    for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
-    if (visible_.is_hidden_from(std::span(corners).first(cell.count))) return 0;
-    const double area = area_of(std::span(cell.corner).first(cell.count)), size = std::sqrt(area / area_);
-    return dark_corner * brightest_ * size * area;
-}
-
-double ClutteredExchange::visible_at(Vec2 p, double weight) {
-    ++evaluations;
-    Seen seen;
-    const double F = visible_(frame_.at(p), frame_.n, seen);
-    brightest_ = std::max(brightest_, F);
-    all_lit_ = all_lit_ && seen == Seen::all;
-    return weight * F;
-}
-
-/// Two Gauss points a side; three on triangles.
-void ClutteredExchange::look(Cell& cell) {
-    cell.integral = 0;
+/// Three rules that have no point in common; the best comes last.
+void ClutteredExchange::place_nodes(const Cell& cell) {
+    nodes_.clear(), weights_.clear(), ends_.clear();
     const Vec2 o = cell.corner[0], a = cell.corner[1] - o;
+    const int few = turned_ ? 5 : 4;
     if (cell.count == 3) {
         const Vec2 b = cell.corner[2] - o;
-        const double area = std::abs(cross(a, b)) / 2;
-        for (const PlanarNode& k : triangle_rule(2))
-            cell.integral += visible_at(o + k.at.x * a + k.at.y * b, area * k.weight);
+        const double area = 0.5 * std::abs(cross(a, b));
+        for (int degree : {5, 2 * few - 1, 2 * few + 3}) {
+            for (const PlanarNode& k : triangle_rule(degree))
+                nodes_.push_back(o + k.at.x * a + k.at.y * b), weights_.push_back(area * k.weight);
+            ends_.push_back(nodes_.size());
+        }
         return;
     }
     const Vec2 b = cell.corner[3] - o, c = cell.corner[2] - cell.corner[1] - b;
-    for (const PlanarNode& k : square_rule(2)) {
-        const double u = k.at.x, v = k.at.y;
-        cell.integral += visible_at(o + u * a + v * b + (u * v) * c, k.weight * cross(a + v * c, b + u * c));
+    for (const auto& rule : {scattered_square_rule(), square_rule(few), square_rule(few + 2)}) {
+        const bool mirrored = turned_ && ends_.empty();
+        for (const PlanarNode& k : rule) {
+            const double u = mirrored ? 1 - k.at.x : k.at.x, v = k.at.y;
+            nodes_.push_back(o + u * a + v * b + (u * v) * c);
+            weights_.push_back(k.weight * cross(a + v * c, b + u * c));
+        }
+        ends_.push_back(nodes_.size());
     }
+}
+
+ClutteredExchange::Blockers ClutteredExchange::seen_blockers() const {
+    Blockers blockers;
+    for (const SeenEdges& seen : visible_.seen_edges()) blockers.push_back(seen.body);
+    return blockers;
+}
+
+/// Adds the halves of a source, cut across its longest edge, where each is behind much less than the whole.
+bool ClutteredExchange::add_halves(Cell& cell, const SourcePart& source) {
+    std::size_t longest = 0;
+    Vec3 along;
+    for (std::size_t i = 0; i < source.outline.size(); ++i) {
+        const Vec3 e = source.outline[i + 1 == source.outline.size() ? 0 : i + 1] - source.outline[i];
+        if (dot(e, e) > dot(along, along)) along = e, longest = i;
+    }
+    const Normal n = normalized(along);
+    const double offset = dot(n, source.outline[longest] + 0.5 * along);
+    std::array<SourcePart, 2> halves;
+    std::size_t blockers = 0, open = 0;
+    for (const double sign : {1.0, -1.0}) {
+        SourcePart half{{}, {}, source.depth + 1};
+        clip(source.outline, Plane{sign * n, sign * offset}, half.outline);
+        if (half.outline.size() < 3 || half.outline.size() > SightTables::most_corners) return false;
+        const auto outlook = visible_.set(frame_, cell.corners(), half.outline, source.blockers);
+        if (outlook == VisibleFromMany::Outlook::partly) half.blockers = seen_blockers();
+        blockers += half.blockers.size();
+        if (outlook != VisibleFromMany::Outlook::hidden) halves[open++] = std::move(half);
+    }
+    if (static_cast<double>(blockers) > paying * static_cast<double>(source.blockers.size())) return false;
+    for (std::size_t k = 0; k < open; ++k) add_source(cell, halves[k]);
+    return true;
+}
+
+/// Adds what a cell's points see of a part of the source, and that part to those of the cell.
+void ClutteredExchange::add_source(Cell& cell, const SourcePart& source) {
+    SourcePart part{source.outline, {}, source.depth};
+    const auto outlook = visible_.set(frame_, cell.corners(), source.outline, source.blockers);
+    if (outlook == VisibleFromMany::Outlook::hidden) {
+        all_lit_ = false;
+        return;
+    }
+    if (outlook == VisibleFromMany::Outlook::clear) {
+        for (std::size_t k = 0; k < nodes_.size(); ++k) values_[k] += visible_.unoccluded(nodes_[k]);
+        cell.sources.push_back(std::move(part));
+        return;
+    }
+    part.blockers = seen_blockers();
+    if (part.blockers.size() > SightTables::most_blockers) {
+        if (part.depth < most_halvings && add_halves(cell, part)) return;
+        visible_.set(frame_, cell.corners(), part.outline, part.blockers);
+    }
+    evaluations += nodes_.size();
+    visible_(nodes_, ends_, factors_, seen_);
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        values_[k] += factors_[k];
+        all_lit_ = all_lit_ && seen_[k] == Seen::all;
+    }
+    cell.sources.push_back(std::move(part));
+}
+
+/// The contour integral of a cell that sees all of its sources.
+double ClutteredExchange::exact(const Cell& cell) const {
+    std::array<Point, 4> corners;
+    for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
+    double sum = 0;
+    for (const SourcePart& source : cell.sources)
+        sum += exchange_area(std::span(corners).first(cell.count), source.outline, exact_share * relative_);
+    return sum;
+}
+
+/// Sets the error of a cell from what its rules found.
+void ClutteredExchange::judge(Cell& cell) {
+    double most = 0, sum = 0;
+    std::size_t k = 0;
+    std::array<double, 3> found{};
+    for (std::size_t rule = 0; rule < ends_.size(); ++rule)
+        for (; k < ends_[rule]; ++k)
+            found[rule] += weights_[k] * values_[k], brightest_ = std::max(brightest_, values_[k]);
+    sum = found.back();
+    for (const double other : found) most = std::max(most, std::abs(sum - other));
+    cell.integral = sum, cell.error = left * most;
+    if (cell.sources.empty()) {
+        cell.error = 0;  // hidden for certain
+        return;
+    }
+    const bool clear = std::ranges::all_of(cell.sources, [](const SourcePart& s) { return s.blockers.empty(); });
+    if (clear && cell.error > exact_share * relative_ * sum) cell.integral = exact(cell), cell.error = 0;
+    if (clear) return;
+    // Past several blockers some of a dark cell may see through a gap, no more of it than light fades over the cell.
+    const double area = area_of(cell.corners());
+    if (sum == 0) cell.error = dark_corner * brightest_ * area * std::sqrt(area / area_);
+    cell.error = std::max(cell.error, share_under_edges(cell) * unseen(cell));
+}
+
+void ClutteredExchange::look(Cell& cell, const std::vector<SourcePart>& sources) {
+    place_nodes(cell);
+    values_.assign(nodes_.size(), 0), factors_.resize(nodes_.size()), seen_.resize(nodes_.size());
+    for (const SourcePart& source : sources) add_source(cell, source);
+    judge(cell);
 }
 
 /// Across its longest edge, and for a quadrilateral across the edge opposite to that.
 void ClutteredExchange::halve_worst() {
     std::pop_heap(heap_.begin(), heap_.end());
-    const Cell cell = heap_.back();
+    const Cell cell = std::move(heap_.back());
     heap_.pop_back();
     std::size_t longest = 0;
     double most = 0;
@@ -193,81 +288,59 @@ void ClutteredExchange::halve_worst() {
         if (dot(e, e) > most) most = dot(e, e), longest = i;
     }
     const auto at = [&](std::size_t i) { return cell.corner[(longest + i) % cell.count]; };
-    const Vec2 p = at(0) + ratio_ * (at(1) - at(0));
-    Cell one{{}, cell.count, 0, 0}, two = one;
+    const double ratio = turned_ ? 0.45 : 0.5;
+    const Vec2 p = at(0) + ratio * (at(1) - at(0));
+    Cell one{{}, cell.count, 0, 0, {}}, two = one;
     if (cell.count == 3) {
         one.corner = {p, at(1), at(2)}, two.corner = {p, at(2), at(0)};
     } else {
-        const Vec2 q = at(3) + ratio_ * (at(2) - at(3));
+        const Vec2 q = at(3) + ratio * (at(2) - at(3));
         one.corner = {p, at(1), at(2), q}, two.corner = {p, q, at(3), at(0)};
     }
-    look(one), look(two);
-    const double change = std::abs(one.integral + two.integral - cell.integral);
-    // A bend across a cell leaves halves about a third each of what halving has changed. One that happens to change
-    // nothing is not yet right.
-    constexpr double left = 0.35, least = 0.2;
-    const double error = std::max(left * change, least * std::min(cell.error, change + cell.integral));
-    one.error = two.error = error;
-    for (Cell* half : {&one, &two}) {
-        if (cell.integral == 0 && cell.error == 0) continue;  // hidden for certain
-        const double missed = half->integral == 0 ? dark(*half) : HUGE_VAL;
-        half->error = std::max(half->error, share_under_edges(*half) * unseen(*half));
-        if (missed == 0)
-            half->error = 0;
-        else if (missed < HUGE_VAL)
-            half->error = std::max(half->error, missed);
-    }
+    look(one, cell.sources), look(two, cell.sources);
     total_ += one.integral + two.integral - cell.integral;
     squared_error_ += one.error * one.error + two.error * two.error - cell.error * cell.error;
-    for (const Cell& half : {one, two}) {
-        heap_.push_back(half);
+    for (Cell* half : {&one, &two}) {
+        heap_.push_back(std::move(*half));
         std::push_heap(heap_.begin(), heap_.end());
     }
 }
 
-double ClutteredExchange::operator()(const OccludedPair& pair, const Allowance& allowance, double ratio,
+double ClutteredExchange::operator()(const OccludedPair& pair, const Allowance& allowance, bool turned,
                                      bool& unoccluded) {
     unoccluded = false;
-    ratio_ = ratio;
-    brightest_ = 0;
+    turned_ = turned, relative_ = allowance.relative;
     pair_ = pair;
-    visible_.set(pair.source, pair.blockers);
-    if (visible_.is_hidden_from(pair.receiver)) return 0;
     frame_ = PlaneFrame(pair.receiver[0], pair.receiver_plane.n);
     heap_.clear();
     total_ = squared_error_ = 0, all_lit_ = true;
     Part whole;
-    for (const Point& p : pair.receiver) whole.push_back(frame_.flat(p));
+    Vec2 middle{};
+    for (const Point& p : pair.receiver) {
+        whole.push_back(frame_.flat(p));
+        middle = middle + (1 / static_cast<double>(pair.receiver.size())) * whole.back();
+    }
+    const auto outlook = visible_.set(frame_, whole, pair.source, pair.blockers);
+    if (outlook == VisibleFromMany::Outlook::hidden) return 0;
+    if (outlook == VisibleFromMany::Outlook::clear) return unoccluded = true, 0;
+    brightest_ = unseen_brightness * visible_.unoccluded(middle);
     area_ = area_of(whole);
     const double slack = 1e-6 * std::sqrt(area_);
     parts_.assign(1, whole);
+    const std::vector<SourcePart> sources = {{{pair.source.begin(), pair.source.end()}, seen_blockers(), 0}};
     cut_along_contacts(slack);
     find_edges(slack);
     cut_under_edges(slack);
-    add_cells();
-    if (brightest_ == 0) {
-        Vec2 middle{};
-        for (Vec2 p : whole) middle = middle + (1 / static_cast<double>(whole.size())) * p;
-        brightest_ = unseen_brightness * visible_.unoccluded(frame_.at(middle), frame_.n);
-    }
-    for (Cell& cell : heap_) {
-        const double cell_area = area_of(std::span(cell.corner).first(cell.count));
-        cell.error = std::max({cell.integral, total_ * cell_area / area_, brightest_ * cell_area});  // unknown
-        squared_error_ += cell.error * cell.error;
-    }
-    // Halved evenly at first: a sum of all that is seen must not rest on where the first few points happened to lie.
-    std::make_heap(heap_.begin(), heap_.end());
     const std::size_t enough = evaluations + allowance.most_evaluations;
-    while (heap_.size() < least_cells && total_ + std::sqrt(squared_error_) > 0) halve_worst();
+    add_cells(sources);
+    for (const Cell& cell : heap_) squared_error_ += cell.error * cell.error;
+    std::make_heap(heap_.begin(), heap_.end());
     const auto good = [&] {
         const double error = std::sqrt(std::max(0.0, squared_error_));
         return error <= std::max(allowance.absolute, allowance.relative * total_) ||
                total_ + 2 * error < allowance.ignored;
     };
-    for (std::size_t k = 1; !good() && evaluations < enough; ++k) {
-        halve_worst();
-        if (k % halvings_a_look == 0 && stop_.requested()) break;
-    }
+    while (heap_.front().error > 0 && !good() && evaluations < enough && !stop_.requested()) halve_worst();
     if (all_lit_) return unoccluded = true, 0;
     double sum = 0;  // anew: the running one has rounded
     for (const Cell& cell : heap_) sum += cell.integral;

@@ -8,11 +8,12 @@
 namespace exitance {
 
 /// Integrates the exact visible part of a source over a receiver where much stands in between: critical lines would cut
-/// the receiver into thousands of cells, most of which hardly matter. Cells are halved where that changes their
-/// integral most, until what changes is small; bends are not sought, but are met from many sides, so that what they
-/// leave has no common sign. Jumps are sought: the receiver is cut along the borders of what stands on it. Under edges
-/// that pass within a cell's size, halves that agree are not believed: what stands a finger's breadth before a wall
-/// darkens a strip that no point of a large cell may meet. One object serves one thread and many pairs.
+/// the receiver into thousands of cells, most of which hardly matter. Cells of the receiver are looked from by three
+/// rules, and the one on which these differ most is halved, until what is left is small. Each half sees past fewer
+/// blockers than its cell, and a source before many is halved, too, so that a point meets few of them at a time.
+/// Jumps are sought: the receiver is cut along the borders of what stands on it. Under edges that pass within a cell's
+/// size, rules that agree are not believed: what stands a finger's breadth before a wall darkens a strip that no point
+/// of a large cell may meet. One object serves one thread and many pairs.
 class ClutteredExchange {
   public:
     /// What is computed when a stop is requested is of no use.
@@ -28,48 +29,63 @@ class ClutteredExchange {
 
     /// A_i F_ij, m^2, of a pair as for OccludedExchange. `unoccluded` tells that nothing was seen to stand between; the
     /// value is then left to others.
-    /// ratio  where cells are cut in two: with another ratio other points are looked from
-    double operator()(const OccludedPair& pair, const Allowance& allowance, double ratio, bool& unoccluded);
+    /// turned  other points are looked from: this is the pair's second look from the same face
+    double operator()(const OccludedPair& pair, const Allowance& allowance, bool turned, bool& unoccluded);
 
-    std::size_t evaluations = 0;  ///< Exact visible parts so far.
+    std::size_t evaluations = 0;  ///< Points from which a part of a source was looked at, so far.
 
   private:
+    using Part = std::vector<Vec2>;
+    using Blockers = std::vector<const ConvexBlocker*>;
+
+    /// A part of the source, and what may stand before it as seen from a cell: nothing where it is clear.
+    struct SourcePart {
+        std::vector<Point> outline;
+        Blockers blockers;
+        int depth;  ///< Halvings of the source.
+    };
     struct Cell {
         std::array<Vec2, 4> corner;
         std::uint32_t count;
-        double integral;  ///< m^2, by two Gauss points a side.
-        double error;     ///< m^2, about.
+        double integral = 0, error = 0;   ///< m^2; the second about.
+        std::vector<SourcePart> sources;  ///< Without what is hidden for certain.
+        std::span<const Vec2> corners() const { return std::span(corner).first(count); }
         bool operator<(const Cell& other) const { return error < other.error; }
     };
 
-    using Part = std::vector<Vec2>;
-
     void cut_along_contacts(double slack);
-    void add_cells();
-    void look(Cell& cell);
+    void add_cells(const std::vector<SourcePart>& sources);
+    void place_nodes(const Cell& cell);
+    void look(Cell& cell, const std::vector<SourcePart>& sources);
+    void add_source(Cell& cell, const SourcePart& source);
+    bool add_halves(Cell& cell, const SourcePart& source);
+    Blockers seen_blockers() const;
+    void judge(Cell& cell);
+    double exact(const Cell& cell) const;
     void halve_worst();
     void find_edges(double slack);
     void cut_along(Vec2 p, Vec2 q, double slack);
     void cut_under_edges(double slack);
     double share_under_edges(const Cell& cell) const;
     double unseen(const Cell& cell) const;
-    double dark(const Cell& cell);
-    double visible_at(Vec2 p, double weight);
 
     const StopRequest& stop_;
     OccludedPair pair_;
     PlaneFrame frame_{{}, {0, 0, 1}};
-    VisibleSource visible_;
+    VisibleFromMany visible_;
     std::vector<Part> parts_, next_;
     std::vector<Cell> heap_;  ///< The largest error first.
     struct Edge {
-        Point a, b;   ///< In the receiver's frame: two coordinates and the height.
-        bool is_cut;  ///< Has the receiver been cut along it?
+        Point low, high;  ///< Its ends in the receiver's frame: two coordinates and the height.
     };
-    std::vector<Edge> edges_;  ///< Of the blockers, off the receiver.
-    double area_ = 0, ratio_ = 0.5, total_ = 0, squared_error_ = 0;
+    std::vector<Edge> edges_;  ///< Of the blockers, off the receiver, by their lower ends' heights.
+    std::vector<Vec2> nodes_;
+    std::vector<double> weights_, values_, factors_;  ///< m^2; form factors to all of the source, to a part of it.
+    std::vector<Seen> seen_;
+    std::vector<std::size_t> ends_;  ///< Of the rules' nodes.
+    double area_ = 0, total_ = 0, squared_error_ = 0, relative_ = 0;
     double brightest_ = 0;  ///< The largest form factor seen, or what may have been missed.
-    bool all_lit_ = true;
+    bool all_lit_ = true, turned_ = false;
 };
 
 /// How unevenly a plane's points see past blockers: lengths of their edges over their heights. Of two faces the one

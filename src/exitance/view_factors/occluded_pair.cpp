@@ -9,11 +9,13 @@ namespace exitance {
 namespace {
 
 constexpr int deepest = 20;                 ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
-constexpr double dominating = 0.03;         ///< An entry above it makes its row's error.
 constexpr double dominating_share = 0.25;   ///< Of the tolerance, for such an entry.
 constexpr double dark_corner = 0.05;        ///< Of a dark cell's share of light, where it may be lit.
 constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may be seen where no point saw anything.
 constexpr double surely_ignored = 0.3;      ///< Of what needs no digits: a first look that finds less may be far off.
+/// Of a cell's allowance: what rules may leave for the source's nearness alone. Were it all of it, cells along a
+/// touching edge would fail at every size, as they are as near to the source as they are small.
+constexpr double near_part = 0.1;
 constexpr double near_share = 0.5;  ///< Of the difference of two rules that the better one may leave, at an edge.
 
 double cross_area(std::span<const Vec2> corners) {
@@ -155,12 +157,7 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double d, double all
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
     if (points == 2 && cell.count == 4) return cell.two_points;
-    if (points > 8) {  // too near for Gauss points: the contour integral of the cell itself
-        std::array<Point, 4> corners;
-        for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
-        return exchange_area(std::span(corners).first(cell.count), pair_.source,
-                             std::clamp(allowed / whole, 1e-12, 1e-3));
-    }
+    if (points > 8) return exact(cell, allowed);  // too near for Gauss points
     nodes_.clear(), weights_.clear();
     place_nodes(cell, points);
     double sum = 0;
@@ -192,7 +189,7 @@ bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
 /// settled so as need be, and of 140 one errs by more than its allowance.
 bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
     const Cell& cell = task.cell;
-    if (cell.glance.black > 0 || (dominates_ && is_under_an_edge(cell))) return false;
+    if (task.whole >= 0 || cell.glance.black > 0 || (dominates_ && is_under_an_edge(cell))) return false;
     const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
     const double far = 2 * cell.area * brightest(task.distance), middle = std::max(cell.middle, 1e-300);
     const double most = std::max(cell.glance.highest / middle - 1, 1 - cell.glance.lowest / middle),
@@ -210,7 +207,7 @@ bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
 /// How much of the difference of two rules the better one may err by. Past several blockers the visible part may bend
 /// within a cell, where three edges meet in one line of sight.
 double OccludedExchange::share_left(const Task& task) const {
-    if (dominates_ && is_under_an_edge(task.cell)) return near_share;
+    if ((dominates_ || task.whole >= 0) && is_under_an_edge(task.cell)) return near_share;
     if (matters_ || relative_ < 1e-5) return 0.1;
     return visible_.seen_edges().size() > 1 ? 0.1 : 0.03;
 }
@@ -229,13 +226,48 @@ void OccludedExchange::apply(int points) {
     look_from_nodes();
     std::size_t k = 0;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
-        tasks_[i].sum = 0;
-        tasks_[i].glance = {};
+        Task& task = tasks_[i];
+        const bool near = task.whole >= 0;
+        task.sum = near ? task.whole : 0;
+        task.glance = {};
         for (; k < lasts_[i]; ++k) {
-            tasks_[i].sum += weights_[k] * factors_[k];
-            tasks_[i].glance.take(factors_[k], seen_[k]);
+            task.sum += weights_[k] * (near ? factors_[k] - visible_.unoccluded(nodes_[k]) : factors_[k]);
+            task.glance.take(factors_[k], seen_[k]);
         }
     }
+}
+
+/// Is the source so near that a rule of so many points a side could not be believed, whatever stands in between?
+bool OccludedExchange::is_near(const Task& task, int points) const {
+    const double rho = convergence(task.cell, task.distance);
+    return 2 * task.cell.area * brightest(task.distance) * std::pow(rho, -2 * points) > near_part * task.allowed;
+}
+
+/// The contour integral of a cell, nothing in between.
+double OccludedExchange::exact(const Cell& cell, double allowed) const {
+    std::array<Point, 4> corners;
+    for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
+    const double most = cell.area * brightest(0);
+    return exchange_area(std::span(corners).first(cell.count), pair_.source,
+                         std::clamp(0.1 * allowed / most, 1e-12, 1e-3));
+}
+
+/// Integrates over cells near to the source what is hidden, which is no nearer than what hides it: the whole is exact.
+/// Settles those that see all of the source, and returns their sum.
+double OccludedExchange::settle_near_cells(int points) {
+    double total = 0;
+    std::erase_if(tasks_, [&](Task& task) {
+        const Glance& glance = task.cell.glance;
+        if (glance.black == glance.count || !is_near(task, points)) return false;
+        task.whole = exact(task.cell, task.allowed);
+        if (task.cell.complete && glance.lit == glance.count) return total += task.whole, true;
+        nodes_.clear(), weights_.clear();
+        place_nodes(task.cell, 2);
+        task.sum = task.whole + task.cell.two_points;
+        for (std::size_t k = 0; k < nodes_.size(); ++k) task.sum -= weights_[k] * visible_.unoccluded(nodes_[k]);
+        return false;
+    });
+    return total;
 }
 
 /// A rising row of rules until two agree, else halves. The better one's error is a small share of their difference, but
@@ -245,6 +277,7 @@ double OccludedExchange::integrate_tasks() {
     const bool fine = relative_ < 1e-5 || dominates_;
     double total = 0;
     while (!tasks_.empty() && !stop_.requested()) {
+        total += settle_near_cells(fine ? 5 : 3);
         if (fine) {
             apply(3);
         } else {
@@ -265,7 +298,7 @@ double OccludedExchange::integrate_tasks() {
                 const Cell& cell = task.cell;
                 if (task.glance.black == task.glance.count) return dark(cell) <= std::max(task.allowed, ignored_);
                 const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
-                const double far = 2 * cell.area * brightest(task.distance);
+                const double far = task.whole >= 0 ? 0 : 2 * cell.area * brightest(task.distance);
                 const bool good =
                     share_left(task) * std::abs(task.sum - before) + far * std::pow(step, points) <= task.allowed;
                 if (good) total += task.sum;
@@ -289,7 +322,7 @@ double OccludedExchange::integrate_tasks() {
     return total;
 }
 
-double OccludedExchange::operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded) {
+std::optional<double> OccludedExchange::operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded) {
     unoccluded = false;
     pair_ = pair;
     relative_ = demand.relative;
@@ -299,9 +332,11 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
     const auto outlook = visible_.set(frame_, whole.corners(), pair.source, pair.blockers);
     if (outlook == VisibleFromMany::Outlook::hidden) return 0;
     if (outlook == VisibleFromMany::Outlook::clear) return unoccluded = true, 0;
+    most_cells_ = demand.most_cells;
     size_ = diameter(whole.corners());
     cells_.clear();
     cut_into_cells(whole, 0);
+    if (cells_.size() > most_cells_) return std::nullopt;
     looking_.clear();
     for (Cell& cell : cells_) looking_.push_back(&cell);
     look_at_cells(looking_);
@@ -319,7 +354,7 @@ double OccludedExchange::operator()(const OccludedPair& pair, const Demand& dema
 
     ignored_ = 0.1 * demand.ignored;
     matters_ = estimate > demand.large;
-    dominates_ = estimate > dominating * norm(area_vector(pair.receiver));
+    dominates_ = estimate > demand.dominating;
     const double never_matters = estimate < surely_ignored * demand.ignored ? ignored_ : demand.absolute;
     const double allowed = std::max((dominates_ ? dominating_share : 1) * demand.relative * estimate, never_matters);
     source_area_ = norm(area_vector(pair.source));

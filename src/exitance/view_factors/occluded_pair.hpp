@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,10 +20,12 @@ struct OccludedPair {
 
 /// What the quadrature of a partly hidden pair is to reach.
 struct Demand {
-    double relative = 1e-4;  ///< Error over the pair's exchange area.
-    double absolute = 0;     ///< m^2: an error that never matters.
-    double ignored = 0;      ///< m^2: smaller exchange areas need no digits.
-    double large = 0;        ///< m^2: larger exchange areas are integrated with more care.
+    double relative = 1e-4;             ///< Error over the pair's exchange area.
+    double absolute = 0;                ///< m^2: an error that never matters.
+    double ignored = 0;                 ///< m^2: smaller exchange areas need no digits.
+    double large = 0;                   ///< m^2: larger exchange areas are integrated with more care.
+    double dominating = 0;              ///< m^2: still larger ones make the error of their row.
+    std::size_t most_cells = SIZE_MAX;  ///< Of the receiver: where lines cut it into more, they do not pay.
 };
 
 /// Integrates the exact visible part of a source over a receiver. The receiver is cut along the lines where the visible
@@ -33,8 +36,9 @@ class OccludedExchange {
     /// What is computed when a stop is requested is of no use.
     explicit OccludedExchange(const StopRequest& stop) : stop_(stop) {}
 
-    /// A_i F_ij, m^2. `unoccluded` tells that nothing stands between after all; the value is then left to others.
-    double operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded);
+    /// A_i F_ij, m^2; nothing when lines would cut the receiver into more cells than the demand has it. `unoccluded`
+    /// tells that nothing stands between after all; the value is then left to others.
+    std::optional<double> operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded);
 
     std::size_t evaluations = 0;  ///< Exact visible parts so far.
 
@@ -84,6 +88,9 @@ class OccludedExchange {
         double sum;                ///< m^2, by the best rule so far.
         Glance glance;             ///< Of that rule.
         int depth;
+        /// m^2, of a cell that is too near to the source for rules: the exact integral with nothing in between, from
+        /// which a rule takes what is hidden. Negative for other cells.
+        double whole = -1;
     };
 
     void cut_into_cells(const Part& part, int depth);
@@ -102,6 +109,9 @@ class OccludedExchange {
     double dark(const Cell& cell) const;
     void apply(int points);
     void halve(const Task& task);
+    bool is_near(const Task& task, int points) const;
+    double exact(const Cell& cell, double allowed) const;
+    double settle_near_cells(int points);
     double integrate_tasks();
 
     static constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
@@ -125,6 +135,7 @@ class OccludedExchange {
     double brightest_seen_ = 0;  ///< The largest form factor, or what may have been missed.
     double relative_ = 0;
     bool matters_ = false, dominates_ = false;
+    std::size_t most_cells_ = 0;
     std::size_t enough_ = 0;  ///< Evaluations after which nothing is halved any more: a bound on the worst pairs.
 };
 

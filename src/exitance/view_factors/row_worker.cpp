@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "exitance/form_factors/pair_form_factor.hpp"
@@ -10,15 +11,27 @@
 namespace exitance {
 namespace {
 
-constexpr double smallest_entry = 1e-6;   ///< Entries below it need no digits of their own.
-constexpr double large_entry = 3e-4;      ///< Entries above it may be among the largest of their rows.
-constexpr std::size_t few_blockers = 12;  ///< With more, their critical lines would cut faces into thousands of cells.
-constexpr double alike_areas = 4;         ///< Areas of one order: either face may receive.
+constexpr double smallest_entry = 1e-6;    ///< Entries below it need no digits of their own.
+constexpr double large_entry = 3e-4;       ///< Entries above it may be among the largest of their rows.
+constexpr double dominating_entry = 0.03;  ///< Entries above it make their rows' errors.
+constexpr std::size_t few_blockers = 12;   ///< With more, critical lines cut large faces into thousands of cells.
+constexpr std::size_t many_blockers = 20;  ///< With more, finding the lines takes longer than doing without.
+constexpr double alike_areas = 4;          ///< Areas of one order: either face may receive.
 constexpr std::size_t patient_evaluations = 500'000;
-constexpr double much_less = 8;     ///< Crowded than the other face.
-constexpr double much_larger = 16;  ///< Than another face.
+constexpr double much_less = 8;          ///< Crowded than the other face.
+constexpr double much_larger = 16;       ///< Than another face.
+constexpr double larger_among_many = 2;  ///< The same past more than few blockers.
 /// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance one was wrong by 0.6%.
 constexpr double contour_share = 1e-4;
+
+/// Into how many cells critical lines may cut a receiver. Cells cost the same at any tolerance; without lines the work
+/// grows by about the power given. In an office at 1e-3 lines of up to 300 cells took 0.02 to 2 ms a pair and one of 60
+/// pairs missed the tolerance, where halving alone took four times as long and missed ten.
+constexpr double cells_at_a_thousandth = 300, power_of_halving = 0.75;
+
+std::size_t most_cells(double tolerance) {
+    return static_cast<std::size_t>(cells_at_a_thousandth * std::pow(1e-3 / tolerance, power_of_halving));
+}
 
 }  // namespace
 
@@ -93,24 +106,27 @@ void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
 /// One convex piece of the receiver and one of the source, both before each other's plane.
 double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                                   std::span<const Point> s, bool& unoccluded) {
-    // What a large face sees of a small one changes within the size of the small one: there the small one looks back,
-    // from points of this row's own. Of faces of about one size that one receives which less stands close to.
-    const bool alike = source.area < alike_areas * receiver.area && receiver.area < alike_areas * source.area;
-    const bool turned =
-        alike && is_cluttered_
-            ? much_less * crowding(source.plane, source.diameter, standing_between_) <
-                  crowding(receiver.plane, receiver.diameter, standing_between_)
-            : source.area < receiver.area && (is_cluttered_ || much_larger * source.area < receiver.area);
     const double smallest = smallest_entry * std::min(source.area, receiver.area);
+    const OccludedPair straight{r, s, receiver.plane, source.plane, standing_between_},
+        back{s, r, source.plane, receiver.plane, standing_between_};
+    // What a large face sees of a small one changes within the size of the small one: there the small one looks back,
+    // without lines, as those that its own row is cut along would have both rows wrong alike.
+    const double larger = standing_between_.size() > few_blockers ? larger_among_many : much_larger;
+    if (!is_cluttered_ && larger * source.area >= receiver.area) {
+        Demand demand{.relative = tolerance_, .absolute = tolerance_ * smallest, .ignored = smallest};
+        demand.large = large_entry * receiver.area, demand.dominating = dominating_entry * receiver.area;
+        demand.most_cells = most_cells(tolerance_);
+        if (const std::optional<double> found = exchange_(straight, demand, unoccluded)) return *found;
+    }
+    // Of faces of about one size that one receives which less stands close to.
+    const bool alike = source.area < alike_areas * receiver.area && receiver.area < alike_areas * source.area;
+    const bool turned = alike ? much_less * crowding(source.plane, source.diameter, standing_between_) <
+                                    crowding(receiver.plane, receiver.diameter, standing_between_)
+                              : source.area < receiver.area;
     const ClutteredExchange::Allowance allowance{0.5 * tolerance_, tolerance_ * smallest, is_alone_ ? 0 : smallest,
                                                  most_evaluations_};
-    if (turned)
-        return cluttered_exchange_({s, r, source.plane, receiver.plane, standing_between_}, allowance, 0.45,
-                                   unoccluded);
-    if (is_cluttered_)
-        return cluttered_exchange_({r, s, receiver.plane, source.plane, standing_between_}, allowance, 0.5, unoccluded);
-    const Demand demand{tolerance_, tolerance_ * smallest, smallest, large_entry * receiver.area};
-    return exchange_({r, s, receiver.plane, source.plane, standing_between_}, demand, unoccluded);
+    return turned ? cluttered_exchange_(back, allowance, true, unoccluded)
+                  : cluttered_exchange_(straight, allowance, false, unoccluded);
 }
 
 /// Keeps what is left of a blocker, if it may still hide something.
@@ -183,7 +199,7 @@ double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means me
     most_evaluations_ = means == Means::patient ? patient_evaluations : usual_evaluations;
     pairs_.find_blockers(i, of_row_);
     pairs_.find_blockers(i, j, of_row_, of_pair_);
-    is_cluttered_ = of_pair_.size() > few_blockers || means != Means::usual;
+    is_cluttered_ = of_pair_.size() > many_blockers || means != Means::usual;
     bool unoccluded = of_pair_.empty();
     double F = unoccluded ? 0 : occluded(i, j, of_pair_, unoccluded);
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
@@ -199,7 +215,7 @@ void RowWorker::compute(std::size_t i, std::span<double> row) {
         if (stop_.requested()) return;
         if (j == i || pairs_.is_hidden(i, j) || !pairs_.face_each_other(i, j, cut)) continue;
         pairs_.find_blockers(i, j, of_row_, of_pair_);
-        is_cluttered_ = of_pair_.size() > few_blockers;
+        is_cluttered_ = of_pair_.size() > many_blockers;
         bool unoccluded = of_pair_.empty();
         if (!unoccluded) row[j] = occluded(i, j, of_pair_, unoccluded);
         if (!unoccluded) continue;

@@ -201,6 +201,30 @@ TEST(ViewFactors, EveryEntryOfATownAbove1e6HoldsTheTolerance) {
     EXPECT_EQ(coarse.unsettled, 0U);
 }
 
+TEST(ViewFactors, EntriesOfAFurnishedRoomHoldTheTolerance) {
+    // A table on four legs, whose feet stand on the floor that they look along, and a box below it.
+    std::vector<Outline> faces;
+    add_box(faces, {0, 0, 0}, {4, 3, 2.5}, true, 1);
+    add_box(faces, {1.2, 0.9, 0.7}, {2.6, 1.9, 0.74}, false, 1);
+    for (const double x : {1.25, 2.49})
+        for (const double y : {0.95, 1.79}) add_box(faces, {x, y, 0}, {x + 0.06, y + 0.06, 0.7}, false, 1);
+    add_box(faces, {1.6, 1.2, 0}, {2.1, 1.5, 0.3}, false, 1);
+    const Scene scene = scene_of(faces);
+    const double tolerance = 4e-3;
+    const ViewFactors coarse = factors_of(scene, tolerance), fine = factors_of(scene, 0.1 * tolerance);
+    std::size_t entries = 0;
+    for (std::size_t i = 0; i < coarse.size(); ++i)
+        for (std::size_t j = 0; j < coarse.size(); ++j) {
+            const double F = coarse.row(i)[j], exact = fine.row(i)[j];
+            if (exact <= 1e-6) continue;
+            ++entries;
+            EXPECT_NEAR(F / exact, 1, 1.1 * tolerance) << i << ' ' << j << ' ' << exact;  // the finer one errs, too
+        }
+    EXPECT_GT(entries, 300U);
+    EXPECT_EQ(coarse.unsettled, 0U);
+    EXPECT_EQ(fine.unsettled, 0U);
+}
+
 TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
     std::vector<Outline> whole, cut;
     add_box(whole, {0, 0, 0}, {4, 3, 2.5}, true, 1);

@@ -11,6 +11,8 @@ namespace {
 constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as none: scenes are full of aligned edges.
 /// Of the point's height over the source: what rises above it is not projected, but taken to reach everywhere.
 constexpr double below = 1 - 1e-9;
+constexpr std::size_t few_shadows = 8;  ///< Cut from the source in turn; more are taken from it one by one.
+constexpr double least_left = 1e-6;     ///< Of the source: the difference of two sums has digits to tell it.
 
 }  // namespace
 
@@ -182,7 +184,7 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     const std::size_t left = reaching_.size() - first_left;
     if (left == 0) {
         anything_lit_ = true;
-        add_edges(fragment, 1);
+        add_edges(fragment, weight_);
         return;
     }
     if (pool_used_ + 2 + cuts_.size() - first_cut > pool_.size()) pool_.resize(2 * pool_.size() + cuts_.size());
@@ -207,8 +209,8 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
         subtract(fragment, first_left + 1, first_left + left, is_whole);
     } else if (left == 1) {  // nothing more is cut: the hidden part may count negative
         anything_hidden_ = anything_lit_ = true;
-        add_edges(fragment, 1);
-        add_edges(*polygon, -1);
+        add_edges(fragment, weight_);
+        add_edges(*polygon, -weight_);
     } else {
         anything_hidden_ = true;
         for (std::size_t i = first_offcut; i < end; ++i) {
@@ -219,6 +221,69 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     }
     pool_used_ = mark;
     reaching_.resize(first_left);
+}
+
+/// The part of the source in a pyramid.
+void VisibleSource::clip_source(const Pyramid& pyramid, Polygon& inside, bool& is_whole) const {
+    double heights[Polygon::most + Polygon::lanes];
+    Polygon spare;
+    inside.copy(whole_);
+    is_whole = true;
+    for (std::uint32_t k = pyramid.first; k < pyramid.last && inside.count > 0; ++k) {
+        const Sides sides = measure(inside, lines_[k], heights);
+        is_whole &= !sides.any_out;
+        if (!sides.any_out) continue;
+        cut(inside, heights, 1, spare);
+        inside.copy(spare);
+        if (!sides.any_in || inside.count < 3) inside.clear();
+    }
+}
+
+/// Clips the source to each pyramid in reaching_, whose box shrinks to what it hides of the source: that of a pyramid
+/// over things as high as the point had no end. Drops those that hide nothing. False when one hides everything.
+bool VisibleSource::find_shadows() {
+    if (shadows_.size() < pyramids_.size()) shadows_.resize(pyramids_.size());
+    bool is_whole = false;
+    std::erase_if(reaching_, [&](std::uint32_t p) {
+        bool hides_all = false;
+        clip_source(pyramids_[p], shadows_[p], hides_all);
+        is_whole |= hides_all;
+        const Polygon& shadow = shadows_[p];
+        pyramids_[p].low_u = shadow.low_u, pyramids_[p].high_u = shadow.high_u;
+        pyramids_[p].low_v = shadow.low_v, pyramids_[p].high_v = shadow.high_v;
+        pyramids_[p].overlap = (shadow.high_u - shadow.low_u) * (shadow.high_v - shadow.low_v);
+        return shadow.count < 3;
+    });
+    return !is_whole;
+}
+
+/// Takes from all of the source what the pyramids in reaching_ hide, of each what none before it does. Where many small
+/// shadows lie on a large source, each meets few others, and what is left of the source would be hundreds of slivers.
+/// False, and nothing done, when next to nothing is left: whether that is dark is for exact cutting to tell.
+bool VisibleSource::take_shadows() {
+    if (!find_shadows()) return false;
+    put_largest_first();
+    add_edges(whole_, 1);
+    const double all = terms_.sum();
+    weight_ = -1;
+    for (std::size_t i = 0, count = reaching_.size(); i < count; ++i) {
+        const Polygon shadow = shadows_[reaching_[i]];
+        subtract(shadow, 0, i, false);
+    }
+    weight_ = 1;
+    anything_hidden_ = !reaching_.empty();
+    if (terms_.sum() > least_left * all) return anything_lit_ = true;
+    terms_.clear();
+    anything_lit_ = anything_hidden_ = false;
+    return false;
+}
+
+/// What hides much goes first: less is left to be cut.
+void VisibleSource::put_largest_first() {
+    std::sort(reaching_.begin(), reaching_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const double of_a = pyramids_[a].overlap, of_b = pyramids_[b].overlap;
+        return of_a > of_b || (of_a == of_b && a < b);
+    });
 }
 
 double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
@@ -243,13 +308,8 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
     }
     reaching_.clear();
     for (std::uint32_t k = 0; k < pyramids_.size(); ++k) reaching_.push_back(k);
-    // What hides much goes first: less is left to be cut.
-    if (reaching_.size() > 2)
-        std::sort(reaching_.begin(), reaching_.end(), [&](std::uint32_t a, std::uint32_t b) {
-            const double of_a = pyramids_[a].overlap, of_b = pyramids_[b].overlap;
-            return of_a > of_b || (of_a == of_b && a < b);
-        });
-    subtract(whole_, 0, reaching_.size(), true);
+    if (reaching_.size() > 2) put_largest_first();
+    if (reaching_.size() <= few_shadows || !take_shadows()) subtract(whole_, 0, reaching_.size(), true);
     seen = !anything_lit_     ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several)
            : anything_hidden_ ? Seen::part
                               : Seen::all;

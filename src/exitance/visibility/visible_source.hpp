@@ -88,6 +88,10 @@ class VisibleSource {
     bool misses(const Polygon& fragment, Pyramid& pyramid) const;
     void find_cuts(const Polygon& fragment, const Pyramid& pyramid);
     void subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole);
+    void clip_source(const Pyramid& pyramid, Polygon& inside, bool& is_whole) const;
+    bool find_shadows();
+    bool take_shadows();
+    void put_largest_first();
     void add_edges(const Polygon& polygon, double weight);
     static void cut(const Polygon& polygon, const double* heights, double sign, Polygon& out);
 
@@ -107,7 +111,9 @@ class VisibleSource {
     std::vector<std::uint8_t> in_front_;
     std::vector<Polygon> pool_;  ///< A stack of fragments.
     std::size_t pool_used_ = 0;
+    std::vector<Polygon> shadows_;     ///< On the source, one a pyramid.
     std::vector<std::uint32_t> cuts_;  ///< Lines that run through the fragments on the stack.
+    double weight_ = 1;                ///< Of fragments that are left.
     bool anything_lit_ = false, anything_hidden_ = false, hidden_by_one_ = false;
     EdgeTerms terms_;
 };

@@ -75,6 +75,36 @@ TEST(VisibleSource, ABodyHidesWhatItsFacesHideTogether) {
     }
 }
 
+TEST(VisibleSource, ManyShadowsHideTheirUnion) {
+    // Twelve pairs of plates whose shadows overlap by half: each pair hides a rectangle of 0.3 x 0.2.
+    std::vector<ConvexBlocker> plates;
+    std::vector<const ConvexBlocker*> blockers;
+    double F = point_to_polygon({0, 0, 0}, up, ceiling);
+    for (int k = 0; k < 12; ++k) {
+        const double x = -0.8 + 0.5 * (k % 4), y = -0.6 + 0.5 * (k / 4);  // of the shadow
+        plates.push_back(sheet(level_square(0.5 * x, 0.5 * y, 1, 0.05)));
+        plates.push_back(sheet(level_square(0.25 * (x + 0.1), 0.25 * y, 0.5, 0.025)));
+        F -= point_to_polygon(
+            {0, 0, 0}, up,
+            Outline{{x - 0.1, y + 0.1, 2}, {x + 0.2, y + 0.1, 2}, {x + 0.2, y - 0.1, 2}, {x - 0.1, y - 0.1, 2}});
+    }
+    for (const ConvexBlocker& plate : plates) blockers.push_back(&plate);
+    Seen how;
+    EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, blockers, how), F, 1e-14);
+    EXPECT_EQ(how, Seen::part);
+}
+
+TEST(VisibleSource, ManyShadowsThatCoverEverythingLeaveNothing) {
+    std::vector<ConvexBlocker> plates;
+    std::vector<const ConvexBlocker*> blockers;
+    for (int k = 0; k < 16; ++k)
+        plates.push_back(sheet(level_square(-0.375 + 0.25 * (k % 4), -0.375 + 0.25 * (k / 4), 1, 0.13)));
+    for (const ConvexBlocker& plate : plates) blockers.push_back(&plate);
+    Seen how;
+    EXPECT_EQ(seen({0, 0, 0}, up, ceiling, blockers, how), 0);
+    EXPECT_EQ(how, Seen::nothing_past_several);
+}
+
 TEST(VisibleSource, CertifiesPairsThatOneBodyHides) {
     const ConvexBlocker body = box({-2, -2, 0.9}, {2, 2, 1.1});
     VisibleSource visible;
