@@ -204,19 +204,19 @@ TEST(Classical, ShootingCutsPatchesThatContactsHaveCut) {
     // Boxes stand on the floor: their outlines cut it into cells, which are no parallelograms.
     const Scene scene = built_scene("cornell");
     const ClassicalOptions aligned = carried_raw(false);
-    SolveOptions o{.method = Method::matrix, .mesh_size = 0.1, .residual = 1e-3};
+    SolveOptions o{.method = Method::matrix, .mesh_size = 0.3, .residual = 1e-3};
     const Solution matrix = solve(scene, o, aligned).solution;
     const std::vector<ProbePoint> places{
         {{0.45, 0.5, 0}, {0, 0, 1}}, {{0.04, 0.2, 0}, {0, 0, 1}}, {{0.5, 0.05, 0}, {0, 0, 1}}};
     const std::vector<Light> expected = RadiosityFunction(matrix).at(places);
-    o.method = Method::substructuring, o.min_area = 1e-3;
+    o.method = Method::substructuring, o.min_area = 1e-2;
     for (const ShootingReceivers receivers : {ShootingReceivers::middle, ShootingReceivers::vertex}) {
         ClassicalOptions c = aligned;
         c.receivers = receivers, c.refine_gradient = 5;
         const Solution shot = solve(scene, o, c).solution;
         EXPECT_GT(shot.statistics.leaf_elements, 4 * matrix.statistics.leaf_elements - 1);
         const std::vector<Light> light = RadiosityFunction(shot).at(places);
-        // Elements of ten centimetres and of five differ by as much as light changes across them.
+        // Elements of thirty centimetres and of fifteen differ by as much as light changes across them.
         for (std::size_t i = 0; i < places.size(); ++i)
             EXPECT_NEAR(light[i].irradiance[1], expected[i].irradiance[1], 0.3 * expected[i].irradiance[1]) << i;
     }
