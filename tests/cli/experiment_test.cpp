@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "exitance/io/files/folder_lock.hpp"
 #include "run_program.hpp"
 
 namespace exitance::test {
@@ -111,6 +112,20 @@ TEST(ProgramExperiment, DoesNotRepeatTheScenesOfATable) {
     EXPECT_NE(all.find("boxes,"), std::string::npos);
     EXPECT_NE(all.find(",kept,"), std::string::npos);
     EXPECT_NE(all.find("table,"), std::string::npos);
+}
+
+TEST(ProgramExperiment, LeavesAFolderAloneThatAnotherRunWorksIn) {
+    const TemporaryFolder folder;
+    write_text(folder / "s.toml", tiny);
+    {
+        const Result<FolderLock> other = FolderLock::take(folder / "");
+        ASSERT_TRUE(other);
+        const Finished second = run_program({"experiment", folder / "s.toml", "-o", folder / ""});
+        EXPECT_NE(second.status, 0);
+        EXPECT_NE(second.err.find("another run works in this folder"), std::string::npos) << second.err;
+        EXPECT_FALSE(fs::exists(folder / "runs"));
+    }
+    EXPECT_TRUE(FolderLock::take(folder / ""));
 }
 
 TEST(ProgramExperiment, GoesOnWhereItWasStopped) {

@@ -9,6 +9,7 @@
 #include "exitance/experiments/study/study_page.hpp"
 #include "exitance/experiments/study/study_tables.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/folder_lock.hpp"
 
 namespace exitance {
 namespace {
@@ -58,6 +59,8 @@ Result<StudyReport> conduct_study(const Study& study, const StudyOptions& option
     std::error_code failed;
     fs::create_directories(folder, failed);
     if (failed) return Error{ErrorCode::cannot_write, failed.message(), options.folder, ""};
+    const Result<FolderLock> lock = FolderLock::take(options.folder);
+    if (!lock) return lock.error();
     Result<StudyTables> tables = make_tables(study, options, progress, stop);
     if (!tables) return tables.error();
     if (const Result<void> written = write_tables(study, *tables, folder); !written) return written.error();
