@@ -16,6 +16,10 @@ struct Floor {
         stage.direct.prepare(outline(), n, region, light, room);
     }
     std::span<const Point> outline() const { return stage.scene.regions()[region].loops[0]; }
+    /// What rays may find with noise of mean square `allowed`; all else goes to `rest`.
+    CrowdedLight::Crowd crowd(double allowed, ReceiverLight& rest) {
+        return stage.crowded.prepare(outline(), n, region, allowed, rest, room);
+    }
 
     const Scene scene;
     const Stage stage{scene};
@@ -36,8 +40,7 @@ TEST(CrowdedLight, IsExactLightUpToItsNoise) {
     Floor floor;
     constexpr double allowed = 0.01;
     ReceiverLight rest;
-    const CrowdedLight::Crowd crowd =
-        floor.stage.crowded.prepare(floor.outline(), floor.n, floor.region, allowed, rest, floor.room);
+    const CrowdedLight::Crowd crowd = floor.crowd(allowed, rest);
     ASSERT_EQ(crowd.sources.size(), 1u);
     EXPECT_TRUE(rest.sources.empty());
     const std::vector<Point> places = grid_of_places();
@@ -59,8 +62,7 @@ TEST(CrowdedLight, LeavesAllSourcesToExactLightWhereNoNoiseIsAllowed) {
     Floor floor;
     for (const double allowed : {0.0, 1e-9}) {
         ReceiverLight rest;
-        EXPECT_TRUE(
-            floor.stage.crowded.prepare(floor.outline(), floor.n, floor.region, allowed, rest, floor.room).empty());
+        EXPECT_TRUE(floor.crowd(allowed, rest).empty());
         ASSERT_EQ(rest.sources.size(), 1u);
         EXPECT_EQ(rest.sources[0].count, floor.light.sources[0].count);
     }
@@ -70,8 +72,7 @@ TEST(CrowdedLight, CountsCandidatesUpToWhatRaysCost) {
     for (const char* triangles : {"500", "2000"}) {
         Floor floor(triangles);
         ReceiverLight rest;
-        const CrowdedLight::Crowd crowd =
-            floor.stage.crowded.prepare(floor.outline(), floor.n, floor.region, 1, rest, floor.room);
+        const CrowdedLight::Crowd crowd = floor.crowd(1, rest);
         ASSERT_EQ(crowd.sources.size(), 1u);
         EXPECT_GT(floor.light.sources[0].count, 300u);
         EXPECT_TRUE(crowd.sources[0].source.is_crowded);
@@ -83,8 +84,7 @@ TEST(CrowdedLight, ErrsIndependentlyAtPlacesSideBySide) {
     // Else the mean over an element would be worse than the variances tell, and its error would be taken for shape.
     Floor floor("500");
     ReceiverLight rest;
-    const CrowdedLight::Crowd crowd =
-        floor.stage.crowded.prepare(floor.outline(), floor.n, floor.region, 0.1, rest, floor.room);
+    const CrowdedLight::Crowd crowd = floor.crowd(0.1, rest);
     double together = 0, apart = 0;
     for (int column = 4; column < 80; ++column) {  // not in a wall, where exact light has no ray beside it
         std::vector<Point> places;
@@ -104,8 +104,7 @@ TEST(CrowdedLight, TellsTheVarianceOfWhatItFinds) {
     // The same place 200 times, moved by next to nothing: other nets on the lamp, the same light.
     Floor floor("500");
     ReceiverLight rest;
-    const CrowdedLight::Crowd crowd =
-        floor.stage.crowded.prepare(floor.outline(), floor.n, floor.region, 0.1, rest, floor.room);
+    const CrowdedLight::Crowd crowd = floor.crowd(0.1, rest);
     double squares = 0, told = 0;
     for (double x = 0.2; x < 3.9; x += 0.4) {
         std::vector<Point> places;
