@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 
 #include "exitance/core/random.hpp"
 #include "exitance/direct/source_point.hpp"
@@ -51,19 +52,42 @@ double CrowdedLight::unblocked(const Receiver& at, const SourceName& source, Dir
     return visible_form_factor(direct_->occluders(), at, source.piece, {}, scratch, emitter.radiance);
 }
 
+/// What sources that may be crowded bring where nothing stands before them, as a root of their sum of squares, W/m^2:
+/// their noise adds up so.
+double CrowdedLight::power_at(const Receiver& at, RegionId own, const std::vector<SourceName>* named,
+                              DirectLight::Workspace& scratch) const {
+    double power = 0;
+    const auto add = [&](const SourceName& source) {
+        if (!may_be_crowded(source)) return;
+        power = std::hypot(power, unblocked(at, source, scratch) * mean(direct_->emitters()[source.emitter].exitance));
+    };
+    if (named) {
+        for (const SourceName& source : *named) add(source);
+        return power;
+    }
+    for (std::uint32_t e = 0; e < direct_->emitters().size(); ++e) {
+        const DirectLight::Emitter& emitter = direct_->emitters()[e];
+        if (!direct_->shines_on(emitter, own)) continue;
+        for (const PieceId piece : emitter.pieces) add({e, piece});
+    }
+    return power;
+}
+
 CrowdedLight::Crowd CrowdedLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own,
                                           double allowed, ReceiverLight& light, DirectLight::Workspace& scratch,
                                           const std::vector<SourceName>* named) const {
     DirectLight::WorthCounting worth;
     const Point middle = centroid(receiver);
     const bool is_possible = allowed > 0 && direct_->occluders().scene().panes().empty();
+    std::optional<unsigned> rays;  // to each source, if all of them were left to rays
     if (is_possible)
         worth = [&](const SourceName& source) -> std::size_t {
-            const double F = may_be_crowded(source) ? unblocked(direct_->receiver(middle, n, own), source, scratch) : 0;
-            const unsigned rays = rays_for(F * mean(direct_->emitters()[source.emitter].exitance), allowed);
-            // A source that is beneath the horizon of the middle tells nothing of those that others need.
-            if (F <= 0 || rays > most_rays) return Shaft::all_candidates;
-            return std::max<std::size_t>(least_crowd, rays / rays_a_blocker);
+            const Receiver at = direct_->receiver(middle, n, own);
+            if (!rays) rays = rays_for(power_at(at, own, named, scratch), allowed);
+            // A source that is beneath the horizon of the middle tells nothing of the rays that other places need.
+            if (*rays > most_rays || !may_be_crowded(source) || unblocked(at, source, scratch) <= 0)
+                return Shaft::all_candidates;
+            return std::max<std::size_t>(least_crowd, *rays / rays_a_blocker);
         };
     if (named)
         direct_->prepare(receiver, n, own, *named, light, scratch, worth);

@@ -62,6 +62,8 @@ class CrowdedLight {
     Crowd take_crowded(ReceiverLight& light, const Point& middle, double allowed,
                        DirectLight::Workspace& scratch) const;
     bool may_be_crowded(const SourceName& source) const;
+    double power_at(const Receiver& at, RegionId own, const std::vector<SourceName>* named,
+                    DirectLight::Workspace& scratch) const;
     double unblocked(const Receiver& at, const SourceName& source, DirectLight::Workspace& scratch) const;
     void cast(const ReceiverLight& light, const ReceiverLight::Source& source, std::span<const Point> places,
               unsigned first, unsigned last, std::span<Sums> sums) const;

@@ -80,6 +80,27 @@ TEST(CrowdedLight, CountsCandidatesUpToWhatRaysCost) {
     }
 }
 
+TEST(CrowdedLight, OfManySourcesCastsNoMoreRaysThanCandidatesAreWorth) {
+    // Windows and lamps share the noise that is allowed, so that each needs more rays than one alone would.
+    const Scene scene = built_scene("office", {{"nx", "1"}, {"ny", "2"}});
+    const Stage stage(scene);
+    DirectLight::Workspace room;
+    ReceiverLight rest;
+    std::size_t several = 0;
+    for (const RegionId r : scene.regions().ids()) {
+        const Region& region = scene.regions()[r];
+        if (region.area < 1) continue;
+        for (const double allowed : {1e-2, 1e-3, 1e-4}) {
+            const CrowdedLight::Crowd crowd =
+                stage.crowded.prepare(region.loops[0], region.plane.n, r, allowed, rest, room);
+            several += crowd.sources.size() > 1;
+            for (const CrowdedLight::Crowd::Source& s : crowd.sources)
+                EXPECT_GE(6 * s.source.count, crowd.rays) << allowed;
+        }
+    }
+    EXPECT_GE(several, 3u);
+}
+
 TEST(CrowdedLight, ErrsIndependentlyAtPlacesSideBySide) {
     // Else the mean over an element would be worse than the variances tell, and its error would be taken for shape.
     Floor floor("500");
