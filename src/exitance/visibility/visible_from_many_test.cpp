@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -63,6 +64,34 @@ void compare(double x, double y, double half, std::span<const ConvexBlocker* con
             EXPECT_EQ(seen[k], how) << what;
         }
     }
+}
+
+TEST(VisibleFromMany, SeesTheSameAtAnyScale) {
+    // Millimetres of a town are millions: faces of the box turn as the points move, so that its edges come and go.
+    std::vector<double> expected;
+    for (const double scale : {1.0, 1e-4, 1e3, 1e6}) {
+        const auto scaled = [&](Outline outline) {
+            for (Point& p : outline) p = scale * p;
+            return outline;
+        };
+        const ConvexBlocker body = box(scale * Point{-0.3, -0.2, 0.5}, scale * Point{0.4, 0.3, 0.9});
+        const ConvexBlocker* const blocker = &body;
+        const Outline source = scaled(ceiling), floor = scaled(floor_square(0, 0, 0.8));
+        const PlaneFrame frame(floor[0], {0, 0, 1});
+        std::vector<Vec2> receiver, points;
+        for (const Point& p : floor) receiver.push_back(frame.flat(p));
+        for (int k = 0; k < 25; ++k)
+            points.push_back(frame.flat(floor[0] + (0.06 + 0.37 * (k % 5)) * scale * Vec3{1, 0, 0} +
+                                        (0.05 + 0.37 * (k / 5)) * scale * Vec3{0, 1, 0}));
+        VisibleFromMany many;
+        ASSERT_EQ(many.set(frame, receiver, source, std::span(&blocker, 1)), VisibleFromMany::Outlook::partly);
+        std::vector<double> F(points.size());
+        std::vector<Seen> seen(points.size());
+        many(points, std::array{points.size()}, F, seen);
+        if (expected.empty()) expected = F;
+        for (std::size_t k = 0; k < F.size(); ++k) EXPECT_NEAR(F[k], expected[k], 1e-13) << scale << ' ' << k;
+    }
+    EXPECT_LT(*std::min_element(expected.begin(), expected.end()), 0.5 * expected[0]);
 }
 
 TEST(VisibleFromMany, AgreesWithSinglePoints) {
