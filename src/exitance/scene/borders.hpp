@@ -4,8 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <numeric>
-#include <set>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,17 +27,21 @@ inline Box grown(Box box, double by) {
     return {box.lo - d, box.hi + d};
 }
 
-/// A region, a part of one, or a pane in the surface that is looked for.
+/// A region, a part of one, or a pane.
 struct BorderedFace {
     std::vector<std::vector<Point>> loops;  ///< Its border; where parts have an edge in common, that cancels out.
     std::vector<Triangle> triangles;
-    int sense = 1;  ///< -1: the pane's corners run clockwise seen from within; 0: not known.
-    bool is_in = true;
-    double border = 0;                                      ///< Its length, metres.
+    Normal n;                                               ///< Towards the front.
     std::vector<std::pair<std::uint32_t, int>> edges = {};  ///< And the sense of each.
 };
 
-/// The borders of faces, cut at each other's corners, and how they cancel out.
+/// The front or the back of a face.
+struct FaceSide {
+    std::uint32_t face;
+    bool is_front;
+};
+
+/// The borders of faces, cut at each other's corners, and what stands next about each edge.
 class Borders {
   public:
     Borders(std::vector<BorderedFace> faces, double tolerance) : faces_(std::move(faces)), tolerance_(tolerance) {
@@ -62,64 +65,29 @@ class Borders {
             }
     }
 
-    /// Turns panes, from `first` on, so that their borders cancel those beside them. Where these cancel each other, as
-    /// around a hole through a solid wall, `guess(f)` tells: 1, -1, or 0 for no answer, and then the result is false.
-    template <class Guess>
-    bool turn_panes(std::size_t first, const Guess& guess) {
-        turn_by_neighbours(first);
-        for (std::size_t f = first; f < faces_.size(); ++f) {
-            if (faces_[f].sense != 0) continue;
-            faces_[f].sense = guess(f);
-            if (faces_[f].sense == 0) return false;
-            turn_by_neighbours(first);
+    /// All sides that can be reached from one by steps over edges: about an edge onto the side that faces this one,
+    /// about a free one onto the back. No step leads through a face, so that the sides bound one part of space, and the
+    /// faces of which but one side is reached are a closed surface. Empty where two faces lie on one another beside an
+    /// edge that is come by and look the same way.
+    std::vector<FaceSide> sides_reached_from(const FaceSide& start) const {
+        std::vector<FaceSide> reached{start};
+        std::vector<std::array<std::uint8_t, 2>> is_reached(faces_.size());
+        is_reached[start.face][start.is_front ? 1 : 0] = 1;
+        for (std::size_t i = 0; i < reached.size(); ++i) {
+            const FaceSide side = reached[i];
+            for (const auto& [e, sense] : faces_[side.face].edges) {
+                const auto next = beyond(side, e, sense);
+                if (!next) return {};
+                if (!std::exchange(is_reached[next->face][next->is_front ? 1 : 0], std::uint8_t{1}))
+                    reached.push_back(*next);
+            }
         }
-        return true;
-    }
-
-    /// Leaves faces aside until no edge is free: those whose own edge is too much, the face with most such border
-    /// first. False where edges of panes, from `first` on, are left.
-    bool close(std::size_t first) {
-        std::set<std::pair<double, std::uint32_t>> open;
-        std::vector<double> share(faces_.size());
-        const auto update = [&](std::uint32_t f) {
-            if (share[f] > 0) open.erase({-share[f], f});
-            share[f] = f < first && faces_[f].is_in ? free_share(faces_[f]) : 0;
-            if (share[f] > 0) open.insert({-share[f], f});
-        };
-        for (std::uint32_t f = 0; f < faces_.size(); ++f) update(f);
-        while (!open.empty()) {
-            const std::uint32_t f = open.begin()->second;
-            faces_[f].is_in = false;
-            update(f);
-            std::set<std::uint32_t> beside;
-            for (const auto& [e, sense] : faces_[f].edges)
-                for (const auto& [other, s] : users_[e]) beside.insert(other);
-            for (const std::uint32_t other : beside) update(other);
-        }
-        for (std::size_t f = 0; f < faces_.size(); ++f)
-            if (faces_[f].is_in && free_share(faces_[f]) > 0) return false;
-        keep_what_hangs_together(first);
-        return true;
+        return reached;
     }
 
     const BorderedFace& face(std::size_t f) const { return faces_[f]; }
 
   private:
-    void turn_by_neighbours(std::size_t first) {
-        for (bool changed = true; changed;) {
-            changed = false;
-            for (std::size_t f = first; f < faces_.size(); ++f) {
-                BorderedFace& pane = faces_[f];
-                if (pane.sense != 0) continue;
-                double wanted = 0;
-                for (const auto& [e, sense] : pane.edges) wanted -= sense * net(e) * length_[e];
-                if (wanted == 0) continue;
-                pane.sense = wanted > 0 ? 1 : -1;
-                changed = true;
-            }
-        }
-    }
-
     /// Of a face, between two corners: cut where other corners lie on it.
     void add_edge(std::uint32_t f, std::uint32_t a, std::uint32_t b) {
         if (a == b) return;
@@ -137,44 +105,45 @@ class Borders {
         for (std::size_t i = 0; i + 1 < on.size(); ++i) {
             const std::uint32_t p = on[i].second, q = on[i + 1].second;
             const auto [entry, fresh] =
-                edges_.try_emplace(std::minmax(p, q), static_cast<std::uint32_t>(length_.size()));
-            if (fresh) length_.push_back(norm(at_[q] - at_[p])), users_.emplace_back();
+                edges_.try_emplace(std::minmax(p, q), static_cast<std::uint32_t>(users_.size()));
+            if (fresh) users_.emplace_back(), along_.push_back(normalized(at_[std::max(p, q)] - at_[std::min(p, q)]));
             const int sense = p < q ? 1 : -1;
             faces_[f].edges.push_back({entry->second, sense});
-            faces_[f].border += length_[entry->second];
             users_[entry->second].push_back({f, sense});
         }
     }
 
-    /// Leaves aside what no chain of edges joins to faces from `first` on: solids in a room.
-    void keep_what_hangs_together(std::size_t first) {
-        std::vector<std::uint8_t> reached(faces_.size(), false);
-        std::vector<std::uint32_t> open(faces_.size() - first);
-        std::iota(open.begin(), open.end(), static_cast<std::uint32_t>(first));
-        for (const std::uint32_t f : open) reached[f] = true;
-        while (!open.empty()) {
-            const std::uint32_t f = open.back();
-            open.pop_back();
-            for (const auto& [e, sense] : faces_[f].edges)
-                for (const auto& [other, s] : users_[e])
-                    if (faces_[other].is_in && !std::exchange(reached[other], true)) open.push_back(other);
+    /// From a face's edge into the face, of length 1.
+    Vec3 inwards(std::uint32_t f, std::uint32_t e, int sense) const { return sense * cross(faces_[f].n, along_[e]); }
+
+    /// The side that faces `side` about an edge: the first that is met on the way round from it. Of two faces that lie
+    /// on one another and look opposite ways the fronts are outside. None where two look the same way.
+    std::optional<FaceSide> beyond(const FaceSide& side, std::uint32_t e, int sense) const {
+        const Vec3 from = inwards(side.face, e, sense);
+        const Vec3 up = side.is_front ? Vec3(faces_[side.face].n) : -Vec3(faces_[side.face].n);
+        const Vec3 axis = cross(from, up);
+        constexpr double all_round = 2 * pi;
+        FaceSide next{side.face, !side.is_front};
+        double nearest = all_round + 2 * one_direction;  // of the own other side
+        for (const auto& [f, s] : users_[e]) {
+            if (f == side.face && s == sense) continue;
+            const Vec3 to = inwards(f, e, s);
+            double angle = std::atan2(dot(to, up), dot(to, from));
+            if (angle < 0) angle += all_round;
+            const bool meets_front = dot(cross(axis, to), faces_[f].n) < 0;
+            if (std::min(angle, all_round - angle) < one_direction) {
+                if (meets_front != side.is_front) return std::nullopt;
+                angle = side.is_front ? all_round : 0;
+            }
+            const bool lies_on_next = std::abs(angle - nearest) < one_direction;
+            if (lies_on_next && meets_front == next.is_front) return std::nullopt;
+            if (lies_on_next ? !meets_front : angle > nearest) continue;
+            nearest = angle, next = {f, meets_front};
         }
-        for (std::size_t f = 0; f < faces_.size(); ++f) faces_[f].is_in = faces_[f].is_in && reached[f];
+        return next;
     }
 
-    int net(std::uint32_t edge) const {
-        int sum = 0;
-        for (const auto& [f, sense] : users_[edge])
-            if (faces_[f].is_in) sum += sense * faces_[f].sense;
-        return sum;
-    }
-
-    /// Share of a face's border of which there is too much.
-    double free_share(const BorderedFace& face) const {
-        double length = 0;
-        for (const auto& [e, sense] : face.edges) length += sense * face.sense * net(e) > 0 ? length_[e] : 0;
-        return length / face.border;
-    }
+    static constexpr double one_direction = 1e-6;  ///< Radians: faces that are nearer lie on one another.
 
     std::vector<BorderedFace> faces_;
     double tolerance_;
@@ -182,7 +151,7 @@ class Borders {
     std::vector<std::uint32_t> place_of_, places_;  ///< Of a corner; those that stand for themselves.
     Bvh tree_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges_;
-    std::vector<double> length_;
+    std::vector<Vec3> along_;  ///< Of an edge, of length 1, from the place that comes first.
     std::vector<std::vector<std::pair<std::uint32_t, int>>> users_;
 };
 

@@ -31,17 +31,6 @@ class Hull {
         return std::all_of(ways.begin(), ways.end(), [&](const Vec3& way) { return crossings(x, way) > 0; });
     }
 
-    /// Does a way out from x, as long as need be, meet any of it?
-    bool is_met(const Point& x, const Vec3& way) const {
-        bool met = false;
-        const Vec3 d = (2 * all_.diagonal() + norm(x - all_.centre())) * way;
-        tree_.visit_segment(x, d, 1, [&](std::uint32_t i) {
-            met = met || side_that_is_crossed(triangles_[i], x, d) != 0;
-            return met ? 0.0 : 1.0;
-        });
-        return met;
-    }
-
     /// Does it run through a triangle by more than `slack`?
     bool crosses(const Triangle& t, double slack) const {
         return tree_.visit_box(box_of(t), [&](std::uint32_t i) { return runs_through(t, triangles_[i], slack); });
@@ -148,7 +137,7 @@ std::vector<Plane> planes_across(const Region& region, const std::vector<Pane>& 
     return out;
 }
 
-/// A region, cut where panes stand across it.
+/// The surfaces of a region, or its parts where panes stand across it.
 std::vector<BorderedFace> faces_of(const Scene& scene, RegionId r, const Bvh& panes, double tolerance) {
     using Parts = std::vector<std::vector<Point>>;  // convex
     const Region& region = scene.regions()[r];
@@ -172,31 +161,53 @@ std::vector<BorderedFace> faces_of(const Scene& scene, RegionId r, const Bvh& pa
             }
         cut = std::move(finer);
     }
-    if (cut.size() == 1) return {{.loops = region.loops, .triangles = triangles}};
     std::vector<BorderedFace> out;
+    if (cut.size() == 1) {
+        for (const SurfaceId s : region.surfaces) {
+            const auto outline = scene.outline(s);
+            out.push_back({.loops = {{outline.begin(), outline.end()}},
+                           .triangles = triangles_of(outline, scene.surfaces()[s].normal),
+                           .n = region.plane.n});
+        }
+        return out;
+    }
     for (const Parts& parts : cut) {
-        BorderedFace& face = out.emplace_back(BorderedFace{.loops = parts, .triangles = {}});
+        BorderedFace& face = out.emplace_back(BorderedFace{.loops = parts, .triangles = {}, .n = region.plane.n});
         for (const std::vector<Point>& part : parts)
             for (std::size_t k = 2; k < part.size(); ++k) face.triangles.push_back({part[0], part[k - 1], part[k]});
     }
     return out;
 }
 
-/// On which side of a pane is the room? Where more ways out meet faces or panes: 1 in front of it, -1 behind, 0 where
-/// it is the same.
-int side_of_room(const Pane& pane, const Hull& all, double slack) {
-    constexpr int ways = 64;
-    const Point middle = centroid(pane.corners);
-    const Frame frame(pane.n);
-    int met = 0;
-    for (int i = 0; i < ways; ++i) {
-        const double up = (i + 0.5) / ways, out = std::sqrt(1 - up * up), turn = 2.399963 * i;  // the golden angle
-        for (const double side : {1.0, -1.0}) {
-            const Vec3 way = frame.to_world(out * std::cos(turn), out * std::sin(turn), side * up);
-            if (all.is_met(middle + side * slack * pane.n, way)) met += side > 0 ? 1 : -1;
+/// Volume that sides bound, m^3: negative where they look into it.
+double volume_behind(const Borders& borders, const std::vector<FaceSide>& sides, const Point& origin) {
+    double sum = 0;
+    for (const FaceSide& side : sides)
+        for (const Triangle& t : borders.face(side.face).triangles)
+            sum += (side.is_front ? 1 : -1) * dot(t[0] - origin, cross(t[1] - origin, t[2] - origin)) / 6;
+    return sum;
+}
+
+/// The sides of faces that bound the rooms behind panes: 1 in front of a face, 2 behind it, 3 both.
+using RoomSides = std::vector<std::uint8_t>;
+constexpr std::uint8_t in_front = 1, behind = 2;
+
+/// Does a room lie on one side of each pane, and space that has no end on the other? Panes stand from `first` on.
+bool find_rooms(const Borders& borders, std::size_t first, RoomSides& rooms) {
+    for (std::size_t f = first; f < rooms.size(); ++f) {
+        const Point origin = borders.face(f).loops[0][0];
+        int count = rooms[f] != 0 ? 1 : 0;
+        for (const bool is_front : {true, false}) {
+            if (rooms[f] & (is_front ? in_front : behind)) continue;
+            const auto sides = borders.sides_reached_from({static_cast<std::uint32_t>(f), is_front});
+            if (sides.empty() || !(volume_behind(borders, sides, origin) < 0)) continue;
+            for (const FaceSide& side : sides) rooms[side.face] |= side.is_front ? in_front : behind;
+            ++count;
         }
+        if (count != 1) return false;
     }
-    return met > 0 ? 1 : met < 0 ? -1 : 0;
+    return std::all_of(rooms.begin() + static_cast<std::ptrdiff_t>(first), rooms.end(),
+                       [](std::uint8_t sides) { return sides == in_front || sides == behind; });
 }
 
 /// Can a way that has left by one window come in by another? Then some of either lies beyond the other.
@@ -252,33 +263,24 @@ Enclosure find_enclosure(const Scene& scene) {
         for (BorderedFace& face : faces_of(scene, r, index, tolerance)) faces.push_back(std::move(face));
     const std::size_t first = faces.size();
     for (const Pane& pane : scene.panes())
-        faces.push_back({.loops = {pane.corners}, .triangles = triangles_of(pane.corners, pane.n), .sense = 0});
-    Borders borders(std::move(faces), tolerance);
-    std::optional<Hull> all;  // few scenes ask for it
-    const auto guess = [&](std::size_t f) {
-        if (!all) {
-            all.emplace();
-            for (std::size_t k = 0; k < first + scene.panes().size(); ++k)
-                for (const Triangle& t : borders.face(k).triangles) all->add(t);
-            all->finish();
-        }
-        return side_of_room(scene.panes()[f - first], *all, 2 * tolerance);
-    };
-    if (!borders.turn_panes(first, guess) || !borders.close(first)) return {};
+        faces.push_back({.loops = {pane.corners}, .triangles = triangles_of(pane.corners, pane.n), .n = pane.n});
+    RoomSides rooms(faces.size(), 0);
+    const Borders borders(std::move(faces), tolerance);
+    if (!find_rooms(borders, first, rooms)) return {};
     Enclosure out;
     for (std::size_t i = 0; i < scene.panes().size(); ++i) {
         Pane window = scene.panes()[i];
-        if (borders.face(first + i).sense < 0) std::reverse(window.corners.begin(), window.corners.end());
+        if (rooms[first + i] == behind) std::reverse(window.corners.begin(), window.corners.end());
         window.n = normalized(area_vector(window.corners));
         out.windows.push_back(std::move(window));
     }
     if (any_face_each_other(out.windows, tolerance)) return {};
     Hull hull;
-    for (std::size_t f = 0; f < first; ++f)
-        if (borders.face(f).is_in)
-            for (const Triangle& t : borders.face(f).triangles) hull.add(t);
-    for (const Pane& window : out.windows)
-        for (const Triangle& t : triangles_of(window.corners, window.n)) hull.add(t);
+    for (std::size_t f = 0; f < rooms.size(); ++f)
+        for (const Triangle& t : borders.face(f).triangles) {
+            if (rooms[f] == in_front) hull.add(t);
+            if (rooms[f] == behind) hull.add({t[0], t[2], t[1]});
+        }
     hull.finish();
     out.is_within.resize(scene.regions().size());
     for (const RegionId r : scene.regions().ids()) out.is_within[r] = winds_about(scene, r, hull, 2 * tolerance);

@@ -18,10 +18,10 @@ struct Enclosure {
 
 /// Empty where the scene has no panes or no sky, or where one of these cannot be made sure of:
 ///
-/// - The faces' borders, each run through in its own sense and cut where panes stand across it, and the panes' cancel
-///   out, once faces with free edges (furniture, ground, outsides) are left aside: then the rest is a closed surface,
-///   and every way from where it winds about to the outside passes it. The face with most in its own border of what is
-///   too much goes first; panes stay, turned as the faces ask for, or to where more ways out meet faces.
+/// - Who walks on a pane's inner side and steps over edges, cut where corners lie on them, onto the side that faces him
+///   there, over free ones onto the back, never comes to its outer side. The faces of which he comes by one side are a
+///   closed surface; furniture, partitions and what else hangs on it have both. Every way from where it winds about to
+///   the outside passes it. The space before the inner side has an end, that before the outer one has none.
 /// - Of no two panes some of either lies beyond the other, seen from within: what leaves by one comes in by none.
 /// - A region is within where the surface winds about all of its triangles, which cross no part of it.
 ///

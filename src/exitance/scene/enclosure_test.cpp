@@ -110,6 +110,48 @@ TEST(Enclosure, FurnitureAndPartitionsAreWithin) {
     EXPECT_EQ(held(room.scene()), room.scene().regions().size());
 }
 
+/// Gives every face its back, as formats have it whose faces shine on both sides.
+void add_backs(Room& room) {
+    const std::vector<SceneDescription::Face> faces = room.d.faces;
+    for (SceneDescription::Face f : faces) {
+        std::reverse(f.corners.begin(), f.corners.end());
+        room.d.faces.push_back(std::move(f));
+    }
+}
+
+TEST(Enclosure, FacesMayHaveLightOnBothSides) {
+    Room room;
+    const std::size_t indoors = room.scene().regions().size();
+    add_backs(room);
+    EXPECT_EQ(held(room.scene()), indoors) << "their backs are outside";
+    EXPECT_NEAR(find_enclosure(room.scene()).windows.at(0).n.y, -1, 1e-12) << "inwards";
+    Room shaded;
+    shaded.face({{0, 3, 2.5}, {0, 4, 2.5}, {4, 4, 2.5}, {4, 3, 2.5}});
+    add_backs(shaded);
+    EXPECT_EQ(held(shaded.scene()), indoors - 1) << "but for the ceiling, of which a part is a roof that juts out";
+    Room open;
+    open.d.faces.erase(open.d.faces.begin() + 3);
+    add_backs(open);
+    EXPECT_EQ(held(open.scene()), 0u) << "without a wall";
+}
+
+TEST(Enclosure, RoomsMayShareAWallOfOneFaceWithTwoSides) {
+    Room rooms;
+    const std::vector<SceneDescription::Face> faces = rooms.d.faces;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (i == 3) continue;  // the wall at x = 0, of which the other room's wall takes the place
+        std::vector<Point> corners;
+        for (const std::uint32_t c : faces[i].corners) corners.push_back(rooms.d.points[c] + Vec3{4, 0, 0});
+        rooms.face(corners);
+    }
+    Pane other = rooms.d.panes[0];
+    for (Point& p : other.corners) p.x += 4;
+    rooms.d.panes.push_back(other);
+    const std::size_t before = rooms.scene().regions().size();
+    add_backs(rooms);
+    EXPECT_EQ(held(rooms.scene()), before + 1) << "and the back of the wall between";
+}
+
 TEST(Enclosure, WhatIsNotClosedOrStandsBeforeWindowsHasNone) {
     Room gap;
     for (Point& p : gap.d.points)
