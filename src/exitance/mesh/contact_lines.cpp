@@ -171,13 +171,16 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
     faces_ = Bvh(boxes);
     // Edges between coplanar faces are in nothing's way: borders of regions alone count.
     boxes.clear();
+    const auto add_loop = [&](const std::vector<Point>& loop, RegionId r) {
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const Edge& e = edges_.emplace_back(Edge{loop[i], loop[(i + 1) % loop.size()], r});
+            boxes.emplace_back().add(e.a);
+            boxes.back().add(e.b);
+        }
+    };
     for (RegionId r : scene.regions().ids())
-        for (const std::vector<Point>& loop : scene.regions()[r].loops)
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                const Edge& e = edges_.emplace_back(Edge{loop[i], loop[(i + 1) % loop.size()], r});
-                boxes.emplace_back().add(e.a);
-                boxes.back().add(e.b);
-            }
+        for (const std::vector<Point>& loop : scene.regions()[r].loops) add_loop(loop, r);
+    for (const Pane& pane : scene.panes()) add_loop(pane.corners, RegionId());
     borders_ = Bvh(boxes);
 }
 
@@ -208,6 +211,7 @@ std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, El
     wider.lo -= reach, wider.hi += reach;
     borders_.visit_box(wider, [&](std::uint32_t i) {
         const auto& [a, b, region] = edges_[i];
+        if (region.is_none()) return;  // light passes under a pane's edge
         if (region == own)
             gap_over_border(*scene_, faces_, a, b, own, heights, tolerance_, out);
         else

@@ -11,7 +11,8 @@
 namespace exitance {
 
 /// Where other polygons touch a surface or pass through it. Across such a line light jumps: under a box that stands on
-/// a floor it is dark, beside it not. No polynomial follows that, so elements are cut there.
+/// a floor it is dark, beside it not; on either side of a pane it is unlike. No polynomial follows that: elements are
+/// cut.
 class ContactLines {
   public:
     /// The scene must outlive it. O(n log n).
@@ -54,7 +55,7 @@ class ContactLines {
     };
     const Scene* scene_;
     Bvh faces_, borders_;
-    std::vector<Edge> edges_;  ///< Of borders of regions.
+    std::vector<Edge> edges_;  ///< Of borders of regions, and of panes, which are of none.
     double tolerance_;         ///< Metres; what is nearer than this to a plane touches it.
 };
 

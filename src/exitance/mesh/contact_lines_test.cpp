@@ -33,6 +33,23 @@ TEST(ContactLines, AnElementIsCutWhereAPlateStandsOnIt) {
     EXPECT_FALSE(tree.is_cell(left) || tree.is_cell(right));
 }
 
+TEST(ContactLines, AnElementIsCutWhereAPaneStandsOnIt) {
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1}};
+    Pane pane;
+    pane.corners = {{1, 0, 0}, {1, 4, 0}, {1, 4, 1}, {1, 0, 1}};
+    d.panes = {pane};
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+    ASSERT_EQ(tree.leaves().size(), 2u);
+    EXPECT_NEAR(tree.area(tree.leaf_at(ElementId(0), {0.2499, 0.5}).element), 4, 1e-9) << "on its one side";
+}
+
 TEST(ContactLines, NothingIsCutOnceAStopIsAskedFor) {
     const Scene scene = floor_and_plate(0);
     ElementTree tree;
