@@ -148,19 +148,20 @@ void CrowdedLight::cast(const ReceiverLight& light, const ReceiverLight::Source&
         const Point &name = places[p], x = direct_->receiver(name, light.n, light.own).x;
         const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::direct), bits(name.x), bits(name.y),
                                          bits(name.z), source.piece.value));
+        const SeenPolygon seen(corners, emitter.plane.n, area, x);
         const double reach = 2 * norm(box.hi - box.lo) + norm(x - box.lo);
         for (unsigned begin = first; begin < last;) {
             const auto some = std::min<std::size_t>(together - count, last - begin);
             points.fill(begin, 0, std::span(s).first(some));
             points.fill(begin, 1, std::span(t).first(some));
             for (std::size_t i = 0; i < some; ++i) {
-                const Point y = uniform_on(corners, area, s[i], t[i]);
+                const Point y = seen.at(s[i], t[i]);
                 const Vec3 d = y - x;
-                const double above = dot(light.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
-                if (above <= 0 || below <= 0) continue;
-                kernel[count] = emitter.radiance.towards(x, y) * above * below / (squared * squared);
+                const double weight = seen.weight(d, light.n);
+                if (weight <= 0) continue;
+                kernel[count] = weight * emitter.radiance.towards(x, y);
                 // Of the sky a ray needs the direction alone, and to leave the scene.
-                const double part = is_far ? std::min(1.0, reach / std::sqrt(squared)) : 1;
+                const double part = is_far ? std::min(1.0, reach / norm(d)) : 1;
                 from[count] = {places[p], light.own}, to[count] = {x + part * d, emitter.region};
                 quarter[count++] = 4 * p + 4 * (begin + static_cast<std::uint32_t>(i)) / last;
             }

@@ -11,10 +11,10 @@ namespace exitance {
 /// blocker, a ray next to nothing, and where light is only gathered from, exactness is worth no more than the noise
 /// that may stay:
 ///
-///     E = M F sum over rays of  K_i V_i / sum over rays of  K_i,    K = cos cos / (pi r^2),
+///     E = M F sum over rays of  K_i V_i / sum over rays of  K_i,    K = cos cos / (pi r^2) over their density,
 ///
-/// from a place to places of the source (times its relative radiance), F as if nothing stood in between. A place's net
-/// on the source is named by its coordinates: it has the same light, whoever asks, and places side by side err
+/// from a place to places of the source (SeenPolygon, by its relative radiance), F with nothing in between. A place's
+/// net on the source is named by its coordinates: it has the same light, whoever asks, and places side by side err
 /// independently. Whether a source is crowded is decided without finding all that stands before it: the search ends
 /// where exactness is seen to cost more than rays.
 class CrowdedLight {

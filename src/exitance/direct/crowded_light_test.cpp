@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/geometry/polygon.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 
@@ -136,6 +140,63 @@ TEST(CrowdedLight, TellsTheVarianceOfWhatItFinds) {
     }
     // Of 2,000 squares the mean is known to a thirtieth, or to a tenth, where a few of them hold most of it.
     EXPECT_NEAR(squares / told, 1, 0.25);
+}
+
+/// A lamp of 3 x 2 m, 7 cm above a grid of upright plates with two sides each that run through one another.
+SceneDescription lamp_over_grid() {
+    SceneDescription d;
+    d.materials = {{"grey", Spectrum(0.4), Spectrum(0.0)}, {"lamp", Spectrum(0.0), Spectrum(60.0)}};
+    d.groups = {"all"};
+    const auto face = [&](std::vector<Point> corners, std::uint32_t material) {
+        SceneDescription::Face f;
+        for (const Point& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        f.material = material;
+        d.faces.push_back(f);
+    };
+    const auto plate = [&](const Point& a, const Point& b) {
+        const Vec3 up{0, 0, 0.08};
+        face({a, b, b + up, a + up}, 0), face({a + up, b + up, b, a}, 0);
+    };
+    face({{1, 1, 2.95}, {1, 3, 2.95}, {4, 3, 2.95}, {4, 1, 2.95}}, 1);
+    for (int i = 0; i <= 20; ++i) {
+        plate({1 + 0.15 * i, 1, 2.8}, {1 + 0.15 * i, 3, 2.8});
+        plate({1, 1 + 0.1 * i, 2.8}, {4, 1 + 0.1 * i, 2.8});
+    }
+    return d;
+}
+
+TEST(CrowdedLight, OfALargeLampNearbyIsWhatTheNearPartBrings) {
+    // A plate sees but the part of the lamp above its own cell, 1% of the area and most of the light.
+    const Scene scene = std::move(*make_scene(lamp_over_grid()).scene);
+    const Stage stage(scene);
+    DirectLight::Workspace room;
+    double sum = 0, exact = 0, variance = 0;
+    std::size_t crowds = 0;
+    for (int k = 0; k < 19; ++k) {
+        const SurfaceId plate(1 + 4 * 10);  // at x = 2.5
+        const RegionId own = scene.surfaces()[plate].region;
+        const Normal n = scene.regions()[own].plane.n;
+        const double y = 1 + 0.1 * k, x = 2.5;
+        std::vector<Point> cell{{x, y, 2.8}, {x, y + 0.1, 2.8}, {x, y + 0.1, 2.88}, {x, y, 2.88}};
+        if (dot(area_vector(cell), n) < 0) std::reverse(cell.begin(), cell.end());
+        ReceiverLight rest, whole;
+        const CrowdedLight::Crowd crowd = stage.crowded.prepare(cell, n, own, 4, rest, room);
+        crowds += !crowd.empty();
+        stage.direct.prepare(cell, n, own, whole, room);
+        const std::vector<Point> places{{x, y + 0.03, 2.81}, {x, y + 0.05, 2.84}, {x, y + 0.08, 2.87}};
+        const std::vector<CrowdedLight::Estimate> by_rays = stage.crowded.at(rest, crowd, places, room);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            sum += mean(by_rays[i].irradiance + stage.direct.irradiance(rest, places[i], room));
+            variance += by_rays[i].variance;
+            exact += mean(stage.direct.irradiance(whole, places[i], room));
+        }
+    }
+    EXPECT_GE(crowds, 10u);
+    EXPECT_NEAR(sum, exact, 3 * std::sqrt(variance));
+    EXPECT_LT(std::sqrt(variance), 0.05 * exact) << "else the test tells nothing";
 }
 
 }  // namespace

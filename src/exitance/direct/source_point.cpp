@@ -1,10 +1,43 @@
 #include "exitance/direct/source_point.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "exitance/mesh/element_tree.hpp"
 
 namespace exitance {
+namespace {
+
+constexpr double much_nearer = 1.5;  ///< Farthest over nearest: the kernel changes by up to its fourth power.
+
+/// The square of the distance of x to a convex polygon.
+double nearest_squared(std::span<const Point> corners, const Normal& n, const Point& x) {
+    const std::size_t m = corners.size();
+    double nearest = HUGE_VAL;
+    bool is_inside = true;
+    for (std::size_t i = 0; i < m; ++i) {
+        const Vec3 edge = corners[(i + 1) % m] - corners[i], from = x - corners[i];
+        const double length = squared_norm(edge);
+        is_inside = is_inside && dot(n, cross(edge, from)) >= 0;
+        const double along = length > 0 ? std::clamp(dot(edge, from) / length, 0.0, 1.0) : 0;
+        nearest = std::min(nearest, squared_norm(from - along * edge));
+    }
+    const double height = dot(n, x - corners[0]);
+    return is_inside ? height * height : nearest;
+}
+
+/// The angle at a between the arcs to b and to c, all of length 1.
+double angle_at(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 ab = cross(a, b), ac = cross(a, c);
+    return std::atan2(norm(cross(ab, ac)), dot(ab, ac));
+}
+
+/// Of length 1, at a right angle to b in the plane of both.
+Vec3 turned_to(const Vec3& a, const Vec3& b) {
+    return normalized(a - dot(a, b) * b);
+}
+
+}  // namespace
 
 Point uniform_on(std::span<const Point> corners, double area_of_all, double s, double t) {
     double rest = s * 2 * area_of_all;
@@ -17,6 +50,54 @@ Point uniform_on(std::span<const Point> corners, double area_of_all, double s, d
         }
         rest -= area;
     }
+}
+
+SeenPolygon::SeenPolygon(std::span<const Point> corners, const Normal& n, double area, const Point& x)
+    : corners_(corners), n_(n), area_(area), x_(x) {
+    double farthest = 0;
+    for (const Point& p : corners) farthest = std::max(farthest, squared_norm(p - x));
+    const double nearest = nearest_squared(corners, n, x);
+    constexpr double nothing = 1e-12;  // of the farthest: x lies in the polygon, which then has no directions
+    if (farthest <= much_nearer * much_nearer * nearest || nearest <= nothing * farthest) return;
+    const Vec3 a = normalized(corners[0] - x);
+    for (std::size_t i = 2; i < corners.size(); ++i) {
+        const Vec3 b = normalized(corners[i - 1] - x), c = normalized(corners[i] - x);
+        const double seen = 2 * std::atan2(std::abs(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
+        constexpr double least = 1e-9;  // sr: below it angles lose their digits
+        if (!(seen > least)) continue;
+        triangles_.push_back({a, b, c, angle_at(a, b, c), seen});
+        solid_angle_ += seen;
+    }
+}
+
+Vec3 SeenPolygon::direction(double s, double t) const {
+    double rest = s * solid_angle_;
+    std::size_t k = 0;
+    while (k + 1 < triangles_.size() && rest >= triangles_[k].solid_angle) rest -= triangles_[k++].solid_angle;
+    const auto& [a, b, c, alpha, solid_angle] = triangles_[k];
+    // The part of that area beside the arc ab ends at the arc from b to a point of the arc ac.
+    const double beta = angle_at(b, c, a), gamma = angle_at(c, a, b);
+    const double phi = std::clamp(rest / solid_angle, 0.0, 1.0) * (alpha + beta + gamma - pi) - alpha;
+    const double sine = std::sin(phi), cosine = std::cos(phi), u = cosine - std::cos(alpha);
+    const double v = sine + std::sin(alpha) * dot(a, b);
+    const double down = (v * sine + u * cosine) * std::sin(alpha);
+    const double q = down != 0 ? ((v * cosine - u * sine) * std::cos(alpha) - v) / down : 1;
+    const double along = std::clamp(q, dot(a, c), 1.0);
+    const Vec3 end = along * a + std::sqrt(std::max(0.0, 1 - along * along)) * turned_to(c, a);
+    const double z = 1 - t * (1 - dot(end, b));
+    return z * b + std::sqrt(std::max(0.0, 1 - z * z)) * turned_to(end, b);
+}
+
+Point SeenPolygon::at(double s, double t) const {
+    if (triangles_.empty()) return uniform_on(corners_, area_, s, t);
+    const Vec3 w = direction(s, t);
+    return x_ + (dot(n_, corners_[0] - x_) / dot(n_, w)) * w;
+}
+
+double SeenPolygon::weight(const Vec3& d, const Normal& receiver) const {
+    const double above = dot(receiver, d), below = -dot(n_, d), squared = squared_norm(d);
+    if (above <= 0 || below <= 0) return 0;
+    return triangles_.empty() ? above * below / (squared * squared) : above / std::sqrt(squared);
 }
 
 }  // namespace exitance
