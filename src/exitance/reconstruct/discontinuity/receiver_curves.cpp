@@ -258,10 +258,11 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
                                               : CurveOrder::d2,
                               e.by_edge_of_source ? CurveCause::edge_vertex : CurveCause::vertex_edge, source.region,
                               e.gain});
-    if (source.is_point || effect.gain < options_.least_bend) return;
-    std::erase_if(edges, [&](std::uint32_t e) {
-        return effect_beyond(edges_->edges()[e], source, effect, out) < options_.least_bend;
-    });
+    // Where two edges each leave half of the source, they leave a quarter of it together.
+    const double least = (options_.conics == ConicCurves::all ? 1 : 4) * options_.least_bend;
+    if (source.is_point || effect.gain < least) return;
+    std::erase_if(edges,
+                  [&](std::uint32_t e) { return effect_beyond(edges_->edges()[e], source, effect, out) < least; });
     add_non_emitter_events(region, source, effect.gain, lists, edges, out);
 }
 
