@@ -128,6 +128,7 @@ class Builder {
         return {.least_effect = (weak_ ? mesh_limits::least_kink_among_many : mesh_limits::least_kink) * T,
                 .least_area = mesh_limits::unfindable_area * area_,
                 .least_bend = (weak_ ? mesh_limits::least_bend_among_many : mesh_limits::least_bend) * T,
+                .least_narrow_bend = weak_ ? HUGE_VAL : T,
                 .conics = options_.conics,
                 .secondary = options_.secondary,
                 .stop = &stop_,

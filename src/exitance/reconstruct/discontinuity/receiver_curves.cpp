@@ -248,7 +248,8 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
     }
     out.left_out += edges.size() - strong.size();
     const FlatBox box(out.loops);
-    ShadowEventFinder finder(stage_->occluders, *edges_, {gains, options_.least_bend, options_.stop, lists});
+    ShadowEventFinder finder(stage_->occluders, *edges_,
+                             {gains, options_.least_bend, options_.least_narrow_bend, options_.stop, lists});
     std::vector<ShadowEvent> events;
     finder.find(out.frame, region, box.lo, box.hi, source, strong, events);
     out.wedges += finder.wedges, out.left_out += finder.too_weak, out.ordered.plane_tests += finder.plane_tests;

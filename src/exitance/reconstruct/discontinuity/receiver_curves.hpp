@@ -39,10 +39,11 @@ struct SecondarySource {
 enum class ConicCurves { none, at_umbras, all };
 
 struct CurveOptions {
-    double least_effect = 0;          ///< W/m^2 of rho E: sources that bring less than this have no curves.
-    double least_area = 0;            ///< m^2: smaller regions have contacts alone.
-    std::size_t most_curves = 1'000;  ///< On a region.
-    double least_bend = 0;            ///< W/m^2 of rho E: sources that bring less than this have no D2 curves.
+    double least_effect = 0;              ///< W/m^2 of rho E: sources that bring less than this have no curves.
+    double least_area = 0;                ///< m^2: smaller regions have contacts alone.
+    std::size_t most_curves = 1'000;      ///< On a region.
+    double least_bend = 0;                ///< W/m^2 of rho E: sources that bring less than this have no D2 curves, but
+    double least_narrow_bend = HUGE_VAL;  ///< along half-shadows that are long and narrow those of this have some.
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
     const StopRequest* stop = nullptr;      ///< Once it is requested, what is found is not complete.
