@@ -151,7 +151,11 @@ void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std:
     const auto keep = [&](double to) {
         if (to <= from + shortest) return;
         event.a = shadow(wedge, from), event.b = shadow(wedge, to);
-        if (std::isfinite(event.a.x + event.a.y + event.b.x + event.b.y)) events.push_back(event);
+        if (!std::isfinite(event.a.x + event.a.y + event.b.x + event.b.y)) return;
+        if (is_long_enough(event))
+            events.push_back(event);
+        else
+            ++too_weak;
     };
     for (const auto& [a, b] : hidden_) {
         keep(std::min(a, wedge.last));

@@ -34,9 +34,12 @@ struct WedgeLists {
 /// What the source may bring at most beyond each edge of a blocker, and what an event must bring to be looked for.
 struct EventBounds {
     std::span<const double> gains = {};  ///< By edge, as they are numbered in `among`; empty: any.
-    double least_bend = 0;               ///< Of events that bend light only (D2).
-    const StopRequest* stop = nullptr;   ///< Once it is requested, what is found is not complete.
-    const WedgeLists* lists = nullptr;   ///< By what wedges are clipped; none: by what a tree of boxes finds.
+    double least_bend = 0;               ///< Of events that bend light only (D2),
+    /// or where these are eight times as long as the half-shadow is wide, which bisection would follow by more
+    /// triangles than lines cost.
+    double least_narrow_bend = HUGE_VAL;
+    const StopRequest* stop = nullptr;  ///< Once it is requested, what is found is not complete.
+    const WedgeLists* lists = nullptr;  ///< By what wedges are clipped; none: by what a tree of boxes finds.
 };
 
 /// The corners and edges of a source, the front of whose plane it shines into. A point alone is a source, too: then
@@ -107,9 +110,18 @@ class ShadowEventFinder {
     }
     /// Does an event of so much light count? Those that only bend it count from a limit on.
     bool counts(const ShadowEvent& event) {
-        const bool weak = !source_->is_point && !event.is_kink && event.gain < bounds_.least_bend;
+        const bool weak = is_weak(event) && event.gain < bounds_.least_narrow_bend;
         too_weak += weak;
         return !weak;
+    }
+    bool is_weak(const ShadowEvent& event) const {
+        return !source_->is_point && !event.is_kink && !event.by_blockers_alone && event.gain < bounds_.least_bend;
+    }
+    /// The same of a stretch of it.
+    bool is_long_enough(const ShadowEvent& event) const {
+        constexpr double narrow = 8;
+        const Vec2 d = event.b - event.a;
+        return !is_weak(event) || dot(d, d) > narrow * narrow * event.width * event.width;
     }
 
     const Occluders* occluders_;

@@ -225,13 +225,22 @@ class Arrangement {
         return out;
     }
 
+    /// An end beside a sharp corner is near both of its sides, but a corner of the nearer one alone: a loop that came
+    /// to it twice would enclose nothing in between.
     std::vector<std::vector<Vec2>> split_border() const {
         std::vector<std::vector<Vec2>> out;
         for (const auto& loop : loops_) {
             out.emplace_back();
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                const std::vector<Vec2> stops = stops_on(loop[i], loop[(i + 1) % loop.size()]);
-                out.back().insert(out.back().end(), stops.begin(), stops.end() - 1);
+            const std::size_t n = loop.size();
+            for (std::size_t i = 0; i < n; ++i) {
+                const Vec2 before = loop[(i + n - 1) % n], a = loop[i], b = loop[(i + 1) % n],
+                           after = loop[(i + 2) % n];
+                for (const Vec2 p : stops_on(a, b)) {
+                    if (p == b) continue;
+                    const double here = distance_to(p, a, b);
+                    if (p == a || (here < distance_to(p, before, a) && here <= distance_to(p, b, after)))
+                        out.back().push_back(p);
+                }
             }
         }
         return out;

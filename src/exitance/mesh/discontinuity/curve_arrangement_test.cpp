@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace exitance {
 namespace {
 
@@ -42,6 +45,17 @@ TEST(CurveArrangement, CurvesPassThroughEndsThatLieOnThem) {
     const auto [curves, loops] =
         arranged_curves({curve({0.1, 0.5}, {0.9, 0.5}), curve({0.3, 0.5 + 1e-10}, {0.3, 0.8})}, square, 1e-8);
     EXPECT_EQ(curves.size(), 3u);
+}
+
+TEST(CurveArrangement, AnEndBesideASharpCornerIsACornerOfOneSide) {
+    // Nearer than four tolerances to both sides, but not to the corner: the loop came to it twice, and the triangles
+    // between lost the area behind it.
+    const Vec2 end = {2 - 6e-8, 0};
+    const std::vector<std::vector<Vec2>> sharp = {{{0, 0}, {2, 0}, {0, 1}}};
+    const auto [curves, loops] = arranged_curves({curve({0.5, 0.3}, end)}, sharp, 1e-8);
+    ASSERT_EQ(curves.size(), 1u);
+    EXPECT_EQ(std::count(loops[0].begin(), loops[0].end(), end), 1);
+    EXPECT_EQ(loops[0].size(), 4u);
 }
 
 }  // namespace

@@ -3,53 +3,13 @@
 #include <algorithm>
 
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/core/progress.hpp"
-#include "exitance/core/random.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/methods/light/secondary_light.hpp"
 #include "exitance/reconstruct/discontinuity/source_layers.hpp"
-#include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
 namespace {
-
-/// Regions by the power that they reflect, the most first: of light at a few places of each piece.
-std::vector<SecondarySource> secondary_sources(const Stage& stage, const Solution& solution,
-                                               const ElementLocator& locator, const SecondarySources& asked) {
-    constexpr std::size_t places = 4;
-    const std::size_t pieces = stage.pieces.size();
-    std::vector<double> power(pieces);
-    parallel_ranges(pieces, 64, [&](std::size_t first, std::size_t last) {
-        DirectLight::Workspace workspace;
-        for (std::size_t i = first; i < last; ++i) {
-            const Piece& piece = stage.pieces[i];
-            const Material& material = stage.scene.material(piece.region);
-            const Normal& n = stage.scene.regions()[piece.region].plane.n;
-            for (std::size_t k = 0; k < places; ++k) {
-                // Given by the rule of four places.
-                constexpr double at[places][2] = {{0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}};
-                const Point p = piece.patch.at(uniform_in_shape(piece.patch.shape, at[k][0], at[k][1]));
-                if (stage.occluders.is_covered(p, n, piece.region)) continue;
-                const Spectrum light =
-                    solution.indirect.at(locator.find(piece.region, p)) +
-                    (Spectrum(1.0) - solution.direct_share) * stage.direct.irradiance(p, n, piece.region, workspace);
-                power[i] += piece.patch.area() / places * mean(material.reflectance * light);
-            }
-        }
-    });
-    std::vector<double> of_region(stage.scene.regions().size());
-    for (std::size_t i = 0; i < pieces; ++i) of_region[stage.pieces[i].region.value] += power[i];
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t r = 0; r < of_region.size(); ++r)
-        if (of_region[r] > 0 && of_region[r] >= asked.power.value_or(0)) order.push_back(r);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return of_region[a] > of_region[b]; });
-    if (asked.count && order.size() > *asked.count) order.resize(*asked.count);
-    std::vector<SecondarySource> out;
-    for (const std::uint32_t r : order)
-        out.push_back({RegionId(r), of_region[r] / stage.scene.regions()[RegionId(r)].area});
-    return out;
-}
 
 ConicCurves conics_of(ThreeEdgeEvents asked) {
     return asked == ThreeEdgeEvents::on    ? ConicCurves::all
@@ -90,9 +50,11 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
                              .seed = options.seed,
                              .safe_points = safe_points};
     ask.largest_error = calibrated::largest_dm_error * ask.error;
-    if (options.bounces != 0)
-        ask.indirect = [&](RegionId r, const Point& p) { return solution.indirect.at(locator.find(r, p)); };
     const DiscontinuityChoice& choice = options.discontinuity;
+    if (choice.sources && options.bounces != 0)
+        ask.secondary = secondary_sources(stage, solution, locator, *choice.sources, stop);
+    const SecondaryLight secondary(stage, solution.indirect, locator, ask.secondary, stop);
+    if (options.bounces != 0) ask.indirect = [&](RegionId r, const Point& p) { return secondary.at(r, p); };
     ask.conics = conics_of(choice.three_edges.value_or(ThreeEdgeEvents::automatic));
     ask.triangulation = choice.triangulation.value_or(TriangulationScheme::delaunay);
     ask.penumbra_first = choice.premesh == Premesh::penumbra_first;
@@ -101,8 +63,6 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     ask.by_orderings = choice.structure == OccluderStructure::bsp || ask.merges_volumes;
     ask.refined = choice.quality == MeshQuality::delaunay;
     ask.clough_tocher = choice.element == MeshElement::clough_tocher;
-    if (choice.sources && options.bounces != 0)
-        ask.secondary = secondary_sources(stage, solution, locator, *choice.sources);
     DiscontinuityReport report;
     LayersReport layers;
     if (choice.layers == true && !add_layers(stage, ask, solution, layers, report, stop)) return report;
@@ -122,6 +82,9 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     }
     if (choice.sources) {
         statistics.figures["secondary_sources"] = static_cast<double>(ask.secondary.size());
+        std::size_t parts = 0;
+        for (const SecondarySource& source : ask.secondary) parts += source.parts.size();
+        statistics.figures["secondary_parts"] = static_cast<double>(parts);
         statistics.figures["secondary_curves"] = static_cast<double>(report.secondary_curves);
     }
     if (report.tree_bytes > 0) statistics.figures["dm_tree_bytes"] = static_cast<double>(report.tree_bytes);

@@ -1,7 +1,6 @@
 #include "exitance/reconstruct/discontinuity/discontinuity_mesh.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <optional>
 
 #include "exitance/calibration/numbers.hpp"
@@ -15,8 +14,10 @@
 #include "exitance/reconstruct/discontinuity/mesh_limits.hpp"
 #include "exitance/reconstruct/discontinuity/mesh_progress.hpp"
 #include "exitance/reconstruct/discontinuity/misfit.hpp"
+#include "exitance/reconstruct/discontinuity/node_values.hpp"
 #include "exitance/reconstruct/discontinuity/ordered_light.hpp"
 #include "exitance/reconstruct/discontinuity/receiver_triangles.hpp"
+
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
@@ -50,7 +51,7 @@ class Builder {
             refine(tolerance);
             report_.direct_seconds += watch.restart();
             report_.interrupted = stop_.requested();
-            if (values_.empty()) return {};
+            if (!is_lit_) return {};
             out = finish();
             report_.error = report_.scale > 0 ? error_at_places(out) / report_.scale : 0;
             report_.mesh_seconds += watch.restart();
@@ -95,14 +96,14 @@ class Builder {
         found_.receivers.resize(regions);
         for (const FoundCurves& found : found_.receivers) report_.resumed_receivers += found.is_done;
         report_.resumed_nodes = found_.values.size();
+        values_.resume(std::move(found_.values));
     }
 
-    /// Values that an earlier run knew beyond those that are looked at again remain what there is to go on from.
     void keep() {
         if (!options_.safe_points) return;
         options_.safe_points->pass([&](ArchiveWriter& a) {
-            const bool ahead = values_.size() > found_.values.size();
-            a(found_.receivers, ahead ? values_ : found_.values);
+            std::vector<Spectrum> values = values_.in_order();
+            a(found_.receivers, values);
         });
     }
 
@@ -127,6 +128,7 @@ class Builder {
         return {.least_effect = (weak_ ? mesh_limits::least_kink_among_many : mesh_limits::least_kink) * T,
                 .least_area = mesh_limits::unfindable_area * area_,
                 .least_bend = (weak_ ? mesh_limits::least_bend_among_many : mesh_limits::least_bend) * T,
+                .least_narrow_bend = weak_ ? HUGE_VAL : T,
                 .conics = options_.conics,
                 .secondary = options_.secondary,
                 .stop = &stop_,
@@ -243,29 +245,12 @@ class Builder {
         return shadow_class(stage_.direct, lights_[face], centre, weak_->strong(r));
     }
 
-    /// Exact light at the nodes that have none yet. False, and nothing is done, where a request to stop cuts it short.
-    bool light_nodes() {
-        constexpr std::size_t at_once = 4'096;  // nodes between two safe points
-        const std::size_t before = values_.size(), count = mesh_.nodes().size();
-        if (found_.values.size() > before)
-            values_.insert(values_.end(), found_.values.begin() + static_cast<std::ptrdiff_t>(before),
-                           found_.values.begin() + static_cast<std::ptrdiff_t>(std::min(count, found_.values.size())));
-        while (values_.size() < count) {
-            const std::size_t first_node = values_.size();
-            values_.resize(std::min(count, first_node + at_once));
-            std::atomic<std::size_t> left = values_.size() - first_node;
-            parallel_ranges(values_.size() - first_node, 32, [&](std::size_t first, std::size_t last) {
-                WeakLight::Workspace workspace;
-                for (std::size_t i = first_node + first; i < first_node + last && !stop_.requested(); ++i)
-                    values_[i] = light(mesh_.nodes()[i], workspace), --left;
-            });
-            if (left > 0) {
-                values_.resize(before);
-                return false;
-            }
-            keep();
-        }
-        return true;
+    /// False where a request to stop cuts it short.
+    bool light_nodes(std::vector<std::uint32_t> nodes) {
+        return values_.look_at(
+            std::move(nodes),
+            [&](std::uint32_t n, WeakLight::Workspace& workspace) { return light(mesh_.nodes()[n], workspace); }, stop_,
+            [&] { keep(); });
     }
 
     Spectrum light(const BisectionMesh::Node& node, WeakLight::Workspace& workspace) const {
@@ -282,20 +267,24 @@ class Builder {
         return out;
     }
 
-    /// Of what has changed; an element of Clough and Tocher changes with its neighbours.
-    void renew_misfits() {
-        misfits_.resize(mesh_.triangles().size());
-        const std::vector<std::uint32_t> fresh = mesh_.take_changed();
-        const auto weight_of = [&](std::size_t t) { return weight(region_[mesh_.triangles()[t].face]); };
+    /// Of triangles that have changed, and of others that are not flat enough any more; an element of Clough and Tocher
+    /// changes with its neighbours. False where a request to stop cuts it short.
+    bool renew_misfits(const MisfitLimits& limits) {
+        const auto weight_of = [&](std::uint32_t t) { return weight(region_[mesh_.triangles()[t].face]); };
+        const std::vector<std::uint32_t> fresh = tried_.untried(mesh_, values_.values(), weight_of, limits);
+        if (!light_nodes(TriedTriangles::places(mesh_, fresh))) return false;
         if (options_.clough_tocher) {
             const CloughTocherFit fit = clough_tocher();
-            parallel_for(misfits_.size(), 256,
-                         [&](std::size_t t) { misfits_[t] = fit.misfit(static_cast<std::uint32_t>(t), weight_of(t)); });
+            parallel_for(mesh_.triangles().size(), 256, [&](std::size_t i) {
+                const auto t = static_cast<std::uint32_t>(i);
+                tried_.set(t, fit.misfit(t, weight_of(t)));
+            });
         } else {
             parallel_for(fresh.size(), 256, [&](std::size_t i) {
-                misfits_[fresh[i]] = misfit(mesh_, fresh[i], values_, weight_of(fresh[i]));
+                tried_.set(fresh[i], misfit(mesh_, fresh[i], values_.values(), weight_of(fresh[i])));
             });
         }
+        return true;
     }
     bool is_full() const { return mesh_.triangles().size() >= options_.max_triangles; }
 
@@ -304,17 +293,21 @@ class Builder {
         const MisfitLimits limits{
             tolerance * tolerance * area_, calibrated::part_aim * options_.largest_error * largest_,
             (weak_ ? mesh_limits::unfindable_area_among_many : mesh_limits::unfindable_area) * area_,
-            mesh_limits::shortest_edge * stage_.scene.size()};
+            mesh_limits::shortest_edge * stage_.scene.size(),
+            options_.clough_tocher ? 0 : mesh_limits::tried_area * area_};
         constexpr int most_rounds = 60;
         for (int round = 0; round < most_rounds; ++round) {
-            if (!light_nodes()) {
+            if (!light_nodes(tried_.forget_changed(mesh_))) {
                 if (lit_) mesh_ = std::move(*lit_);
                 return;
             }
-            renew_misfits();
-            const std::vector<std::uint32_t> coarse = coarse_triangles(mesh_, misfits_, limits);
+            is_lit_ = true;
+            if (!renew_misfits(limits)) return;
+            const std::vector<std::uint32_t> coarse = coarse_triangles(mesh_, tried_.misfits(), limits);
             if (coarse.empty() || is_full() || stop_.requested()) return;
-            lit_ = mesh_;
+            // A stop falls back to it: a copy for every tenth of growth takes little time.
+            if (!lit_ || mesh_.triangles().size() - lit_->triangles().size() > lit_->triangles().size() / 10)
+                lit_ = mesh_;
             // Some were bisected for a neighbour's sake: then their misfit is out of date.
             const std::size_t before = mesh_.triangles().size();
             std::vector<std::uint8_t> depth(before);
@@ -350,7 +343,7 @@ class Builder {
     }
 
     SixNodeMesh finish() {
-        SixNodeMesh out = finished_mesh(mesh_, values_, region_,
+        SixNodeMesh out = finished_mesh(mesh_, values_.values(), region_,
                                         [&](std::uint32_t face, const Point& at) { return class_of(face, at); });
         out.curves = curves_;
         if (options_.clough_tocher) clough_tocher().write(out);
@@ -365,7 +358,7 @@ class Builder {
     }
 
     CloughTocherFit clough_tocher() const {
-        return CloughTocherFit(mesh_, values_, [&](std::uint32_t t) {
+        return CloughTocherFit(mesh_, values_.values(), [&](std::uint32_t t) {
             return stage_.scene.regions()[region_[mesh_.triangles()[t].face]].plane.n;
         });
     }
@@ -379,9 +372,10 @@ class Builder {
     std::vector<std::uint8_t> touched_;  ///< By region: does anything cover parts of it?
     std::vector<RegionId> region_;       ///< Of faces.
     std::vector<ReceiverLight> lights_;  ///< Of faces.
-    std::vector<Spectrum> values_;       ///< Of nodes.
-    MeshProgress found_;                 ///< By an earlier run, and what is kept of this one's curves.
-    std::vector<Misfit> misfits_;        ///< Of triangles.
+    NodeValues values_;
+    bool is_lit_ = false;  ///< Has every triangle light?
+    MeshProgress found_;   ///< By an earlier run, and what is kept of this one's curves.
+    TriedTriangles tried_;
     std::optional<OrderedLight> ordered_;
     std::optional<WeakLight> weak_;  ///< Where not all sources are looked at well.
     std::optional<ExactPlaces> places_;

@@ -225,6 +225,25 @@ TEST(DiscontinuityMesh, LayersOfSourcesHoldTheErrorAskedForWithReflectionsToo) {
     }
 }
 
+TEST(DiscontinuityMesh, BendsOfWeakSourcesHaveLinesWhereTheirHalfShadowsAreNarrow) {
+    // A second lamp brings 1 to 5 times the largest error: its shadow's edges are turned against its own.
+    const auto curves_of_second = [](double side) {
+        const double c = std::cos(0.5), d = std::sin(0.5), h = 0.5 * side, exitance = 16 / (side * side);
+        const auto at = [&](double x, double y) { return Point{x * c - y * d, x * d + y * c, 0.7}; };
+        const Scene scene =
+            test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                        {{at(-0.5, -0.5), at(0.5, -0.5), at(0.5, 0.5), at(-0.5, 0.5)}, 0},
+                        {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100},
+                        {{{1.2 - h, h, 1.8}, {1.2 + h, h, 1.8}, {1.2 + h, -h, 1.8}, {1.2 - h, -h, 1.8}}, exitance}});
+        const auto& curves = meshed(scene, 0.02).discontinuity.curves;
+        return std::count_if(curves.begin(), curves.end(), [](const DiscontinuityCurve& curve) {
+            return curve.source == RegionId(3) && curve.region == RegionId(0) && curve.order == CurveOrder::d2;
+        });
+    };
+    EXPECT_GE(curves_of_second(0.02), 8);  // from each of the lamp's corners, along two edges at least
+    EXPECT_EQ(curves_of_second(0.4), 0);   // elements as small as it is wide hold a wide one
+}
+
 TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightWhereItIsAskedTo) {
     // A mirror-bright wall beside the blocker throws its light onto the floor, past the blocker.
     const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},

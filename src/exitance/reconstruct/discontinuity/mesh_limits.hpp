@@ -25,6 +25,10 @@ constexpr double unseen_light = 0.02;  // given by what it adds to an error at m
 /// Of them, too: noise of half of one adds an eighth to it, where it is as large as it may be.
 constexpr double ray_noise = 0.5;
 
+/// Of all area: larger triangles, of which there are a thousand at most, are tried however flat they seem, since six
+/// nodes see nothing of a shadow between them.
+constexpr double tried_area = 1e-3;  // given by the places at which the mesh is held against exact light, a thousand
+
 /// Of the scene's size: triangles are not bisected below it, and borders are seen from as far within.
 constexpr double shortest_edge = 1e-6;  // given by what counts as one plane
 /// Of the scene's size: places nearer than this are one to trees of lines.

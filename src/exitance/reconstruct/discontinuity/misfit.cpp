@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/discontinuity/findable.hpp"
 
 namespace exitance {
@@ -36,6 +37,23 @@ Misfit misfit(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const
     return out;
 }
 
+double bend(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const Spectrum> values,
+            const Spectrum& weight) {
+    const BisectionMesh::Triangle& t = mesh.triangles()[triangle];
+    double out = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Spectrum linear = 0.5 * (values[t.corner[i]] + values[t.corner[(i + 1) % 3]]);
+        const Spectrum off = weight * (values[t.middle[i]] - linear);
+        for (const double v : off.value) out = std::max(out, std::abs(v));
+    }
+    return out;
+}
+
+bool is_flat(double bend, double area, std::size_t triangles, const MisfitLimits& limits) {
+    return area <= limits.tried_area && 2 * bend < limits.largest &&
+           4 * area * bend * bend * static_cast<double>(triangles) < limits.squared;
+}
+
 std::vector<std::uint32_t> coarse_triangles(const BisectionMesh& mesh, std::span<const Misfit> misfits,
                                             const MisfitLimits& limits) {
     double sum = 0;
@@ -52,6 +70,42 @@ std::vector<std::uint32_t> coarse_triangles(const BisectionMesh& mesh, std::span
         if ((misfits[t].squared > share || missing[t] > least) && mesh.longest_edge(t) > limits.shortest_edge)
             coarse.push_back(t);
     return coarse;
+}
+
+std::vector<std::uint32_t> TriedTriangles::forget_changed(BisectionMesh& mesh) {
+    is_tried_.resize(mesh.triangles().size(), 0), misfits_.resize(mesh.triangles().size());
+    std::vector<std::uint32_t> nodes;
+    for (const std::uint32_t t : mesh.take_changed()) {
+        const BisectionMesh::Triangle& now = mesh.triangles()[t];
+        nodes.insert(nodes.end(), now.corner.begin(), now.corner.end());
+        nodes.insert(nodes.end(), now.middle.begin(), now.middle.end());
+        is_tried_[t] = 0, misfits_[t] = {};
+    }
+    return nodes;
+}
+
+std::vector<std::uint32_t> TriedTriangles::untried(const BisectionMesh& mesh, std::span<const Spectrum> values,
+                                                   const std::function<Spectrum(std::uint32_t)>& weight,
+                                                   const MisfitLimits& limits) const {
+    const std::size_t count = misfits_.size();
+    std::vector<std::uint8_t> is_next(count);
+    parallel_for(count, 256, [&](std::size_t i) {
+        const auto t = static_cast<std::uint32_t>(i);
+        is_next[t] = !is_tried_[t] && !is_flat(bend(mesh, t, values, weight(t)), mesh.area(t), count, limits);
+    });
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t t = 0; t < count; ++t)
+        if (is_next[t]) out.push_back(t);
+    return out;
+}
+
+std::vector<std::uint32_t> TriedTriangles::places(const BisectionMesh& mesh, std::span<const std::uint32_t> triangles) {
+    std::vector<std::uint32_t> nodes;
+    for (const std::uint32_t t : triangles) {
+        nodes.push_back(mesh.triangles()[t].inner);
+        for (const auto& q : mesh.triangles()[t].quarter) nodes.insert(nodes.end(), q.begin(), q.end());
+    }
+    return nodes;
 }
 
 }  // namespace exitance

@@ -66,7 +66,7 @@ TEST(OrderedLight, IsTheLightThatShaftsFind) {
 
 TEST(OrderedLight, WedgesAreClippedToTheSameCurvesAsByATreeOfBoxes) {
     const auto curves = [](const Scene& scene, OccluderStructure structure) {
-        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.05};
+        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
         options.discontinuity.structure = structure;
         return solved(scene, options);
     };

@@ -78,7 +78,8 @@ void CurveFinder::look_at_strong(RegionId number, ReceiverCurves& out, DirectLig
         const DirectLight::Emitter& emitter = stage_->direct.emitters()[s.emitter];
         const Effect effect{.centre = emitter.centre,
                             .radius = emitter.radius,
-                            .weight = mean(light_weight(stage_->scene.material(number)) * emitter.exitance)};
+                            .weight = mean(light_weight(stage_->scene.material(number)) * emitter.exitance),
+                            .area = stage_->scene.regions()[emitter.region].area};
         if (region.area >= options_.least_area &&
             greatest_effect(number, emitter, s.emitter, effect) >= options_.least_effect)
             sources.push_back(s);
@@ -143,7 +144,7 @@ void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out)
 }
 
 /// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
-double CurveFinder::greatest_effect(RegionId region, RegionId source, const Effect& effect) const {
+double CurveFinder::greatest_effect(RegionId region, const Effect& effect) const {
     Box box;
     for (const auto& loop : stage_->scene.regions()[region].loops)
         for (const Point& p : loop) box.add(p);
@@ -153,14 +154,14 @@ double CurveFinder::greatest_effect(RegionId region, RegionId source, const Effe
         squared_gap += gap * gap;
     }
     const double distance = std::max(0.0, std::sqrt(squared_gap) - effect.radius);
-    const double area = stage_->scene.regions()[source].area;
+    const double area = effect.area;
     return effect.weight * (area < pi * distance * distance ? area / (pi * distance * distance) : 1);
 }
 
 /// The same of an emitter, of which more may be known.
 double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
                                     const Effect& effect) const {
-    const double by_distance = greatest_effect(region, emitter.region, effect);
+    const double by_distance = greatest_effect(region, effect);
     if (!options_.weak) return by_distance;
     const double M = mean(emitter.exitance);
     return std::min(by_distance, M > 0 ? effect.weight * options_.weak->bound(region, number) / M : 0);
@@ -183,9 +184,8 @@ double CurveFinder::effect_beyond(const BlockerEdges::Edge& edge, const EventSou
     for (const auto& loop : source.loops)
         for (const Point& p : loop) rise = std::max(rise, receiver.frame.height(p));
     const double out = std::max(source.plane.signed_distance(edge.a), source.plane.signed_distance(edge.b));
-    const double area = stage_->scene.regions()[source.region].area;
     const double cosines = std::min(1.0, rise / d) * std::clamp(out / d, 0.0, 1.0);
-    return std::min(effect.gain, effect.weight * cosines * area / (pi * d * d));
+    return std::min(effect.gain, effect.weight * cosines * effect.area / (pi * d * d));
 }
 
 void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
@@ -201,7 +201,8 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         if (stage_->direct.is_distant(number)) continue;  // bisection follows the shadows of skies and suns
         Effect effect{.centre = emitter.centre,
                       .radius = emitter.radius,
-                      .weight = mean(light_weight(stage_->scene.material(region)) * emitter.exitance)};
+                      .weight = mean(light_weight(stage_->scene.material(region)) * emitter.exitance),
+                      .area = stage_->scene.regions()[emitter.region].area};
         effect.gain = greatest_effect(region, emitter, number, effect);
         if (effect.gain < options_.least_effect) {
             ++out.left_out;
@@ -247,7 +248,8 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
     }
     out.left_out += edges.size() - strong.size();
     const FlatBox box(out.loops);
-    ShadowEventFinder finder(stage_->occluders, *edges_, {gains, options_.least_bend, options_.stop, lists});
+    ShadowEventFinder finder(stage_->occluders, *edges_,
+                             {gains, options_.least_bend, options_.least_narrow_bend, options_.stop, lists});
     std::vector<ShadowEvent> events;
     finder.find(out.frame, region, box.lo, box.hi, source, strong, events);
     out.wedges += finder.wedges, out.left_out += finder.too_weak, out.ordered.plane_tests += finder.plane_tests;
@@ -258,10 +260,11 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
                                               : CurveOrder::d2,
                               e.by_edge_of_source ? CurveCause::edge_vertex : CurveCause::vertex_edge, source.region,
                               e.gain});
-    if (source.is_point || effect.gain < options_.least_bend) return;
-    std::erase_if(edges, [&](std::uint32_t e) {
-        return effect_beyond(edges_->edges()[e], source, effect, out) < options_.least_bend;
-    });
+    // Where two edges each leave half of the source, they leave a quarter of it together.
+    const double least = (options_.conics == ConicCurves::all ? 1 : 4) * options_.least_bend;
+    if (source.is_point || effect.gain < least) return;
+    std::erase_if(edges,
+                  [&](std::uint32_t e) { return effect_beyond(edges_->edges()[e], source, effect, out) < least; });
     add_non_emitter_events(region, source, effect.gain, lists, edges, out);
 }
 
@@ -296,31 +299,34 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
                 {c.places[i - 1], c.places[i], CurveOrder::eee, CurveCause::three_edges, source.region, gain});
 }
 
-/// What stands between the region and each secondary source is found by the shaft between them.
+/// What stands between the region and each part of a secondary source is found by the shaft between them.
 void CurveFinder::add_secondary(RegionId region, ReceiverCurves& out) const {
     const Region& receiver = stage_->scene.regions()[region];
     const std::vector<Point> outline = convex_around(receiver, out);
     Shaft shaft;
     std::vector<PieceId> candidates;
     for (const SecondarySource& s : options_.secondary) {
-        if (s.region == region || (options_.stop && options_.stop->requested())) continue;
-        const Region& source = stage_->scene.regions()[s.region];
-        const std::vector<Point> from = convex_around(source, ReceiverCurves(source));
-        shaft.set(stage_->occluders, {outline, receiver.plane.n, region}, {from, source.plane.n, s.region});
-        if (shaft.classify(candidates) != View::mixed) continue;
-        Point centre;
-        for (const Point& p : from) centre = centre + (1.0 / static_cast<double>(from.size())) * p;
-        double radius = 0;
-        for (const Point& p : from) radius = std::max(radius, norm(p - centre));
-        Effect effect{.centre = centre,
-                      .radius = radius,
-                      .weight = s.radiosity * mean(light_weight(stage_->scene.material(region)) * Spectrum(1.0))};
-        effect.gain = greatest_effect(region, s.region, effect);
-        if (effect.gain < options_.least_effect) {
-            ++out.left_out;
-            continue;
+        if (s.region == region) continue;
+        const Plane& plane = stage_->scene.regions()[s.region].plane;
+        for (const SecondarySource::Part& part : s.parts) {
+            if (options_.stop && options_.stop->requested()) return;
+            shaft.set(stage_->occluders, {outline, receiver.plane.n, region}, {part.outline, plane.n, s.region});
+            if (shaft.classify(candidates) != View::mixed) continue;
+            Point centre;
+            for (const Point& p : part.outline) centre = centre + (1.0 / static_cast<double>(part.outline.size())) * p;
+            double radius = 0;
+            for (const Point& p : part.outline) radius = std::max(radius, norm(p - centre));
+            Effect effect{.centre = centre,
+                          .radius = radius,
+                          .weight = mean(light_weight(stage_->scene.material(region)) * part.radiosity),
+                          .area = part.area};
+            effect.gain = greatest_effect(region, effect);
+            if (effect.gain < options_.least_effect) {
+                ++out.left_out;
+                continue;
+            }
+            add_events(region, {{part.outline}, plane, s.region, false, 2 * radius}, effect, candidates, nullptr, out);
         }
-        add_events(region, {source.loops, source.plane, s.region, false, 2 * radius}, effect, candidates, nullptr, out);
     }
 }
 

@@ -24,20 +24,26 @@ struct ReceiverCurves {
     OrderedLight::Counts ordered;          ///< What was done by orderings.
 };
 
-/// A surface whose reflected light has shadows, too.
+/// A surface whose reflected light has shadows, too, in parts over which it is even.
 struct SecondarySource {
+    struct Part {
+        std::vector<Point> outline;  ///< Convex, counter-clockwise seen from the front, metres.
+        Spectrum radiosity;          ///< W/m^2
+        double area = 0;             ///< m^2
+    };
     RegionId region;
-    double radiosity = 0;  ///< W/m^2, mean of the bands.
+    std::vector<Part> parts;
 };
 
 /// Which lines of three edges are looked for.
 enum class ConicCurves { none, at_umbras, all };
 
 struct CurveOptions {
-    double least_effect = 0;          ///< W/m^2 of rho E: sources that bring less than this have no curves.
-    double least_area = 0;            ///< m^2: smaller regions have contacts alone.
-    std::size_t most_curves = 1'000;  ///< On a region.
-    double least_bend = 0;            ///< W/m^2 of rho E: sources that bring less than this have no D2 curves.
+    double least_effect = 0;              ///< W/m^2 of rho E: sources that bring less than this have no curves.
+    double least_area = 0;                ///< m^2: smaller regions have contacts alone.
+    std::size_t most_curves = 1'000;      ///< On a region.
+    double least_bend = 0;                ///< W/m^2 of rho E: sources that bring less than this have no D2 curves, but
+    double least_narrow_bend = HUGE_VAL;  ///< along half-shadows that are long and narrow those of this have some.
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
     const StopRequest* stop = nullptr;      ///< Once it is requested, what is found is not complete.
@@ -71,6 +77,7 @@ class CurveFinder {
         Point centre;            ///< Of a ball around the source.
         double radius = 0;       ///< Metres.
         double weight = 0;       ///< Its exitance times the region's reflectance; 0: `gain` is all there is to know.
+        double area = 0;         ///< Of the source, m^2.
     };
     void add_events(RegionId region, ReceiverCurves& out) const;
     void add_events(RegionId region, const EventSource& source, const Effect& effect, std::span<const PieceId> blockers,
@@ -82,7 +89,7 @@ class CurveFinder {
     void add_secondary(RegionId region, ReceiverCurves& out) const;
     double greatest_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
                            const Effect& effect) const;
-    double greatest_effect(RegionId region, RegionId source, const Effect& effect) const;
+    double greatest_effect(RegionId region, const Effect& effect) const;
 
     const Stage* stage_;
     const BlockerEdges* edges_;
