@@ -93,8 +93,8 @@ struct Certifier::Content {
 
     void measure_residuals();
     void tell_p99(Certificate& out);
-    std::vector<Spectrum> mean_residuals(Spectrum ResidualSample::*measured) const;
-    std::vector<Spectrum> response_to(Spectrum ResidualSample::*measured) const;
+    std::vector<Spectrum> mean_residuals(double first) const;
+    std::vector<Spectrum> response_to(double first) const;
     std::vector<Spectrum> late_response() const;
     void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
     Certificate judge();
@@ -118,13 +118,13 @@ void Certifier::Content::measure_residuals() {
 /// The mean residual of each leaf of the coarse mesh. What regions have in common is told by all of their samples; what
 /// a leaf has beyond it by its own few, as far as samples of one leaf agree: beside a concave edge they do, and there
 /// two faces reflect to each other what a mean over the whole face does not show.
-std::vector<Spectrum> Certifier::Content::mean_residuals(Spectrum ResidualSample::*measured) const {
+std::vector<Spectrum> Certifier::Content::mean_residuals(double first) const {
     // A region in several rooms is one in each.
     const std::size_t regions = stage.scene.regions().size();
     std::vector<Spectrum> of_place(regions * std::max<std::size_t>(1, stage.rooms.count()));
     std::vector<double> count(of_place.size());
     const auto place_of = [&](const ResidualSample& s) { return s.room * regions + s.region.value; };
-    const auto residual = [&](const ResidualSample& s) -> const Spectrum& { return s.*measured; };
+    const auto residual = [&](const ResidualSample& s) { return first * s.r1 + (1 - first) * s.r2; };
     for (const ResidualSample& s : samples) {
         const double n = s.weight * static_cast<double>(options.points);
         of_place[place_of(s)] += n * residual(s);
@@ -185,11 +185,12 @@ void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<
     }
 }
 
-/// The coarse response to the mean residuals of one of the two gathers of every sample, less those themselves.
-std::vector<Spectrum> Certifier::Content::response_to(Spectrum ResidualSample::*measured) const {
-    const std::vector<Spectrum> rhs = mean_residuals(measured);
+/// The coarse response to the mean residuals, less those themselves; `first`: the share of the first of the two gathers
+/// of every sample, 0.5 of both alike.
+std::vector<Spectrum> Certifier::Content::response_to(double first) const {
+    const std::vector<Spectrum> rhs = mean_residuals(first);
     std::vector<Spectrum> response = respond({H, rho, rhs, area}, calibrated::refined_residual);
-    if (options.keeps_flux) balance(rhs, response);
+    if (options.keeps_flux && !options.summed) balance(rhs, response);  // sums have no noise to correct
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
 }
@@ -198,10 +199,11 @@ std::vector<Spectrum> Certifier::Content::response_to(Spectrum ResidualSample::*
 /// and noise of their rays apart: in every room the mean of both is made as large as what they agree on, in the mean
 /// square.
 std::vector<Spectrum> Certifier::Content::late_response() const {
-    std::vector<Spectrum> one = response_to(&ResidualSample::r1);
-    if (options.summed) return one;  // without noise
-    const std::vector<Spectrum> other = response_to(&ResidualSample::r2);
-    const std::size_t count = std::max<std::size_t>(1, stage.rooms.count());
+    // Light of a lighter room has to be told from noise in a darker one; where all is one room, means say enough.
+    if (options.summed || stage.rooms.count() == 0) return response_to(0.5);
+    std::vector<Spectrum> one = response_to(1);
+    const std::vector<Spectrum> other = response_to(0);
+    const std::size_t count = stage.rooms.count();
     std::vector<double> agreed(count), all(count);
     std::vector<std::size_t> room(one.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
