@@ -38,16 +38,18 @@ class RowLinker {
         for (ElementId root : tree_.roots()) roots_.push_back(order.first[root]);
     }
 
-    void link(ElementId receiver, std::span<const std::uint32_t> hits, double allowed, std::vector<Link>& out) {
+    /// `counts`: as how many rays each of those counts that `hits` are of; empty: all alike.
+    void link(ElementId receiver, std::span<const std::uint32_t> hits, std::span<const float> counts, double allowed,
+              std::vector<Link>& out) {
         places_.clear();
-        for (std::uint32_t leaf : hits)
-            if (leaf != RayRows::missed) places_.push_back(order_.place[leaf]);
-        std::sort(places_.begin(), places_.end());
+        for (std::size_t k = 0; k < hits.size(); ++k)
+            if (hits[k] != RayRows::missed) places_.push_back({order_.place[hits[k]], counts.empty() ? 1 : counts[k]});
+        std::stable_sort(places_.begin(), places_.end(), [](const Met& a, const Met& b) { return a.leaf < b.leaf; });
         const double rho = mean(light_weight(sites_.stage().scene.material(tree_.region(receiver)))) /
                            static_cast<double>(hits.size());
         const double strength = rho * std::sqrt(tree_.area(receiver));
         for (std::size_t begin = 0; begin < places_.size();) {
-            const auto root = std::upper_bound(roots_.begin(), roots_.end(), places_[begin]) - roots_.begin() - 1;
+            const auto root = std::upper_bound(roots_.begin(), roots_.end(), places_[begin].leaf) - roots_.begin() - 1;
             const ElementId source = tree_.roots()[static_cast<std::size_t>(root)];
             begin += link_to(source, std::span(places_).subspan(begin), receiver, allowed / strength,
                              1 / static_cast<float>(hits.size()), out);
@@ -55,17 +57,26 @@ class RowLinker {
     }
 
   private:
+    /// What a ray met: where its leaf stands in the order, and as how many rays it counts.
+    struct Met {
+        std::uint32_t leaf;
+        float counts;
+    };
+
     /// `places`: sorted, those of the source first. Returns how many those are.
-    std::size_t link_to(ElementId source, std::span<const std::uint32_t> places, ElementId receiver, double allowed,
-                        float share, std::vector<Link>& out) {
+    std::size_t link_to(ElementId source, std::span<const Met> places, ElementId receiver, double allowed, float share,
+                        std::vector<Link>& out) {
         const std::uint32_t end = order_.first[source] + order_.count[source];
-        const auto count =
-            static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), end) - places.begin());
-        if (count == 0) return 0;
-        if (tree_.is_leaf(source) || static_cast<double>(count) * roughness_[source] <= allowed) {
+        const auto last = std::lower_bound(places.begin(), places.end(), end,
+                                           [](const Met& met, std::uint32_t leaf) { return met.leaf < leaf; });
+        const auto count = static_cast<std::size_t>(last - places.begin());
+        float rays = 0;
+        for (const Met& met : places.first(count)) rays += met.counts;
+        if (!(rays > 0)) return count;
+        if (tree_.is_leaf(source) || static_cast<double>(rays) * roughness_[source] <= allowed) {
             Link& link = out.emplace_back();
             link.receiver = receiver, link.source = source;
-            link.factor = static_cast<float>(count) * share;
+            link.factor = rays * share;
             return count;
         }
         std::size_t begin = 0;
@@ -78,8 +89,8 @@ class RowLinker {
     const LinkSites& sites_;
     const LeafOrder& order_;
     const Field<ElementId, double>& roughness_;
-    std::vector<std::uint32_t> roots_;   ///< Where the leaves of each begin.
-    std::vector<std::uint32_t> places_;  ///< Of the leaves that were hit.
+    std::vector<std::uint32_t> roots_;  ///< Where the leaves of each begin.
+    std::vector<Met> places_;           ///< What the rays of a leaf met.
 };
 
 }  // namespace
@@ -97,7 +108,7 @@ Links link_by_rays(const LinkSites& sites, const LeafNumbering& numbering, const
             RowLinker linker(sites, order, roughness);
             const std::size_t end = std::min(numbering.leaves.size(), (block + 1) * block_size);
             for (std::size_t i = block * block_size; i < end; ++i)
-                linker.link(numbering.leaves[i], rows.hits(i), allowed, found[block]);
+                linker.link(numbering.leaves[i], rows.hits(i), rows.counts(i), allowed, found[block]);
             note_touched("links", found[block].size());
         },
         {"link rows", [&](std::size_t block) { return tree.region(numbering.leaves[block * block_size]).value; }});

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "exitance/form_factors/met_directions.hpp"
+#include "exitance/transport/portal_aim.hpp"
 
 namespace exitance {
 
@@ -13,7 +14,8 @@ std::span<const QuarterSums> quarter_sums(const ReflectedLight& b, std::size_t p
     w.values.resize(w.fronts.size());
     b.read(w.fronts, w.values);
     w.sums.assign(places, {});
-    for (std::size_t k = 0; k < w.fronts.size(); ++k) w.sums[w.share[k] / 4][w.share[k] % 4] += w.values[k];
+    for (std::size_t k = 0; k < w.fronts.size(); ++k)
+        w.sums[w.share[k] / 4][w.share[k] % 4] += w.counts.empty() ? w.values[k] : w.counts[k] * w.values[k];
     return w.sums;
 }
 
@@ -29,12 +31,11 @@ Gathered estimate(QuarterSums quarter, unsigned rays) {
     return out;
 }
 
-/// `rays` rays from each of the places of a plane, those of their points from `first` on, and the fronts that they hit.
-void cast_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
-                   unsigned rays, unsigned first, GatherWorkspace& w) {
-    const std::size_t all = places.size() * rays;
-    w.origins.resize(all), w.directions.resize(all), w.hits.resize(all), w.quarter.resize(all);
-    for (std::size_t d = 0; d < 2; ++d) w.coordinates[d].resize(rays), w.sorted[d].resize(all);
+/// Rays with density cos / pi from each of the places of a plane, those of their points from `first` on, at the
+/// beginning of `w`; the points of each are named by its key and `name`.
+void choose_evenly(std::span<const GatherPlace> places, unsigned rays, unsigned first, std::uint64_t name,
+                   GatherWorkspace& w) {
+    for (std::size_t d = 0; d < 2; ++d) w.coordinates[d].resize(rays), w.sorted[d].resize(places.size() * rays);
     // The tracer is fastest with packets of like directions. A power of two of these points fills every cell of a
     // grid over the unit square alike: so a packet is a cell, with sixteen points of one place or with some of each.
     constexpr std::size_t packet = 16;
@@ -43,7 +44,7 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
     const int bits = std::bit_width(rays) - std::bit_width(per_cell);
     const std::uint32_t columns = 1u << (bits - bits / 2), rows = 1u << (bits / 2);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const ScrambledSobol points(places[i].key);
+        const ScrambledSobol points(name == 0 ? places[i].key : hash(places[i].key, name));
         for (int d = 0; d < 2; ++d) points.fill(first, d, w.coordinates[static_cast<std::size_t>(d)]);
         w.filled.assign(columns * rows, 0);
         for (std::uint32_t k = 0; k < rays; ++k) {
@@ -57,14 +58,54 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
             w.quarter[slot] = static_cast<std::uint32_t>(4 * i + 4 * k / rays);
         }
     }
-    met_directions(stage.scene, own, n, w.sorted[0], w.sorted[1], w.directions);
+}
+
+/// Names of points of places whose rays are partly aimed: those that are not, and those that are.
+constexpr std::uint64_t not_aimed = 1, at_openings = 2;
+
+/// Of places that aim, as many rays as `even` after those that are cast evenly, and as how many rays all of them count.
+void aim_others(std::span<const GatherPlace> places, std::span<const PortalCell> cells, const Normal& n, unsigned even,
+                unsigned first, std::vector<double>& counts, GatherWorkspace& w) {
+    std::vector<PortalAim> aims(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) aims[i].set(cells, places[i].x, n);
+    const std::size_t all = places.size() * even;
+    for (std::size_t k = 0; k < all; ++k)
+        counts[k] = aims[w.quarter[k] / 4].is_aimed_at(w.directions[k]) ? 0 : PortalAim::share;
+    std::size_t slot = all;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const ScrambledSobol points(hash(places[i].key, at_openings));
+        for (int d = 0; d < 2; ++d) points.fill(first, d, w.coordinates[static_cast<std::size_t>(d)]);
+        for (std::uint32_t k = 0; k < even; ++k, ++slot) {
+            const PortalAim::Ray ray = aims[i].aimed(w.coordinates[0][k], w.coordinates[1][k]);
+            w.origins[slot] = places[i].x, w.directions[slot] = ray.direction;
+            w.quarter[slot] = static_cast<std::uint32_t>(4 * i + 4 * k / even);
+            counts[slot] = PortalAim::share * ray.weight;
+        }
+    }
+}
+
+/// `rays` rays from each of the places of a plane, those of their points from `first` on, and the fronts that they hit.
+/// Half of them are aimed at openings where that is worth it; not of so few that quarters of them have none.
+void cast_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
+                   unsigned rays, unsigned first, GatherWorkspace& w) {
+    constexpr unsigned fewest_aimed = 4;
+    const std::span<const PortalCell> cells =
+        rays >= 2 * fewest_aimed ? PortalAim::candidates(stage, own, places[0].x, n) : std::span<const PortalCell>();
+    const std::size_t all = places.size() * rays;
+    w.origins.resize(all), w.directions.resize(all), w.hits.resize(all), w.quarter.resize(all);
+    const unsigned even = cells.empty() ? rays : rays / 2, from = cells.empty() ? first : first / 2;
+    choose_evenly(places, even, from, cells.empty() ? 0 : not_aimed, w);
+    met_directions(stage.scene, own, n, w.sorted[0], w.sorted[1], std::span(w.directions).first(places.size() * even));
+    std::vector<double> counts(cells.empty() ? 0 : all);
+    if (!cells.empty()) aim_others(places, cells, n, even, from, counts, w);
     stage.tracer.nearest(w.origins, w.directions, own, w.hits);
-    w.fronts.clear(), w.share.clear();
+    w.fronts.clear(), w.share.clear(), w.counts.clear();
     for (std::size_t k = 0; k < all; ++k) {
         const RayHit& hit = w.hits[k];
-        if (hit.surface.is_none() || !hit.front) continue;
+        if (hit.surface.is_none() || !hit.front || (!cells.empty() && counts[k] == 0)) continue;
         w.fronts.push_back({hit.region, w.origins[k] + hit.distance * w.directions[k]});
         w.share.push_back(w.quarter[k]);
+        if (!cells.empty()) w.counts.push_back(counts[k]);
     }
 }
 

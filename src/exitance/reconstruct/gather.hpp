@@ -59,6 +59,7 @@ struct GatherWorkspace {
     std::vector<std::uint32_t> quarter;  ///< 4 times the place that a ray comes from, and the quarter of its points.
     std::vector<HitPoint> fronts;        ///< What there is to read,
     std::vector<std::uint32_t> share;    ///< the quarter that it counts in,
+    std::vector<double> counts;          ///< as how many rays, where some are aimed at openings (`PortalAim`),
     std::vector<Spectrum> values;        ///< what was read,
     std::vector<QuarterSums> sums;       ///< and what it makes for each place.
     std::vector<std::uint32_t> filled;   ///< Rays in each cell so far.

@@ -4,11 +4,12 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
+#include "exitance/transport/portal_aim.hpp"
 
 namespace exitance {
 
 void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first,
-                       Leave leave) {
+                       Leave leave, std::span<float> counts) {
     const std::size_t count = leaves.size();
     const Patch& patch = tree_.patch(e);
     const RegionId region = leave == Leave::as_met ? tree_.region(e) : RegionId();
@@ -22,6 +23,7 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
     for (std::size_t k = 0; k < count; ++k)
         origins_[k] = patch.at(tree_.uniform(e, coordinates_[2][k], coordinates_[3][k]));
     met_directions(stage_.scene, region, n, coordinates_[0], coordinates_[1], directions_);
+    if (!counts.empty()) aim(tree_.region(e), n, patch.at(tree_.centre(e)), counts);
     stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_);
     queries_.clear(), of_ray_.clear();
     std::fill(leaves.begin(), leaves.end(), missed);
@@ -32,6 +34,26 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
     }
     locator_.leaves().find(queries_);
     for (std::size_t k = 0; k < queries_.size(); ++k) leaves[of_ray_[k]] = queries_[k].leaf;
+}
+
+/// The second half of the rays is turned towards openings, if that is worth it at `centre`.
+void ElementRays::aim(RegionId region, const Normal& n, const Point& centre, std::span<float> counts) {
+    std::fill(counts.begin(), counts.end(), 1.0f);
+    const std::span<const PortalCell> cells = PortalAim::candidates(stage_, region, centre, n);
+    if (cells.empty()) return;
+    PortalAim aim;
+    const std::size_t half = counts.size() / 2;
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+        aim.set(cells, origins_[k], n);
+        double weight = 1;
+        if (k < half) {
+            weight = aim.is_aimed_at(directions_[k]) ? 0 : 1;
+        } else {
+            const PortalAim::Ray ray = aim.aimed(coordinates_[0][k], coordinates_[1][k]);
+            directions_[k] = ray.direction, weight = ray.weight;
+        }
+        counts[k] = static_cast<float>(PortalAim::share * weight);
+    }
 }
 
 }  // namespace exitance

@@ -24,11 +24,14 @@ class ElementRays {
         : stage_(stage), tree_(tree), locator_(locator) {}
 
     /// Writes for each ray the number of the leaf whose front it hits, or `missed`. The rays are named by `key`; they
-    /// are as many of its points from number `first` on.
+    /// are as many of its points from number `first` on. With `counts`, as many as rays, half of the rays are aimed at
+    /// openings where that is worth it (`PortalAim`), and each counts as so many.
     void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0,
-              Leave leave = Leave::front);
+              Leave leave = Leave::front, std::span<float> counts = {});
 
   private:
+    void aim(RegionId region, const Normal& n, const Point& centre, std::span<float> counts);
+
     const Stage& stage_;
     const ElementTree& tree_;
     const ElementLocator& locator_;

@@ -115,6 +115,36 @@ std::size_t best_cut(const Cuts& cuts) {
     return best;
 }
 
+/// Moves leaves to the side that they see most of. An order by few rays has some on the wrong side of a cut, where the
+/// light of one room would be judged by that of the other. None, if a side is left without leaves.
+std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween sides, std::uint16_t part) {
+    constexpr int most_sweeps = 8;
+    std::vector<std::uint8_t> is_large(flow.area.size());
+    for (std::uint32_t i : sides.large) is_large[i] = 1;
+    LeafNumbers all = sides.small;
+    all.insert(all.end(), sides.large.begin(), sides.large.end());
+    std::sort(all.begin(), all.end());
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+        std::vector<std::uint8_t> next = is_large;
+        for (std::uint32_t i : all) {
+            int towards_large = 0;
+            for (std::uint32_t j : flow.rows.hits(i))
+                if (j != RayRows::missed && flow.part[j] == part) towards_large += is_large[j] ? 1 : -1;
+            if (towards_large != 0) next[i] = towards_large > 0 ? 1 : 0;
+        }
+        if (std::exchange(is_large, next) == next) break;
+    }
+    OpeningBetween out;
+    double small = 0, large = 0;  // m^2
+    for (std::uint32_t i : all) {
+        (is_large[i] ? out.large : out.small).push_back(i);
+        (is_large[i] ? large : small) += flow.area[i];
+    }
+    if (out.small.empty() || out.large.empty()) return std::nullopt;
+    if (small > large) std::swap(out.small, out.large);
+    return out;
+}
+
 }  // namespace
 
 std::optional<OpeningBetween> find_opening(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part) {
@@ -125,9 +155,7 @@ std::optional<OpeningBetween> find_opening(const Flow& flow, const LeafNumbers& 
     const std::size_t cut = best_cut(cuts);
     if (cut == 0) return std::nullopt;
     const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cut);
-    OpeningBetween out{{order.begin(), middle}, {middle, order.end()}};
-    if (2 * cuts.area[cut - 1] > cuts.area.back()) std::swap(out.small, out.large);
-    return out;
+    return by_what_is_seen(flow, {{order.begin(), middle}, {middle, order.end()}}, part);
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include "exitance/core/disjoint_sets.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/transport/light_openings.hpp"
+#include "exitance/transport/light_portals.hpp"
 
 namespace exitance {
 namespace {
@@ -281,8 +282,10 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
         out.mean_area_ += parts[room].area / static_cast<double>(parts.size());
         for (std::uint32_t i : parts[room].leaves) out.room_of_[numbering.leaves[i]] = static_cast<std::uint16_t>(room);
     }
+    out.tree_ = tree, out.locator_ = std::move(locator);
+    const std::vector<double> light = coarse_light(stage, out, *tree, numbering, rows);
     out.weigh(*tree, numbering, rows);
-    out.tree_ = std::move(tree), out.locator_ = std::move(locator);
+    out.portals_ = find_light_portals(stage, out, *tree, numbering, light, seed, stop);
     return out;
 }
 

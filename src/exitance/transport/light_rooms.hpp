@@ -12,6 +12,7 @@ namespace exitance {
 struct Stage;
 struct LeafNumbering;
 class RayRows;
+class LightPortals;
 
 /// The rooms of a scene: parts of free space cut at openings smaller than a tenth of their walls. Light of one differs
 /// from that of another by orders of magnitude, so that errors are judged by room: outdoors beside a cellar would hide
@@ -38,6 +39,9 @@ class LightRooms {
     /// The same of all elements of a piece, where they are of one room; the least of theirs where they are of several.
     double importance_of_piece(std::size_t piece) const { return count() > 0 ? piece_importance_[piece] : 1; }
 
+    /// The openings between rooms that rays from the darker one are aimed at; null where there are none.
+    const LightPortals* portals() const { return portals_.get(); }
+
   private:
     void weigh(const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows);
 
@@ -49,6 +53,7 @@ class LightRooms {
     Field<ElementId, std::uint16_t> room_of_;  ///< Of its leaves.
     std::vector<double> piece_importance_;
     Field<ElementId, float> lost_, importance_;
+    std::shared_ptr<const LightPortals> portals_;
 };
 
 /// Light that goes to and fro between coarse elements evens out within a room long before it does between rooms: cuts

@@ -5,6 +5,7 @@
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
 #include "exitance/transport/distributed.hpp"
+#include "exitance/transport/portal_aim.hpp"
 
 namespace exitance {
 namespace {
@@ -23,6 +24,25 @@ std::vector<WeightedPlace> leaf_nodes(const ElementTree& tree, ElementId e) {
     for (const WeightedPlace& node : nodes) sum += node.weight;
     for (WeightedPlace& node : nodes) node.weight /= sum;
     return nodes;
+}
+
+/// Turns the second half of the rays of a node towards openings, where that is worth it.
+void aim(const Stage& stage, const Point& x, const Normal& n, RegionId region, const ScrambledSobol& points,
+         std::span<Vec3> directions, std::span<float> counts) {
+    const std::span<const PortalCell> cells = PortalAim::candidates(stage, region, x, n);
+    if (cells.empty()) return;
+    PortalAim aim;
+    aim.set(cells, x, n);
+    const std::size_t half = directions.size() / 2;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        double weight = i < half && !aim.is_aimed_at(directions[i]) ? 1 : 0;
+        if (i >= half) {
+            const auto index = static_cast<std::uint32_t>(i);
+            const PortalAim::Ray ray = aim.aimed(points(index, 0), points(index, 1));
+            directions[i] = ray.direction, weight = ray.weight;
+        }
+        counts[i] = static_cast<float>(PortalAim::share * weight);
+    }
 }
 
 }  // namespace
@@ -58,6 +78,7 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
         leaves_.push_back(leaf);
     }
     hits_.resize(rays);
+    if (stage.rooms.portals()) counts_.assign(rays, 1);
     parallel_own_ranges(nodes_.size(), node_block, [&](std::size_t begin, std::size_t end) {
         std::vector<Vec3> directions;
         std::vector<RayHit> found;
@@ -68,6 +89,8 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
             directions.resize(count), found.resize(count);
             for (std::uint32_t i = 0; i < count; ++i)
                 directions[i] = met_direction(stage.scene, region[k], n, points(i, 0), points(i, 1));
+            if (!counts_.empty())
+                aim(stage, place[k], n, region[k], points, directions, std::span(counts_).subspan(first, count));
             stage.tracer.nearest(directions, place[k], region[k], found);
             for (std::size_t i = 0; i < count; ++i) {
                 if (found[i].surface.is_none() || !found[i].front) continue;
@@ -85,11 +108,12 @@ Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node)
         const Hit& hit = hits_[i];
         if (hit.leaf == missed) continue;
         const double u = hit.u / 65535.0, v = hit.v / 65535.0;
+        const double counts = counts_.empty() ? 1 : static_cast<double>(counts_[i]);
         const Corners& c = corners[hit.leaf];
         if (leaves_[hit.leaf].triangle)
-            sum += (1 - u - v) * c[0] + u * c[1] + v * c[2];
+            sum += counts * ((1 - u - v) * c[0] + u * c[1] + v * c[2]);
         else
-            sum += (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
+            sum += counts * ((1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]));
     }
     return sum / static_cast<double>(node.last_ray - node.first_ray);
 }
@@ -142,7 +166,7 @@ Spectrum LinearRows::gather_at(std::size_t node, std::span<const Spectrum> nodal
         const Spectrum E = leaves_[hit.leaf].triangle
                                ? (1 - u - v) * c[0] + u * c[1] + v * c[2]
                                : (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
-        sum += leaves_[hit.leaf].reflectance * E;
+        sum += (counts_.empty() ? 1 : static_cast<double>(counts_[i])) * (leaves_[hit.leaf].reflectance * E);
     }
     return sum / static_cast<double>(nodes_[node].last_ray - nodes_[node].first_ray);
 }

@@ -23,7 +23,9 @@ class LinearRows final : public TransportOperator {
     std::size_t size() const override { return nodes_.size(); }
     void gather(std::span<const Spectrum> nodal, std::span<Spectrum> out) const override;
     Spectrum gather_at(std::size_t node, std::span<const Spectrum> nodal) const override;
-    std::size_t memory_bytes() const override { return sizeof(Hit) * hits_.size() + sizeof(Node) * nodes_.size(); }
+    std::size_t memory_bytes() const override {
+        return sizeof(Hit) * hits_.size() + sizeof(float) * counts_.size() + sizeof(Node) * nodes_.size();
+    }
     /// Of all processes together; each has the rows of its own nodes.
     std::size_t rays() const { return rays_; }
 
@@ -63,6 +65,7 @@ class LinearRows final : public TransportOperator {
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;
     std::vector<Hit> hits_;
+    std::vector<float> counts_;  ///< As how many rays each of them counts; empty where all are 1.
     std::vector<ElementId> ids_;
 };
 

@@ -73,24 +73,28 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
             first_[i + 1] = first_[i] + here;
         }
     hits_.assign(first_[n], missed);
+    if (stage.rooms.portals()) counts_.assign(first_[n], 1);
 
-    parallel_own_ranges(n, row_block,
-                        [&](std::size_t begin, std::size_t end) {
-                            ElementRays rays(stage, tree, locator);
-                            const auto leave =
-                                budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
-                            for (std::size_t i = begin; i < end && !(stop && stop->requested()); ++i) {
-                                const std::size_t count = first_[i + 1] - first_[i];
-                                rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count),
-                                          dealt[i].first, leave);
-                                note_touched("rays", count);
-                            }
-                        },
-                        {"cast rows", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
-    if (held == RowsHeld::everywhere)
-        exchange_values(
-            n, row_block, [&](std::size_t i) { return std::span(hits_).subspan(first_[i], first_[i + 1] - first_[i]); },
-            "cast rows");
+    parallel_own_ranges(
+        n, row_block,
+        [&](std::size_t begin, std::size_t end) {
+            ElementRays rays(stage, tree, locator);
+            const auto leave = budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
+            for (std::size_t i = begin; i < end && !(stop && stop->requested()); ++i) {
+                const std::size_t count = first_[i + 1] - first_[i];
+                const auto counts = counts_.empty() ? std::span<float>() : std::span(counts_).subspan(first_[i], count);
+                rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count), dealt[i].first,
+                          leave, counts);
+                note_touched("rays", count);
+            }
+        },
+        {"cast rows", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
+    if (held != RowsHeld::everywhere) return;
+    const auto row_of = [&](auto& values) {
+        return [&](std::size_t i) { return std::span(values).subspan(first_[i], first_[i + 1] - first_[i]); };
+    };
+    exchange_values(n, row_block, row_of(hits_), "cast rows");
+    if (!counts_.empty()) exchange_values(n, row_block, row_of(counts_), "cast rows");
 }
 
 bool RayRows::is_here(std::size_t i) const {
@@ -100,7 +104,7 @@ bool RayRows::is_here(std::size_t i) const {
 Spectrum RayRows::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {
     Spectrum sum;
     for (std::size_t k = first_[receiver]; k < first_[receiver + 1]; ++k)
-        if (hits_[k] != missed) sum += radiosity[hits_[k]];
+        if (hits_[k] != missed) sum += (counts_.empty() ? 1 : counts_[k]) * radiosity[hits_[k]];
     return sum / static_cast<double>(first_[receiver + 1] - first_[receiver]);
 }
 
@@ -119,8 +123,10 @@ std::vector<double> RayRows::kept() const {
     std::vector<double> out(size());
     parallel_for(size(), 256, [&](std::size_t i) {
         if (!is_here(i)) return;
-        const std::span<const std::uint32_t> row = hits(i);
-        out[i] = 1 - static_cast<double>(std::count(row.begin(), row.end(), missed)) / static_cast<double>(row.size());
+        double lost = 0;
+        for (std::size_t k = first_[i]; k < first_[i + 1]; ++k)
+            if (hits_[k] == missed) lost += counts_.empty() ? 1.0 : static_cast<double>(counts_[k]);
+        out[i] = std::max(0.0, 1 - lost / static_cast<double>(first_[i + 1] - first_[i]));
     });
     if (held_ == RowsHeld::by_owner)
         exchange_values(

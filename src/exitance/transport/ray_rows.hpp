@@ -31,9 +31,10 @@ enum class RowsHeld : std::uint8_t { everywhere, by_owner };
 
 /// Transport by rays: row i holds the elements that n_i rays, spread over element i with density cos / pi around its
 /// normal, hit first on their fronts: F_ij is the share of them that hits j. Unbiased; a row of a closed scene sums to
-/// 1 exactly. The points (four dimensions: place and direction) are scrambled Sobol points, so that the error of what
-/// is gathered falls like n^-3/4. O(n log n) a row to make, O(rays) to apply, 4 bytes a ray. Where a stop is asked for
-/// in the making, the rows that are left miss everything.
+/// 1 exactly; where half of the rays of a row are aimed at openings into lighter rooms (`PortalAim`), rays count as
+/// much as makes F_ij right on average. The points (four dimensions: place and direction) are scrambled Sobol points,
+/// so that the error of what is gathered falls like n^-3/4. O(n log n) a row to make, O(rays) to apply, 4 bytes a ray.
+/// Where a stop is asked for in the making, the rows that are left miss everything.
 class RayRows final : public TransportOperator {
   public:
     RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
@@ -43,13 +44,19 @@ class RayRows final : public TransportOperator {
     std::size_t size() const override { return first_.size() - 1; }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
-    std::size_t memory_bytes() const override { return 4 * hits_.size() + 8 * first_.size(); }
+    std::size_t memory_bytes() const override { return 4 * (hits_.size() + counts_.size()) + 8 * first_.size(); }
     /// Of all processes together.
     std::size_t rays() const { return rays_; }
     static constexpr std::uint32_t missed = 0xffffffffu;
     /// Of row i: leaf numbers, `missed` where a ray met nothing or a back.
     std::span<const std::uint32_t> hits(std::size_t i) const {
         return std::span(hits_).subspan(first_[i], first_[i + 1] - first_[i]);
+    }
+
+    /// As how many rays each of them counts; empty where all count alike.
+    std::span<const float> counts(std::size_t i) const {
+        if (counts_.empty()) return {};
+        return std::span(counts_).subspan(first_[i], first_[i + 1] - first_[i]);
     }
 
     /// Of every row, the share of its rays that hit a front.
@@ -62,6 +69,7 @@ class RayRows final : public TransportOperator {
     std::size_t rays_ = 0;
     std::vector<std::size_t> first_;  ///< Row i stands in hits_[first_[i], first_[i + 1]); empty where it is not here.
     std::vector<std::uint32_t> hits_;
+    std::vector<float> counts_;  ///< Of each of them; empty where all are 1.
 };
 
 }  // namespace exitance

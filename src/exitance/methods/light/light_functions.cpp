@@ -177,31 +177,58 @@ Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& li
 
 }  // namespace
 
-void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
-               const Spectrum& c) {
+namespace {
+
+/// Power of indirect light as gathered, and of what should arrive, W, all of it by band.
+struct FluxSums {
+    Spectrum sent;          ///< What leaves surfaces.
+    Spectrum first, again;  ///< What of direct light arrives once it is reflected, and of the light gathered.
+    Spectrum gathered;      ///< The light gathered.
+};
+
+FluxSums flux_sums(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
+                   const GlobalLight& light, const Spectrum& c) {
     const Field<RegionId, double> kept = kept_by_region(scene, light);
-    Spectrum sent, first, gathered, again;  // W: in all; what arrives of direct light, and of E; E itself
+    FluxSums out;
     const auto send = [&](RegionId region, const Spectrum& power, Spectrum& arriving) {
-        sent += power;
+        out.sent += power;
         arriving += kept[region] * power;
     };
-    for (RegionId r : scene.regions().ids()) send(r, scene.regions()[r].area * (c * scene.material(r).exitance), first);
+    for (RegionId r : scene.regions().ids())
+        send(r, scene.regions()[r].area * (c * scene.material(r).exitance), out.first);
     for (ElementId e : direct.tree.leaves()) {
         const RegionId r = direct.tree.region(e);
         const Spectrum lit = (Spectrum(1.0) - c) * direct.fit[e].mean;
-        send(r, direct.tree.area(e) * (scene.material(r).reflectance * lit), first);
+        send(r, direct.tree.area(e) * (scene.material(r).reflectance * lit), out.first);
     }
     for (ElementId e : E.tree.leaves()) {
         const RegionId r = E.tree.region(e);
         // A linear or bilinear function has its mean at the centre of its element.
         const Spectrum power = E.tree.area(e) * E.at({e, E.tree.centre(e)});
-        gathered += power;
-        send(r, scene.material(r).reflectance * power, again);
+        out.gathered += power;
+        send(r, scene.material(r).reflectance * power, out.again);
     }
-    if (!is_kept(first + again, sent)) return;
-    const Spectrum scale = conserving_scale(first, gathered - again);
+    return out;
+}
+
+}  // namespace
+
+void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+               const Spectrum& c) {
+    const FluxSums power = flux_sums(E, scene, direct, light, c);
+    if (!is_kept(power.first + power.again, power.sent)) return;
+    const Spectrum scale = conserving_scale(power.first, power.gathered - power.again);
     for (std::array<float, bands>& value : E.values)
         for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(scale[b] * value[b]);
+}
+
+bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
+                   const GlobalLight& light, const Spectrum& c) {
+    const FluxSums power = flux_sums(E, scene, direct, light, c);
+    constexpr double negligible = 0.01;  // of what is absorbed, given by what few rays tell of what escapes
+    if (mean(power.sent - power.first - power.again) > negligible * mean(power.gathered - power.again)) return false;
+    const double roundings = 1e-5 * mean(power.gathered);  // given by the floats that values are
+    return std::sqrt(squared(power.gathered - power.again - power.first) / static_cast<double>(bands)) <= roundings;
 }
 
 double rms_standard_error(const Stage& stage, const GlobalLight& light) {

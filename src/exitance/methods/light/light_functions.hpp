@@ -42,6 +42,10 @@ bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::ui
 void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                const Spectrum& c);
 
+/// Does E have that balance, as `keep_flux` left it, and does hardly anything escape?
+bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
+                   const GlobalLight& light, const Spectrum& c);
+
 /// Reflected light of what a solution delivers, plus the share c of what is emitted: rho (E_ind + (1 - c) E_dir) + c M,
 /// where `indirect` holds E_ind + c E_dir and direct light is read as projected.
 class DeliveredLight final : public ReflectedLight {

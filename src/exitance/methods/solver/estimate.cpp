@@ -4,6 +4,7 @@
 
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/methods/importance.hpp"
+#include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/error/clustering_error.hpp"
@@ -19,6 +20,8 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
                               std::span<const ElementGather> gathered) {
     options.seed = options_.seed;
     options.direct_in_elements = light_->holds_direct;
+    options.keeps_flux = gathers() && !light_->holds_direct && keeps_flux() &&
+                         has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
     options.light_in = light_in_, options.allowed_in = allowed_in_;
     if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
     // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
@@ -42,7 +45,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     for (std::size_t looks = 1; demand && looks < most_looks && !stop_.requested(); ++looks) {
         const double limit = margin(certificate_.points) * *demand;
         const double estimate = certificate_.largest();
-        if (estimate <= limit || estimate - 2 * certificate_.uncertainty > limit) break;
+        if (estimate <= limit || estimate - 2 * certificate_.largest_uncertainty() > limit) break;
         certificate_ = certifier.look();
     }
     certifier.tell_p99(certificate_);

@@ -30,17 +30,26 @@ double largest(const std::vector<Spectrum>& values) {
     return out;
 }
 
-/// A bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit light.
-double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
-    const double residual = 0.5 * calibrated::refined_residual;  // what is missing makes the bound too small
-    const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
-    const std::vector<Spectrum> u = respond({H, rho, ones, area}, residual);
-    // The adjoint w = 1 + H rho w, by way of rho w = rho + rho H (rho w).
-    const std::vector<Spectrum> rho_w = respond({H, rho, rho, area}, residual);
+/// What is missing makes bounds too small.
+double constant_residual() {
+    return 0.5 * calibrated::refined_residual;
+}
+
+/// Irradiance w = 1 + H rho w of unit light that arrives everywhere, by way of rho w = rho + rho H (rho w).
+std::vector<Spectrum> even_irradiance(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
+    const std::vector<Spectrum> rho_w = respond({H, rho, rho, area}, constant_residual());
     std::vector<Spectrum> w(rho.size());
     H.gather(rho_w, w);
     for (Spectrum& v : w) v += Spectrum(1.0);
-    return std::sqrt(largest(u) * largest(w));
+    return w;
+}
+
+/// A bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit light;
+/// that of the adjoint is `w`.
+double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area,
+                      const std::vector<Spectrum>& w) {
+    const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
+    return std::sqrt(largest(respond({H, rho, ones, area}, constant_residual())) * largest(w));
 }
 
 }  // namespace
@@ -55,7 +64,8 @@ struct Certifier::Content {
     ElementLocator coarse;
     std::vector<Spectrum> rho;
     std::vector<double> area;
-    RayRows H;  ///< Between the leaves of `light`.
+    RayRows H;                   ///< Between the leaves of `light`.
+    std::vector<Spectrum> even;  ///< Irradiance of unit light that arrives everywhere.
     std::size_t looks = 0;
     std::vector<ResidualSample> samples;  ///< Of all looks.
     std::vector<Spectrum>
@@ -76,14 +86,17 @@ struct Certifier::Content {
           H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1,
             Dealing::by_element, RowsHeld::by_owner) {
         if (mean_reflected <= 0) return;
-        constant = error_constant(H, rho, area);
+        even = even_irradiance(H, rho, area);
+        constant = error_constant(H, rho, area, even);
         if (options.places.empty()) narrow = find_narrow_leaves(stage, indirect.tree);
     }
 
     void measure_residuals();
     void tell_p99(Certificate& out);
-    std::vector<Spectrum> mean_residuals() const;
+    std::vector<Spectrum> mean_residuals(double first) const;
+    std::vector<Spectrum> response_to(double first) const;
     std::vector<Spectrum> late_response() const;
+    void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
     Certificate judge();
     void judge_rooms(Certificate& out);
     std::vector<RoomError> rooms;
@@ -105,13 +118,13 @@ void Certifier::Content::measure_residuals() {
 /// The mean residual of each leaf of the coarse mesh. What regions have in common is told by all of their samples; what
 /// a leaf has beyond it by its own few, as far as samples of one leaf agree: beside a concave edge they do, and there
 /// two faces reflect to each other what a mean over the whole face does not show.
-std::vector<Spectrum> Certifier::Content::mean_residuals() const {
+std::vector<Spectrum> Certifier::Content::mean_residuals(double first) const {
     // A region in several rooms is one in each.
     const std::size_t regions = stage.scene.regions().size();
     std::vector<Spectrum> of_place(regions * std::max<std::size_t>(1, stage.rooms.count()));
     std::vector<double> count(of_place.size());
     const auto place_of = [&](const ResidualSample& s) { return s.room * regions + s.region.value; };
-    const auto residual = [](const ResidualSample& s) { return 0.5 * (s.r1 + s.r2); };
+    const auto residual = [&](const ResidualSample& s) { return first * s.r1 + (1 - first) * s.r2; };
     for (const ResidualSample& s : samples) {
         const double n = s.weight * static_cast<double>(options.points);
         of_place[place_of(s)] += n * residual(s);
@@ -151,13 +164,57 @@ std::vector<Spectrum> Certifier::Content::mean_residuals() const {
     return out;
 }
 
-/// The smooth part of the error: the coarse response to the mean residuals, less those themselves. By leaf number of
-/// the coarse mesh.
-std::vector<Spectrum> Certifier::Content::late_response() const {
-    const std::vector<Spectrum> rhs = mean_residuals();
+/// Corrects errors of B by what is certain of them: where all that is emitted is absorbed, and of the delivered light
+/// as much, the error dE of irradiance has int (1 - rho) dE dA = 0. Samples tell a mean residual with noise that a
+/// bright room's many reflections make larger than the error; so as much residual is added everywhere alike as makes it
+/// right.
+void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const {
+    std::vector<Spectrum> arriving(rho.size());
+    H.gather(errors, arriving);
+    Spectrum wrong, by_even;
+    for (std::size_t i = 0; i < rho.size(); ++i)
+        for (std::size_t band = 0; band < bands; ++band) {
+            const double r = rho[i][band], absorbed = area[i] * (1 - r);
+            wrong[band] += absorbed * (arriving[i][band] + (r > 0 ? residuals[i][band] / r : 0));
+            by_even[band] += absorbed * even[i][band];
+        }
+    for (std::size_t band = 0; band < bands; ++band) {
+        if (!(by_even[band] > 0)) continue;
+        const double more = wrong[band] / by_even[band];
+        for (std::size_t i = 0; i < rho.size(); ++i) errors[i][band] -= more * rho[i][band] * even[i][band];
+    }
+}
+
+/// The coarse response to the mean residuals, less those themselves; `first`: the share of the first of the two gathers
+/// of every sample, 0.5 of both alike.
+std::vector<Spectrum> Certifier::Content::response_to(double first) const {
+    const std::vector<Spectrum> rhs = mean_residuals(first);
     std::vector<Spectrum> response = respond({H, rho, rhs, area}, calibrated::refined_residual);
+    if (options.keeps_flux && !options.summed) balance(rhs, response);  // sums have no noise to correct
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
+}
+
+/// The smooth part of the error, by leaf number of the coarse mesh. The responses to both gathers have it in common,
+/// and noise of their rays apart: in every room the mean of both is made as large as what they agree on, in the mean
+/// square.
+std::vector<Spectrum> Certifier::Content::late_response() const {
+    // Light of a lighter room has to be told from noise in a darker one; where all is one room, means say enough.
+    if (options.summed || stage.rooms.count() == 0) return response_to(0.5);
+    std::vector<Spectrum> one = response_to(1);
+    const std::vector<Spectrum> other = response_to(0);
+    const std::size_t count = stage.rooms.count();
+    std::vector<double> agreed(count), all(count);
+    std::vector<std::size_t> room(one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        room[i] = stage.rooms.of(light.tree, light.numbering.leaves[i]);
+        agreed[room[i]] += area[i] * mean(one[i] * other[i]);
+        one[i] = 0.5 * (one[i] + other[i]);
+        all[room[i]] += area[i] * mean(one[i] * one[i]);
+    }
+    for (std::size_t i = 0; i < one.size(); ++i)
+        one[i] *= all[room[i]] > 0 ? std::sqrt(std::clamp(agreed[room[i]] / all[room[i]], 0.0, 1.0)) : 0.0;
+    return one;
 }
 
 /// Every room by itself; parts of the residual are then those of the rooms, each by what it may have.
@@ -165,7 +222,7 @@ void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
     if (count == 0) {
         rooms = {{stage.area, mean_reflected, out.estimate}};
-        out.worst_room = out.of_rooms = out.estimate;
+        out.worst_room = out.of_rooms = out.estimate, out.room_uncertainty = out.uncertainty;
         return;
     }
     std::vector<std::array<double, batches>> squares(count);
@@ -187,7 +244,10 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         const BatchMean error(squares[room]);
         const double estimate = std::sqrt(std::max(error.mean, error.standard_error)) / light_there;
         rooms.push_back({stage.rooms.area(room), light_there, estimate});
-        out.worst_room = std::max(out.worst_room, estimate);
+        if (estimate > out.worst_room) {
+            out.worst_room = estimate;
+            out.room_uncertainty = 0.5 * error.standard_error / (estimate * light_there * light_there);
+        }
         const double allowed = options.allowed_in[room] * mean_reflected, by_allowed = light_there / allowed;
         const auto relative = [&](double sum) { return told[room] > 0 ? sum / told[room] / (allowed * allowed) : 0; };
         const double share = 1 / static_cast<double>(count);

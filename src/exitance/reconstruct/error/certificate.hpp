@@ -20,7 +20,10 @@ struct CertificateOptions {
     double error = 1;  ///< The relative error that is to be resolved: it sets the number of rays.
     std::uint64_t seed = 1;
     std::size_t points = points_for(0);  ///< How many the residual is measured at by one look.
-    bool direct_in_elements = false;     ///< Does the delivered function hold the emitters' light too?
+    /// Is as much absorbed of the delivered function as is emitted, in a closed scene? Then the error is known on
+    /// average.
+    bool keeps_flux = false;
+    bool direct_in_elements = false;  ///< Does the delivered function hold the emitters' light too?
     /// Enough for a delivered function of so many leaves: where they are many, few of them may hold most of the error.
     static std::size_t points_for(std::size_t leaves) { return std::max<std::size_t>(1280, leaves / 16); }
     /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
@@ -56,8 +59,10 @@ struct Certificate {
     /// Where rooms are judged apart: the estimate of the worst one, and the root of the mean of the rooms' squares,
     /// each by what it may have, which `local` and `method` are parts of. As the estimate, where all is one room.
     double worst_room = 0, of_rooms = 0;
+    double room_uncertainty = 0;  ///< Of `worst_room`, as `uncertainty` is of `estimate`.
     /// Of the whole and of every room.
     double largest() const { return std::max(estimate, worst_room); }
+    double largest_uncertainty() const { return estimate < worst_room ? room_uncertainty : uncertainty; }
 };
 
 /// Estimates the error of B = M + rho (E_dir + E_ind), E_dir exact, from its residual

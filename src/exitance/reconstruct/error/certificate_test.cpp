@@ -10,15 +10,15 @@ namespace {
 
 /// A furnace, whose exact indirect light is known everywhere, with an error of a known size planted in it.
 struct PlantedError {
-    static constexpr double rho = 0.5, exact = rho / (1 - rho);  // E_ind of M = 1
+    double rho = 0.5, exact = rho / (1 - rho);  // E_ind of M = 1
     Scene scene;
     Stage stage{scene};
     GlobalLight light;
     ElementFunction delivered;
 
     explicit PlantedError(const std::function<double(const Point&)>& error, double edge = 0.5,
-                          Scene furnace = box_scene(2, 1, 1.5, rho, 1, 1))
-        : scene(std::move(furnace)) {
+                          Scene furnace = box_scene(2, 1, 1.5, 0.5, 1, 1), double reflectance = 0.5)
+        : rho(reflectance), scene(std::move(furnace)) {
         light.tree = stage.make_elements({.edge = edge, .grading_levels = 0});
         light.numbering = LeafNumbering(light.tree);
         const std::size_t n = light.numbering.leaves.size();
@@ -36,12 +36,14 @@ struct PlantedError {
     }
 
     /// What the last of so many looks says.
-    Certificate certificate(std::uint64_t seed, int looks = 1, std::size_t points = 1280) const {
+    Certificate certificate(std::uint64_t seed, int looks = 1, std::size_t points = 1280,
+                            bool keeps_flux = false) const {
         const ElementLocator locator(delivered.tree, scene.regions().size());
         const PointwiseLight b([&](RegionId region, const Point& y) {
             return rho * (Spectrum(1.0) + delivered.at(locator.find(region, y)));
         });
-        Certifier certifier(stage, light, delivered, b, {.error = 0.02, .seed = seed, .points = points});
+        Certifier certifier(stage, light, delivered, b,
+                            {.error = 0.02, .seed = seed, .points = points, .keeps_flux = keeps_flux});
         for (int look = 1; look < looks; ++look) certifier.look();
         return certifier.look();
     }
@@ -139,6 +141,27 @@ TEST(Certificate, SeesWhatTwoFacesReflectToEachOtherBesideAnEdge) {
     constexpr std::uint64_t seeds = 8;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum += planted.summed_certificate(seed).estimate / seeds;
     EXPECT_NEAR(sum, truth, 0.03 * truth);
+}
+
+/// On one side of a box as much too light as it is too dark on the other: as much is absorbed as without.
+double balanced(const Point& p) {
+    return (p.x < 1 ? 100 : -100) * rough({std::abs(p.x - 1), p.y, p.z});
+}
+
+TEST(Certificate, IsNotMisledByNoiseThatABrightRoomReflectsAHundredTimes) {
+    const PlantedError planted(balanced, 0.125, box_scene(2, 1, 1.5, 0.99, 1, 1), 0.99);
+    const double truth = planted.error(balanced);
+    ASSERT_NEAR(truth, 0.1, 1e-3);
+    double without = 0;
+    constexpr std::uint64_t seeds = 6;
+    constexpr std::size_t points = 320;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const double told = planted.certificate(seed, 1, points, true).estimate;
+        EXPECT_LT(truth, 1.25 * told);
+        EXPECT_LT(told, 1.25 * truth);
+        without += std::abs(planted.certificate(seed, 1, points, false).estimate / truth - 1) / seeds;
+    }
+    EXPECT_GT(without, 0.25);  // else the test would tell nothing
 }
 
 struct Planted {

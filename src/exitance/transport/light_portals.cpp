@@ -1,0 +1,334 @@
+#include "exitance/transport/light_portals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/transport/ray_rows.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr unsigned most_rays = 1 << 18;   ///< That look for openings, in all.
+constexpr unsigned ray_batch = 1 << 10;   ///< Of a room, one after another.
+constexpr std::size_t enough_ways = 64;   ///< Through a room's openings: further ones would be the same again.
+constexpr std::size_t most_openings = 8;  ///< Between two rooms.
+constexpr std::size_t most_cells = 16;    ///< That rays of one room are aimed at.
+
+/// A ray from one room to another.
+struct Way {
+    Point from, to;
+    std::size_t into;
+};
+
+/// Two numbers in [0, 1) as a direction, all alike.
+Vec3 sphere_direction(double a, double b) {
+    const double z = 1 - 2 * a, r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * b;
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+/// Finds openings between rooms by rays.
+class PortalFinder {
+  public:
+    PortalFinder(const Stage& stage, const LightRooms& rooms, const ElementTree& tree, const LeafNumbering& numbering,
+                 std::uint64_t seed)
+        : stage_(stage), rooms_(rooms), tree_(tree), leaves_(rooms.count()), seed_(seed) {
+        for (ElementId e : numbering.leaves) leaves_[rooms.of(tree, e)].push_back(e);
+        Box box;
+        for (const Piece& piece : stage.pieces) box.add(piece.patch.centre());
+        largest_ = std::max(box.diagonal(), 1e-300);
+    }
+
+    /// From a room into larger ones.
+    std::vector<Way> ways(std::size_t room, unsigned most, const StopRequest& stop) const;
+
+    /// The opening that a way goes through; of area 0 if its lines do not tell.
+    PortalCell opening(std::size_t room, const Way& way) const;
+
+  private:
+    /// What rays from a point of free space meet: the room of each, `none` where no front.
+    static constexpr std::size_t none = ~std::size_t{0};
+    void look(const Point& from, std::span<const Vec3> directions, std::vector<std::size_t>& met) const;
+    Point middle(std::size_t room, const Way& way) const;
+    Normal normal(std::size_t room, const Way& way, const Point& at) const;
+    /// Points of a parallelogram about `at` that lines from one room to the other go through, in its coordinates.
+    std::vector<Vec2> open_points(std::size_t room, std::size_t other, const Point& at, const Frame& frame, Vec2 lo,
+                                  Vec2 hi, std::uint64_t key) const;
+
+    const Stage& stage_;
+    const LightRooms& rooms_;
+    const ElementTree& tree_;
+    std::vector<std::vector<ElementId>> leaves_;  ///< Of each room.
+    std::uint64_t seed_;
+    double largest_;  ///< Any opening, metres.
+};
+
+std::vector<Way> PortalFinder::ways(std::size_t room, unsigned most, const StopRequest& stop) const {
+    std::vector<Way> out;
+    double area = 0;
+    for (ElementId e : leaves_[room]) area += tree_.area(e);
+    const ScrambledSobol points(hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room));
+    for (unsigned first = 0; first < most && out.size() < enough_ways && !stop.requested(); first += ray_batch) {
+        double before = 0;
+        std::size_t leaf = 0;
+        for (unsigned k = 0; k < ray_batch; ++k) {
+            const double wanted = area * (k + 0.5) / ray_batch;
+            while (leaf + 1 < leaves_[room].size() && before + tree_.area(leaves_[room][leaf]) <= wanted)
+                before += tree_.area(leaves_[room][leaf]), ++leaf;
+            const ElementId e = leaves_[room][leaf];
+            const unsigned i = first + k;
+            const RegionId region = tree_.region(e);
+            const Point x = tree_.patch(e).at(tree_.uniform(e, points(i, 2), points(i, 3)));
+            const Vec3 w = cosine_direction(Frame(stage_.scene.regions()[region].plane.n), points(i, 0), points(i, 1));
+            RayHit hit;
+            stage_.tracer.nearest(std::span(&w, 1), x, region, std::span(&hit, 1));
+            if (hit.surface.is_none() || !hit.front || stage_.is_left_out(hit.region)) continue;
+            const Point y = x + hit.distance * w;
+            const std::size_t into = rooms_.at(hit.region, y);
+            if (into < room) out.push_back({x, y, into});
+        }
+    }
+    return out;
+}
+
+void PortalFinder::look(const Point& from, std::span<const Vec3> directions, std::vector<std::size_t>& met) const {
+    std::vector<RayHit> hits(directions.size());
+    stage_.tracer.nearest(directions, from, RegionId(), hits);
+    met.assign(directions.size(), none);
+    for (std::size_t k = 0; k < directions.size(); ++k)
+        if (!hits[k].surface.is_none() && hits[k].front && !stage_.is_left_out(hits[k].region))
+            met[k] = rooms_.at(hits[k].region, from + hits[k].distance * directions[k]);
+}
+
+std::vector<Vec3> all_directions(unsigned count) {
+    const ScrambledSobol points(count);
+    std::vector<Vec3> out;
+    for (unsigned k = 0; k < count; ++k) out.push_back(sphere_direction(points(k, 0), points(k, 1)));
+    return out;
+}
+
+/// Where as much is seen of either room.
+Point PortalFinder::middle(std::size_t room, const Way& way) const {
+    constexpr int halvings = 16;
+    const std::vector<Vec3> directions = all_directions(64);
+    std::vector<std::size_t> met;
+    double lo = 0, hi = 1;
+    for (int i = 0; i < halvings; ++i) {
+        const double t = 0.5 * (lo + hi);
+        look(way.from + t * (way.to - way.from), directions, met);
+        const auto own = std::count(met.begin(), met.end(), room), other = std::count(met.begin(), met.end(), way.into);
+        (own > other ? lo : hi) = t;
+    }
+    return way.from + 0.5 * (lo + hi) * (way.to - way.from);
+}
+
+/// From one room to the other: what is seen of each lies on its own side.
+Normal PortalFinder::normal(std::size_t room, const Way& way, const Point& at) const {
+    const std::vector<Vec3> directions = all_directions(256);
+    std::vector<std::size_t> met;
+    look(at, directions, met);
+    Vec3 sum;
+    for (std::size_t k = 0; k < met.size(); ++k) {
+        if (met[k] == way.into) sum += directions[k];
+        if (met[k] == room) sum -= directions[k];
+    }
+    const bool tells = norm(sum) > 0.1 * static_cast<double>(met.size());
+    return normalized(tells ? sum : way.to - way.from);
+}
+
+std::vector<Vec2> PortalFinder::open_points(std::size_t room, std::size_t other, const Point& at, const Frame& frame,
+                                            Vec2 lo, Vec2 hi, std::uint64_t key) const {
+    constexpr unsigned lines = 256;
+    const ScrambledSobol points(key);
+    std::vector<Vec2> out;
+    std::vector<std::size_t> met;
+    for (unsigned k = 0; k < lines; ++k) {
+        const Vec2 q{lo.x + points(k, 2) * (hi.x - lo.x), lo.y + points(k, 3) * (hi.y - lo.y)};
+        const Vec3 w = cosine_direction(frame, points(k, 0), points(k, 1));
+        look(at + q.x * frame.u + q.y * frame.v, std::array{w, -w}, met);
+        if (met[0] == other && met[1] == room) out.push_back(q);
+    }
+    return out;
+}
+
+/// A rectangle around points of a plane: its middle, and its sides' directions and lengths.
+struct Rectangle {
+    Vec2 lo, hi;   ///< In coordinates turned by
+    double angle;  ///< radians.
+
+    double area() const { return (hi.x - lo.x) * (hi.y - lo.y); }
+};
+
+Vec2 turned(Vec2 p, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * p.x + s * p.y, c * p.y - s * p.x};
+}
+
+/// The smallest around some points, of some dozens of angles; wider by what as many points leave out.
+Rectangle smallest_around(const std::vector<Vec2>& points) {
+    constexpr int angles = 48;
+    constexpr double wider = 0.03;
+    Rectangle best{{0, 0}, {HUGE_VAL, HUGE_VAL}, 0};
+    for (int i = 0; i < angles; ++i) {
+        Rectangle r{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, 0.5 * pi * i / angles};
+        for (const Vec2& p : points) {
+            const Vec2 q = turned(p, r.angle);
+            r.lo = {std::min(r.lo.x, q.x), std::min(r.lo.y, q.y)},
+            r.hi = {std::max(r.hi.x, q.x), std::max(r.hi.y, q.y)};
+        }
+        if (r.area() < best.area()) best = r;
+    }
+    const Vec2 more = wider * (best.hi - best.lo);
+    best.lo = best.lo - more, best.hi = best.hi + more;
+    return best;
+}
+
+PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
+    constexpr std::size_t fewest = 8;  // points that tell of a rectangle
+    const Point at = middle(room, way);
+    const Frame frame(normal(room, way, at));
+    // From small to large, until a frame as wide again around all of it holds nothing more.
+    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room, way.into);
+    std::vector<Vec2> open;
+    double reach = 0;
+    for (double half = 0x1p-14 * largest_; half < largest_; half *= 2) {
+        const std::vector<Vec2> found = open_points(room, way.into, at, frame, {-half, -half}, {half, half}, key);
+        double farthest = 0;
+        for (const Vec2& p : found) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y)});
+        if (reach > 0 && farthest <= 0.5 * half) break;
+        if (farthest > reach) open = found, reach = farthest;
+    }
+    if (open.empty()) return {};
+    for (int i = 0; i < 2; ++i) {  // by points that lie closer
+        const double wide = 1.2 * reach;
+        open = open_points(room, way.into, at, frame, {-wide, -wide}, {wide, wide}, hash(key, i));
+        if (open.size() < fewest) return {};
+        reach = 0;
+        for (const Vec2& p : open) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
+    }
+    const Rectangle r = smallest_around(open);
+    const Vec2 x = turned({1, 0}, -r.angle), y = turned({0, 1}, -r.angle), lo = turned(r.lo, -r.angle);
+    const auto in_space = [&](Vec2 p) { return p.x * frame.u + p.y * frame.v; };
+    return {at + in_space(lo), in_space((r.hi.x - r.lo.x) * x), in_space((r.hi.y - r.lo.y) * y), frame.n, r.area()};
+}
+
+/// Does the line of a way go through a parallelogram, or beside it by less than half of its size? That is the same
+/// opening, though the way may end within it.
+bool passes(const Way& way, const PortalCell& cell) {
+    const Vec3 d = way.to - way.from;
+    const double t = dot(cell.corner - way.from, cell.n) / dot(d, cell.n);
+    if (!std::isfinite(t)) return false;
+    const Vec3 at = way.from + t * d - cell.corner;
+    const double s = dot(at, cell.u) / squared_norm(cell.u), r = dot(at, cell.v) / squared_norm(cell.v);
+    constexpr double beside = 0.5;
+    return std::max(std::abs(s - 0.5), std::abs(r - 0.5)) < 0.5 + beside;
+}
+
+/// Light of all emitters and of lights without extent on coarse elements: of each room's mean over some of them.
+std::vector<Spectrum> apart_light(const Stage& stage, const LightRooms& rooms, const ElementTree& tree,
+                                  const LeafNumbering& numbering) {
+    constexpr std::size_t samples = 64;  // of a room
+    std::vector<std::vector<std::size_t>> of_room(rooms.count());
+    for (std::size_t i = 0; i < numbering.leaves.size(); ++i) of_room[rooms.of(tree, numbering.leaves[i])].push_back(i);
+    std::vector<Spectrum> out(numbering.leaves.size());
+    ClusteredLight::Workspace workspace;
+    for (const std::vector<std::size_t>& leaves : of_room) {
+        const std::size_t step = std::max<std::size_t>(1, leaves.size() / samples);
+        Spectrum sum;
+        double area = 0;
+        for (std::size_t k = step / 2; k < leaves.size(); k += step) {
+            const ElementId e = numbering.leaves[leaves[k]];
+            const RegionId region = tree.region(e);
+            const Normal& n = stage.scene.regions()[region].plane.n;
+            const Point x = tree.patch(e).at(tree.centre(e));
+            sum += tree.area(e) * stage.clustered.at(x, n, region, {.relative = 0.1}, workspace).irradiance;
+            area += tree.area(e);
+        }
+        for (std::size_t i : leaves) out[i] = area > 0 ? sum / area : Spectrum();
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<double> coarse_light(const Stage& stage, const LightRooms& rooms, const ElementTree& tree,
+                                 const LeafNumbering& numbering, const RayRows& rows) {
+    constexpr int reflections = 30;
+    const std::size_t n = numbering.leaves.size();
+    std::vector<double> area(rooms.count()), light(rooms.count());
+    std::vector<Spectrum> first(n), b(n), arriving(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        b[i] = stage.scene.material(tree.region(numbering.leaves[i])).exitance;
+        area[rooms.of(tree, numbering.leaves[i])] += tree.area(numbering.leaves[i]);
+    }
+    rows.gather(b, first);
+    if (stage.scene.has_light_apart()) first = apart_light(stage, rooms, tree, numbering);
+    std::fill(b.begin(), b.end(), Spectrum());
+    for (int k = 0; k < reflections; ++k) {
+        if (k > 0) rows.gather(b, arriving);
+        for (std::size_t i = 0; i < n; ++i)
+            b[i] = stage.scene.material(tree.region(numbering.leaves[i])).reflectance * (first[i] + arriving[i]);
+    }
+    for (std::size_t i = 0; i < n; ++i)
+        light[rooms.of(tree, numbering.leaves[i])] += tree.area(numbering.leaves[i]) * mean(b[i]);
+    for (std::size_t room = 0; room < light.size(); ++room) light[room] /= area[room] > 0 ? area[room] : 1;
+    return light;
+}
+
+namespace {
+
+/// Cut along its longer side into pieces about as long as wide, since rays are not aimed at what is near.
+void add_cells(const PortalCell& opening, double light, std::vector<PortalCell>& cells) {
+    constexpr double most_pieces = 8;
+    PortalCell piece = opening;
+    piece.light = light;
+    Vec3& longer = squared_norm(piece.u) > squared_norm(piece.v) ? piece.u : piece.v;
+    const Vec3& shorter = &longer == &piece.u ? piece.v : piece.u;
+    const double pieces = std::clamp(std::round(norm(longer) / norm(shorter)), 1.0, most_pieces);
+    longer *= 1 / pieces, piece.area /= pieces;
+    for (int k = 0; k < static_cast<int>(pieces) && cells.size() < most_cells; ++k) {
+        cells.push_back(piece);
+        piece.corner += longer;
+    }
+}
+
+}  // namespace
+
+bool LightPortals::empty() const {
+    return std::all_of(by_room_.begin(), by_room_.end(), [](const auto& cells) { return cells.empty(); });
+}
+
+std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const LightRooms& rooms,
+                                                       const ElementTree& tree, const LeafNumbering& numbering,
+                                                       std::span<const double> light, std::uint64_t seed,
+                                                       const StopRequest& stop) {
+    const PortalFinder finder(stage, rooms, tree, numbering, seed);
+    const auto most = std::max(ray_batch, static_cast<unsigned>(most_rays / rooms.count()));
+    std::vector<std::vector<PortalCell>> by_room(rooms.count());
+    for (std::size_t room = rooms.count(); room-- > 1 && !stop.requested();) {
+        std::vector<Way> ways = finder.ways(room, most, stop);
+        std::vector<std::size_t> openings(rooms.count());
+        while (!ways.empty() && !stop.requested()) {
+            const Way way = ways.back();
+            ways.pop_back();
+            if (openings[way.into] == most_openings) continue;
+            const PortalCell found = finder.opening(room, way);
+            if (!(found.area > 0)) continue;
+            ++openings[way.into];
+            std::erase_if(ways, [&](const Way& other) { return other.into == way.into && passes(other, found); });
+            const std::size_t darker = light[room] < light[way.into] ? room : way.into;
+            const double share = found.area / rooms.area(darker), bright = std::max(light[room], light[way.into]);
+            // As much comes in at least.
+            const double more = bright > 0 ? bright / std::max(light[darker], share * bright) : 0;
+            if (is_worth_aiming(share, more)) add_cells(found, more, by_room[darker]);
+        }
+    }
+    auto out = std::make_shared<const LightPortals>(std::move(by_room));
+    return out->empty() ? nullptr : out;
+}
+
+}  // namespace exitance

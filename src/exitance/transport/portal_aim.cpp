@@ -1,0 +1,88 @@
+#include "exitance/transport/portal_aim.hpp"
+
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+/// Of rays with density cos / pi about n, the share towards a parallelogram that is far beside its size.
+double form_factor(const PortalCell& cell, const Point& x, const Normal& n) {
+    const Vec3 d = cell.corner + 0.5 * (cell.u + cell.v) - x;
+    const double square = squared_norm(d);
+    return std::max(0.0, dot(d, n)) * std::abs(dot(d, cell.n)) * cell.area / (pi * square * square);
+}
+
+/// Is any corner above the plane of x, and x farther away than the parallelogram is long?
+bool can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n) {
+    const Vec3 to_corner = cell.corner - x;
+    const double height = dot(to_corner, n);
+    const double highest = height + std::max(0.0, dot(cell.u, n)) + std::max(0.0, dot(cell.v, n));
+    const double longest = std::max(squared_norm(cell.u), squared_norm(cell.v));
+    return highest > 0 && squared_norm(to_corner + 0.5 * (cell.u + cell.v)) > longest;
+}
+
+}  // namespace
+
+std::span<const PortalCell> PortalAim::candidates(const Stage& stage, RegionId own, const Point& x, const Normal& n) {
+    const LightPortals* portals = stage.rooms.portals();
+    if (!portals || own.is_none() || !stage.scene.behind(own).is_none()) return {};
+    const std::span<const PortalCell> cells = portals->of_room(stage.rooms.at(own, x));
+    double worth = 0;
+    for (const PortalCell& cell : cells)
+        if (can_be_aimed_at(cell, x, n)) worth += form_factor(cell, x, n) * cell.light * cell.light;
+    return worth > 1 ? cells : std::span<const PortalCell>();
+}
+
+void PortalAim::set(std::span<const PortalCell> cells, const Point& x, const Normal& n) {
+    count_ = 0, n_ = n;
+    double sum = 0;
+    for (const PortalCell& cell : cells) {
+        if (count_ == most_targets || !can_be_aimed_at(cell, x, n)) continue;
+        const Vec3 offset = cell.corner - x;
+        // Of so much light; a little where the middle is behind the horizon or the plane is seen edge on.
+        const double light = form_factor(cell, x, n) * cell.light;
+        targets_[count_++] = {&cell, light, dot(offset, cell.n), offset};
+        sum += light;
+    }
+    for (std::size_t c = 0; c < count_; ++c) {
+        constexpr double evenly = 0.25;
+        const double share = sum > 0 ? targets_[c].chance / sum : 1.0 / static_cast<double>(count_);
+        targets_[c].chance = evenly / static_cast<double>(count_) + (1 - evenly) * share;
+    }
+}
+
+/// Of directions towards a point of a parallelogram at distance r, points uniform on it: r^2 / (A cos).
+double PortalAim::density(const Vec3& direction) const {
+    double sum = 0;
+    for (std::size_t c = 0; c < count_; ++c) {
+        const Target& target = targets_[c];
+        const PortalCell& cell = *target.cell;
+        const double rise = dot(direction, cell.n);  // of the ray over the plane, from x on
+        const double distance = target.height / rise;
+        if (!(distance > 0) || !std::isfinite(distance)) continue;
+        const Vec3 at = distance * direction - target.offset;
+        const double s = dot(at, cell.u) / squared_norm(cell.u), t = dot(at, cell.v) / squared_norm(cell.v);
+        if (s < 0 || s >= 1 || t < 0 || t >= 1) continue;
+        sum += target.chance * distance * distance / (cell.area * std::abs(rise));
+    }
+    return sum;
+}
+
+bool PortalAim::is_aimed_at(const Vec3& direction) const {
+    return count_ > 0 && density(direction) > 0;
+}
+
+PortalAim::Ray PortalAim::aimed(double a, double b) const {
+    if (count_ == 0) return {n_, 0};
+    std::size_t c = 0;
+    for (; c + 1 < count_ && a >= targets_[c].chance; ++c) a -= targets_[c].chance;
+    const Target& target = targets_[c];
+    const double s = std::min(a / target.chance, 1.0);
+    const Vec3 to = target.offset + s * target.cell->u + b * target.cell->v;
+    const Vec3 direction = normalized(to);
+    const double cosine = dot(direction, n_), found = density(direction);
+    // On a border or edge on roundings may say that nothing is met: there is no light to miss.
+    return {direction, cosine > 0 && found > 0 ? cosine / (pi * found) : 0};
+}
+
+}  // namespace exitance

@@ -1,0 +1,108 @@
+#include "exitance/transport/portal_aim.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/transport/ray_rows.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// Upright, a metre from the origin, of 10 cm by 20.
+PortalCell upright(double y = 0) {
+    return {{1, y, 0.3}, {0, 0.1, 0}, {0, 0, 0.2}, {1, 0, 0}, 0.02, 1000};
+}
+
+TEST(PortalAim, BothHalvesOfTheRaysMakeAWholeHemisphere) {
+    // Two that overlap as seen from the place, and one that is partly below the horizon.
+    const std::vector<PortalCell> cells = {
+        upright(), upright(0.05), {{0, 1, -0.1}, {0.2, 0, 0}, {0, 0, 0.2}, {0, 1, 0}, 0.04, 100}};
+    const Normal n{0, 0, 1};
+    PortalAim aim;
+    aim.set(cells, {0, 0, 0}, n);
+    const ScrambledSobol points(1);
+    constexpr std::uint32_t rays = 1 << 16;
+    double aimed = 0, rest = 0, towards = 0;
+    for (std::uint32_t k = 0; k < rays; ++k) {
+        const PortalAim::Ray ray = aim.aimed(points(k, 0), points(k, 1));
+        EXPECT_TRUE(ray.weight == 0 || aim.is_aimed_at(ray.direction));
+        aimed += ray.weight / rays, towards += ray.weight * ray.direction.x / rays;
+        const Vec3 w = cosine_direction(Frame(n), points(k, 2), points(k, 3));
+        if (!aim.is_aimed_at(w)) rest += 1.0 / rays;
+    }
+    EXPECT_GT(aimed, 0.003);
+    EXPECT_NEAR(aimed + rest, 1, 2e-4);  // the rest is a share of 65536 points, of which some hundreds are left out
+    EXPECT_GT(towards / aimed, 0.3);
+}
+
+TEST(PortalAim, DoesNotAimAtWhatIsNearOrBehind) {
+    PortalAim aim;
+    const PortalCell cell = upright();
+    aim.set(std::span(&cell, 1), {0.95, 0.05, 0.4}, {1, 0, 0});
+    EXPECT_EQ(aim.aimed(0.5, 0.5).weight, 0);
+    EXPECT_FALSE(aim.is_aimed_at({1, 0, 0}));
+    aim.set(std::span(&cell, 1), {0, 0, 0}, {-1, 0, 0});
+    EXPECT_EQ(aim.aimed(0.5, 0.5).weight, 0);
+    aim.set({}, {0, 0, 0}, {0, 0, 1});
+    EXPECT_EQ(aim.aimed(0.5, 0.5).weight, 0);
+    EXPECT_FALSE(aim.is_aimed_at({0.5, 0, 0.5}));
+}
+
+TEST(LightPortals, AHoleIsFoundWhereItIsAndAimedAtFromTheDarkSide) {
+    for (const char* hole : {"0.03", "0.1", "0.3"}) {
+        const double side = std::atof(hole);
+        const Scene scene = built_scene("keyhole", {{"hole", hole}});
+        Stage stage(scene);
+        stage.rooms = find_light_rooms(stage, 1, StopRequest());
+        ASSERT_EQ(stage.rooms.count(), 2u);
+        ASSERT_NE(stage.rooms.portals(), nullptr) << hole;
+        EXPECT_TRUE(stage.rooms.portals()->of_room(1).empty());  // the box
+        const auto cells = stage.rooms.portals()->of_room(0);
+        ASSERT_FALSE(cells.empty()) << hole;
+        double area = 0;
+        for (const PortalCell& cell : cells) {
+            area += cell.area;
+            const Point middle = cell.corner + 0.5 * (cell.u + cell.v);
+            EXPECT_NEAR(middle.x, 1.48, 0.5 * side + 0.03);
+            EXPECT_NEAR(middle.y, 1, side);
+            EXPECT_NEAR(middle.z, 0.5, side);
+        }
+        EXPECT_GT(area, 0.6 * side * side) << hole;
+        EXPECT_LT(area, 2 * side * side) << hole;
+    }
+}
+
+TEST(RayRows, FindAHoleByAimedRays) {
+    constexpr double hole = 0.1;
+    const Scene scene = built_scene("keyhole", {{"hole", "0.1"}});
+    Stage stage(scene);
+    stage.rooms = find_light_rooms(stage, 1, StopRequest());
+    ASSERT_NE(stage.rooms.portals(), nullptr);
+    const ElementTree tree = stage.make_elements({.edge = 1, .grading_levels = 0});
+    const LeafNumbering numbering(tree);
+    const ElementLocator locator(tree, scene.regions().size());
+    std::vector<Spectrum> b(numbering.leaves.size()), E(b.size());
+    for (std::size_t i = 0; i < b.size(); ++i)
+        if (stage.rooms.of(tree, numbering.leaves[i]) == 1) b[i] = Spectrum(1.0);
+    constexpr std::uint64_t seeds = 8;
+    double received = 0, square = 0;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const RayRows F(stage, tree, numbering, locator, {.average = 64, .least = 64, .most = 64}, seed);
+        F.gather(b, E);
+        double sum = 0;  // of the box's unit light outside, W: the hole's area
+        for (std::size_t i = 0; i < b.size(); ++i)
+            if (b[i][0] == 0) sum += tree.area(numbering.leaves[i]) * E[i][0];
+        received += sum / seeds, square += sum * sum / seeds;
+        F.gather(std::vector<Spectrum>(b.size(), Spectrum(1.0)), E);
+        const std::vector<double> kept = F.kept();
+        for (std::size_t i = 0; i < b.size(); ++i) EXPECT_NEAR(E[i][0], kept[i], 0.2);
+    }
+    EXPECT_NEAR(received, hole * hole, 0.05 * hole * hole);  // walls of the hole are of either room by whole elements
+    // Without aim one ray in ten thousand meets it: 64 of every element tell its light to a half.
+    EXPECT_LT(std::sqrt(square - received * received), 0.1 * hole * hole);
+}
+
+}  // namespace
+}  // namespace exitance
