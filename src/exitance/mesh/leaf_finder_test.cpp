@@ -61,6 +61,26 @@ TEST(LeafFinder, FindsWhatTheTreeFinds) {
     }
 }
 
+TEST(LeafFinder, FindsTrianglesOfFansWhetherTheyAreStored) {
+    const ElementTree tree = cut_at_random(60, 4);
+    ASSERT_LT(tree.first_of_fans().value, tree.size());
+    ElementTree stored = tree;
+    stored.add_root(RegionId(2), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::triangle});
+    ASSERT_EQ(stored.first_of_fans().value, stored.size());
+    const LeafFinder finder(tree), of_stored(stored);
+    EXPECT_LT(finder.own_leaves(), finder.size());
+    EXPECT_EQ(of_stored.own_leaves(), of_stored.size());
+    RandomStream random(5, Stream::mesh);
+    for (int i = 0; i < 2000; ++i) {
+        const std::size_t root = random.bits() % 2;
+        const double s = random.uniform(), t = random.uniform();
+        const Vec2 uv = uniform_in_shape(tree.patch(tree.roots()[root]).shape, s, t);
+        const LeafFinder::Found a = finder.find(root, uv), b = of_stored.find(root, uv);
+        ASSERT_EQ(a.leaf, b.leaf);
+        EXPECT_EQ(a.uv, b.uv);  // to the last bit
+    }
+}
+
 TEST(LeafFinder, TakesCornersAndEdgesOfTheRoot) {
     const ElementTree tree = cut_at_random(100, 3);
     const LeafFinder finder(tree);

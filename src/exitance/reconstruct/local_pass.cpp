@@ -184,10 +184,6 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
         report.leaves[leaf] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
     }
     out = nearest_continuous(out, stage_.scene, stage_.contacts);
-    report.leaves.resize(out.tree.size());
-    for (ElementId e : out.tree.ids())
-        if (!out.tree.parent(e).is_none() && out.tree.way(out.tree.parent(e)) == Cut::fan)
-            report.leaves[e] = report.leaves[out.tree.parent(e)];
     double noise = 0, interpolation = 0;
     for (ElementId e : tree_.leaves()) {
         const SampledElement& s = sampled_[e];

@@ -8,9 +8,11 @@ namespace exitance {
 
 /// A function on elements for rays, which read it in great numbers: the leaves under many hits are found together, and
 /// a leaf's polynomial stands in one line of memory. The same values as the function's, up to single precision.
+/// Triangles of fans that the function's tree does not store have their polynomials made where they are read.
 class QuickFunction final : public ReflectedLight {
   public:
-    /// Stands once a node where several processes make it, as all of them have to.
+    /// Stands once a node where several processes make it, as all of them have to. Where the function's
+    /// tree does not store all of its leaves, it must outlive this.
     QuickFunction(const ElementFunction& function, std::size_t region_count);
 
     void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
@@ -22,6 +24,9 @@ class QuickFunction final : public ReflectedLight {
         std::array<std::array<float, bands>, 4> coefficient;
     };
 
+    Polynomial polynomial(ElementId leaf, ElementId root) const;
+
+    const ElementFunction* function_;  ///< Null where every leaf has its polynomial.
     ElementLocator locator_;
     std::vector<Polynomial> leaves_;  ///< By leaf number.
 };

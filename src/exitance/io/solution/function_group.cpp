@@ -27,7 +27,9 @@ class Replay {
 
     std::optional<std::string> run(ElementTree& tree) {
         std::size_t root = 0;
-        tree.reserve(parent_.size());
+        const auto in_fan = [&](std::uint32_t p) { return p < cut_.size() && cut_[p] == 5; };
+        const auto triangles = static_cast<std::size_t>(std::count_if(parent_.begin(), parent_.end(), in_fan));
+        tree.reserve(parent_.size() - triangles), tree.reserve_fans(fan_element_.size(), triangles);
         while (tree.size() < parent_.size()) {
             const std::size_t at = tree.size();
             const bool good = parent_[at] == none ? add_root(tree, root++) : split(tree);
@@ -150,7 +152,7 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
         ratio.push_back(tree.ratio(e));
         if (!tree.parent(e).is_none() && tree.way(tree.parent(e)) == Cut::fan &&
             tree.children(tree.parent(e)).front() == e) {
-            const Fan& fan = tree.fan(tree.parent(e));
+            const FanView fan = tree.fan(tree.parent(e));
             fan_element.push_back(tree.parent(e).value);
             fan_places.push_back(static_cast<std::uint32_t>(1 + fan.border.size()));
             fans.insert(fans.end(), {fan.apex.x, fan.apex.y});
@@ -161,7 +163,7 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
         line.insert(line.end(), {tree.line(e).normal.x, tree.line(e).normal.y, tree.line(e).offset});
     }
     for (ElementId e : tree.roots()) {
-        const Patch& p = tree.patch(e);
+        const Patch p = tree.patch(e);
         region.push_back(tree.region(e).value);
         shape.push_back(p.is_triangle() ? 1 : 0);
         for (const Vec3& v : {p.origin, p.a, p.b}) patches.insert(patches.end(), {v.x, v.y, v.z});
