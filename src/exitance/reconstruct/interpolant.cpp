@@ -118,6 +118,7 @@ class Interpolation {
             stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts, &stop);
         for (auto& value : out.values)  // all light together is nowhere below zero
             for (float& of_band : value) of_band = std::max(of_band, 0.0f);
+        share_on_node(std::span(out.values));
         shared_ranges_of(
             fitted_.span(), apart.tree.size(), 64,
             [&](std::size_t begin, std::size_t end) {

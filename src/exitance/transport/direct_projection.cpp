@@ -120,7 +120,7 @@ class Projector {
             active = cut(active);
         }
         out_.tree.shrink_to_fit(), out_.fit.shrink_to_fit();
-        share_on_node(out_.tree), share_on_node(out_.fit.span());
+        share_on_node(out_.tree);
         return std::move(out_);
     }
 

@@ -126,7 +126,9 @@ class Replay {
 /// The values of a function, those of its leaves in the order of their ids.
 void write_values(Hdf5Writer& file, const std::string& name, const ElementFunction& function) {
     const ElementTree& tree = function.tree;
-    const auto corners_of = [&](ElementId e) { return static_cast<std::size_t>(tree.patch(e).corner_count()); };
+    const auto corners_of = [&](ElementId e) {
+        return e < tree.first_of_fans() ? static_cast<std::size_t>(tree.patch(e).corner_count()) : 3;
+    };
     std::size_t rows = 0, leaf = 0, corner = 0;
     for (ElementId e : tree.ids())
         if (tree.is_leaf(e)) {

@@ -4,6 +4,7 @@
 
 #include "exitance/io/export/export.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
@@ -196,7 +197,7 @@ TEST(Hdf5Writers, WriteRowsAsTheyWriteArrays) {
     Result<Hdf5Reader> in = Hdf5Reader::open(folder / "rows.h5");
     ASSERT_TRUE(in) << in.error().message;
     EXPECT_EQ(in->read<double>("a", 3), values);
-    EXPECT_EQ(read_text(folder / "rows.h5"), read_text(folder / "array.h5"));
+    EXPECT_EQ(*read_whole_file(folder / "rows.h5"), *read_whole_file(folder / "array.h5"));
 }
 
 TEST(Hdf5Writers, SayWhatTheDiskRefuses) {

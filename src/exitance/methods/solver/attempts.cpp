@@ -68,6 +68,7 @@ void Solver::project_direct() {
         const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);
         progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
         direct_ = std::move(fresh);
+        share_on_node(direct_.fit.span());  // nobody writes to it any more
     }
     statistics().seconds["mesh"] += watch.seconds();
 }
@@ -96,6 +97,7 @@ void Solver::attempt() {
     if (step_ == Step::decide) return;
     Stopwatch watch;
     const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
+    share_on_node(std::span(light.values));
     const QuickFunction b(light, stage_.scene.regions().size());
     release_freed_memory();
     if (step_ == Step::gather) {
@@ -132,6 +134,10 @@ void Solver::find_light() {
         if (!gives_up()) share_ = direct_share();
         light_in_ = light_by_room(stage_, *light_);
         allowed_in_ = allowed_by_room(stage_, light_in_, calibrated::whole_beyond_rooms);
+        for (const auto* const values : {&light_->direct, &light_->indirect, &light_->reflected})
+            share_on_node(std::span(*values));
+        for (const auto* const corners : {&light_->direct_corners, &light_->indirect_corners})
+            share_on_node(std::span(*corners));
     }
     statistics().seconds["solve"] += watch.seconds();
 }
@@ -152,6 +158,7 @@ bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunctio
     gathered_ = {};
     ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
     if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
+    share_on_node(std::span(indirect.values));
     if (stop_.requested()) {
         // Half a local pass is worth less than the last whole one, or than what the method has found.
         if (step_ != Step::refine) {
