@@ -118,7 +118,7 @@ struct LeafFinder::Builder {
     }
 
     std::uint32_t add_fan(ElementId e, const Frame& frame) {
-        if (tree.children(e).front() < tree.first_of_fans()) return FanWalk(tree, e, frame).add_nodes(*this);
+        if (tree.children(e).front().value < number.size()) return FanWalk(tree, e, frame).add_nodes(*this);
         ++leaves_met;
         out.fans_.push_back({frame.origin, {frame.scale.x, 0}, {0, frame.scale.y}, e, tree.patch(e).shape});
         return is_leaf | is_fan | static_cast<std::uint32_t>(out.fans_.size() - 1);
@@ -177,8 +177,10 @@ std::uint32_t LeafFinder::FanWalk::add_sectors(Builder& builder, std::size_t beg
 }
 
 LeafFinder::LeafFinder(const ElementTree& tree) {
-    const std::size_t stored = tree.first_of_fans().value;
-    if (stored < tree.size()) tree_ = tree;
+    constexpr std::size_t many = std::size_t(1) << 17;  // with what reads them they take 200 bytes each: 25 MB
+    const bool by_fans = tree.size() - tree.first_of_fans().value > many;
+    const std::size_t stored = by_fans ? tree.first_of_fans().value : tree.size();
+    if (by_fans) tree_ = tree;
     Builder builder{tree, *this, Field<ElementId, std::uint32_t>(stored)};
     std::uint32_t count = 0;
     for (ElementId e : builder.number.ids())

@@ -28,13 +28,14 @@ QuickFunction::Polynomial QuickFunction::polynomial(ElementId leaf, ElementId ro
 QuickFunction::QuickFunction(const ElementFunction& function, std::size_t region_count)
     : function_(&function), locator_(function.tree, region_count) {
     const ElementTree& tree = function.tree;
-    Field<ElementId, ElementId> root(tree.first_of_fans().value);
+    const bool has_all = locator_.leaves().own_leaves() == locator_.leaves().size();
+    Field<ElementId, ElementId> root(has_all ? tree.size() : tree.first_of_fans().value);
     leaves_.reserve(locator_.leaves().own_leaves());
     for (ElementId e : root.ids()) {
         root[e] = tree.parent(e).is_none() ? e : root[tree.parent(e)];
         if (tree.is_leaf(e)) leaves_.push_back(polynomial(e, root[e]));
     }
-    if (locator_.leaves().own_leaves() == locator_.leaves().size()) function_ = nullptr;  // all of it is here
+    if (has_all) function_ = nullptr;
     share_on_node(std::span(leaves_)), share_on_node(locator_.leaves());
 }
 

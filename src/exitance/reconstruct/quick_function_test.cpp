@@ -29,10 +29,10 @@ TEST(QuickFunction, HasTheValuesOfTheFunction) {
     }
 }
 
-TEST(QuickFunction, HasTheSameValuesOnTrianglesThatAreNotStored) {
+TEST(QuickFunction, HasTheSameValuesOnTrianglesThatTheFinderDoesNotHold) {
     ElementFunction function;
     function.tree.add_root(RegionId(0), {{0, 0, 0}, {3, 0.2, 0}, {0.5, 1, 0}, Patch::Shape::parallelogram});
-    function.tree.split(ElementId(0), Cut::both);
+    for (std::uint32_t e = 0; function.tree.size() < 50000; ++e) function.tree.split(ElementId(e), Cut::both);
     for (ElementId leaf : function.tree.leaves()) {
         std::vector<Vec2> border = function.tree.domain(leaf);
         border.push_back(border[0]);
@@ -47,7 +47,9 @@ TEST(QuickFunction, HasTheSameValuesOnTrianglesThatAreNotStored) {
     ElementFunction stored = function;
     stored.tree.add_root(RegionId(1), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::triangle});
     stored.first_value.resize(stored.tree.size());
-    ASSERT_LT(function.tree.first_of_fans(), stored.tree.first_of_fans());
+    const LeafFinder finder(function.tree), of_stored_tree(stored.tree);
+    ASSERT_LT(finder.own_leaves(), finder.size());
+    ASSERT_EQ(of_stored_tree.own_leaves(), of_stored_tree.size());
     const QuickFunction quick(function, 2), of_stored(stored, 2);
     for (int i = 0; i < 500; ++i) {
         const double s = random.uniform(), t = random.uniform();
