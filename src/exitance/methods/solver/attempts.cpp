@@ -96,9 +96,10 @@ void Solver::attempt() {
     }
     if (step_ == Step::decide) return;
     Stopwatch watch;
-    const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
+    ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
     share_on_node(std::span(light.values));
     const QuickFunction b(light, stage_.scene.regions().size());
+    if (b.stands_alone() && !sums_) light = {};
     release_freed_memory();
     if (step_ == Step::gather) {
         refined_.clear();
@@ -120,6 +121,7 @@ void Solver::attempt() {
                             .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
     if (sums_) look.points /= 2;  // without noise
     if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
+    look.coarse = &b.locator();
     certify_solution(look, options_.error_demand(), elements);
     statistics().seconds["certify"] += watch.restart();
     reach(Step::decide);

@@ -1,6 +1,7 @@
 #include "exitance/reconstruct/error/certificate.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -52,7 +53,8 @@ struct Certifier::Content {
     const ReflectedLight& b;
     CertificateOptions options;
     double mean_reflected, constant = 1;
-    ElementLocator coarse;
+    std::optional<ElementLocator> own_coarse;
+    const ElementLocator& coarse;
     std::vector<Spectrum> rho;
     std::vector<double> area;
     RayRows H;  ///< Between the leaves of `light`.
@@ -70,7 +72,7 @@ struct Certifier::Content {
           b(b_),
           options(options_),
           mean_reflected(light.mean_reflected(stage.area)),
-          coarse(light.tree, stage.scene.regions().size()),
+          coarse(options.coarse ? *options.coarse : own_coarse.emplace(light.tree, stage.scene.regions().size())),
           rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
           area(leaf_areas(light.tree, light.numbering)),
           H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1,
