@@ -10,8 +10,8 @@ namespace exitance {
 
 /// The leaves of a tree, laid out for being found by rays in great numbers: every cut is a line in the coordinates of
 /// its root, and a grid over the root says from which cut on to look. A handful of steps whatever the depth, where the
-/// tree itself takes one or two a level. Immutable; O(elements) to make, about 100 bytes a leaf; nothing for triangles
-/// of fans that the tree does not store, which are found by the fans themselves.
+/// tree itself takes one or two a level. Immutable; O(elements) to make, about 100 bytes a leaf. Where the tree does
+/// not store its fans' triangles, and they are many, they take nothing: they are found by the fans, which takes longer.
 class LeafFinder {
   public:
     LeafFinder() = default;

@@ -5,6 +5,7 @@
 
 #include "exitance/core/disjoint_sets.hpp"
 #include "exitance/core/random.hpp"
+#include "exitance/transport/distributed.hpp"
 #include "exitance/transport/light_openings.hpp"
 
 namespace exitance {
@@ -269,6 +270,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     out.lost_.resize(tree.size());
     for (std::size_t i = 0; i < kept.size(); ++i) out.lost_[numbering.leaves[i]] = static_cast<float>(1 - kept[i]);
     out.locator_ = std::move(locator);
+    share_on_node(out.lost_.span()), share_on_node(out.locator_->leaves());
     if (parts.size() < 2) return out;
     out.room_of_.resize(tree.size());
     for (std::size_t room = 0; room < parts.size(); ++room) {

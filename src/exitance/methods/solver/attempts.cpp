@@ -160,7 +160,8 @@ bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunctio
     gathered_ = {};
     ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
     if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
-    share_on_node(std::span(indirect.values));
+    share_on_node(std::span(indirect.values)), share_on_node(indirect.first_value.span());
+    share_on_node(gathered_.leaves.span());
     if (stop_.requested()) {
         // Half a local pass is worth less than the last whole one, or than what the method has found.
         if (step_ != Step::refine) {

@@ -77,6 +77,7 @@ struct Certifier::Content {
           area(leaf_areas(light.tree, light.numbering)),
           H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1,
             Dealing::by_element, RowsHeld::by_owner) {
+        share_on_node(std::span(rho)), share_on_node(std::span(area));
         if (mean_reflected <= 0) return;
         constant = error_constant(H, rho, area);
         if (options.places.empty()) narrow = find_narrow_leaves(stage, indirect.tree);
