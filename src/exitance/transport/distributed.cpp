@@ -193,18 +193,14 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
 
 namespace {
 
-/// A file without a name that holds these bytes in memory, or -1.
-int memory_file(const char* bytes, std::size_t size) {
-    const int file = memfd_create("exitance", MFD_CLOEXEC);
-    for (std::size_t done = 0; file >= 0 && done < size;) {
-        const ssize_t written = write(file, bytes + done, size - done);
-        if (written <= 0) {
-            close(file);
-            return -1;
-        }
-        done += static_cast<std::size_t>(written);
+/// Writes bytes to a place of a file; false where the system does not let it.
+bool write_to(int file, std::size_t place, std::span<const char> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (written <= 0) return false;
+        place += static_cast<std::size_t>(written), bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
-    return file;
+    return true;
 }
 
 /// Is it so in all processes of the node?
@@ -235,12 +231,13 @@ std::span<char> whole_pages(std::span<char> array, std::size_t least) {
     return array.subspan(skipped, (array.size() - skipped) / page * page);
 }
 
-/// A file in memory that holds these bytes of the first of the node, which the others find by its name; -1 in all where
-/// one of them does not.
-int file_of_node(std::span<char> pages) {
+/// A file in memory of so many bytes, which the first of the node makes and the others find by its name; -1 in all
+/// where one of them does not.
+int file_of_node(std::size_t size) {
     int rank = 0;
     MPI_Comm_rank(team.node, &rank);
-    int file = rank == 0 ? memory_file(pages.data(), pages.size()) : -1;
+    int file = rank == 0 ? memfd_create("exitance", MFD_CLOEXEC) : -1;
+    if (file >= 0 && ftruncate(file, static_cast<off_t>(size)) != 0) close(std::exchange(file, -1));
     std::array<std::int64_t, 2> place{getpid(), file};
     MPI_Bcast(place.data(), 2, MPI_INT64_T, 0, team.node);
     if (rank != 0 && place[1] >= 0) {
@@ -253,9 +250,24 @@ int file_of_node(std::span<char> pages) {
 }
 
 /// `kind`: of mmap; private pages are those of whoever writes to them, and memory that is freed is nobody else's.
-void map_pages(std::span<char> pages, int file, int kind) {
-    if (mmap(pages.data(), pages.size(), PROT_READ | PROT_WRITE, kind | MAP_FIXED, file, 0) == MAP_FAILED)
+void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
+    if (mmap(pages.data(), pages.size(), PROT_READ | PROT_WRITE, kind | MAP_FIXED, file, static_cast<off_t>(place)) ==
+        MAP_FAILED)
         end_job("the system does not let processes have memory in common any more");
+}
+
+/// Has the pages stand in the file, as the first of the node holds them. Part by part, so that little stands twice.
+void move_pages(std::span<char> pages, int file, int kind) {
+    constexpr std::size_t least = std::size_t(1) << 23, most_parts = 64;  // the system counts what is mapped, too
+    const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
+                      step = std::max(least, (pages.size() / most_parts / page + 1) * page);
+    int rank = 0;
+    MPI_Comm_rank(team.node, &rank);
+    for (std::size_t first = 0; first < pages.size(); first += step) {
+        const std::span<char> part = pages.subspan(first, std::min(step, pages.size() - first));
+        if (!all_on_node(rank != 0 || write_to(file, first, part))) end_job("no memory is left for processes to share");
+        map_pages(part, file, first, kind);
+    }
 }
 
 }  // namespace
@@ -263,9 +275,9 @@ void map_pages(std::span<char> pages, int file, int kind) {
 void share_pages(char* begin, std::size_t size) {
     constexpr std::size_t least = std::size_t(1) << 20;
     const std::span<char> pages = whole_pages({begin, size}, least);
-    const int file = pages.empty() ? -1 : file_of_node(pages);
+    const int file = pages.empty() ? -1 : file_of_node(pages.size());
     if (file < 0) return;
-    map_pages(pages, file, MAP_PRIVATE);
+    move_pages(pages, file, MAP_PRIVATE);
     team.shared_bytes += pages.size();
     close(file);
 }
@@ -274,14 +286,14 @@ std::span<char> open_in_common(std::span<char> array) {
     constexpr std::size_t least = std::size_t(1) << 17;
     if (team.node_size != static_cast<int>(team.size)) return {};
     const std::span<char> pages = whole_pages(array, least);
-    team.common_file = pages.empty() ? -1 : file_of_node(pages);
+    team.common_file = pages.empty() ? -1 : file_of_node(pages.size());
     if (team.common_file < 0) return {};
-    map_pages(pages, team.common_file, MAP_SHARED);
+    move_pages(pages, team.common_file, MAP_SHARED);
     return pages;
 }
 
 void close_in_common(std::span<char> pages) {
-    map_pages(pages, team.common_file, MAP_PRIVATE);
+    map_pages(pages, team.common_file, 0, MAP_PRIVATE);
     team.shared_bytes += pages.size();
     close(std::exchange(team.common_file, -1));
 }
