@@ -34,7 +34,7 @@ const std::vector<Door> doors{
     {"HDF5",
      std::regex("hdf5.*|H5.*"),
      {"io/solution/hdf5_library.cpp", "io/solution/hdf5_reader.cpp", "io/solution/hdf5_rehearsal.cpp",
-      "io/solution/hdf5_writer.cpp"}},
+      "io/solution/hdf5_output.cpp", "io/solution/hdf5_writer.cpp"}},
     {"libpng", std::regex("png\\.h"), {"io/pictures/png.cpp"}},
     {"libjpeg", std::regex("jpeglib\\.h"), {"io/scenes/textures/jpeg_mean.cpp"}},
     {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf/gltf.cpp", "io/scenes/gltf/gltf_parse.cpp"}},

@@ -316,15 +316,15 @@ void PlaneNodes::choose_fans() {
 
 /// Makes room for all fans, and for the nodes of all leaves.
 void reserve(const std::vector<FoundLeaves>& found, ElementTree& tree, SharedNodes& nodes) {
-    std::size_t elements = tree.size(), corners = 0;
+    std::size_t fans = 0, all = 0, corners = 0;
     for (const FoundLeaves& f : found)
         for (std::size_t k = 0; k < f.leaf.size(); ++k) {
             const std::size_t triangles = f.places[k] == 0 ? 0 : f.places[k] - 2;
-            elements += triangles;
+            fans += triangles > 0, all += triangles;
             corners += triangles > 0 ? 3 * triangles : f.nodes[k];
         }
-    tree.reserve(elements);
-    nodes.first_corner.reserve(elements), nodes.node_of.reserve(corners);
+    tree.reserve_fans(fans, all);
+    nodes.first_corner.reserve(tree.size() + all), nodes.node_of.reserve(corners);
 }
 
 /// Cuts the leaves of one plane into their fans, and gives all of them their nodes, after those of the planes before.

@@ -16,8 +16,8 @@ struct SharedNodes {
     std::vector<std::uint32_t> first_node;         ///< from here on: one a plane, and one past the last.
 
     std::span<const std::uint32_t> of(ElementId leaf, const ElementTree& tree) const {
-        return std::span(node_of).subspan(first_corner[leaf],
-                                          static_cast<std::size_t>(tree.patch(leaf).corner_count()));
+        const int corners = leaf < tree.first_of_fans() ? tree.patch(leaf).corner_count() : 3;
+        return std::span(node_of).subspan(first_corner[leaf], static_cast<std::size_t>(corners));
     }
 };
 

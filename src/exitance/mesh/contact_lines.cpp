@@ -169,6 +169,10 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
     for (SurfaceId s : scene.surfaces().ids())
         for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);
     faces_ = Bvh(boxes);
+    std::size_t edges = 0;
+    for (const Region& region : scene.regions())
+        for (const std::vector<Point>& loop : region.loops) edges += loop.size();
+    edges_.reserve(edges);
     // Edges between coplanar faces are in nothing's way: borders of regions alone count.
     boxes.clear();
     const auto add_loop = [&](const std::vector<Point>& loop, RegionId r) {

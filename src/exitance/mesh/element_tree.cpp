@@ -95,30 +95,53 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
 
 void ElementTree::Content::add(RegionId in, ElementId above, const Patch& shape, double of_domain) {
     patch.add(shape);
-    nodes.add({.children = {}, .shape = shape.shape});
     parent.add(above);
     region.add(in);
     area.add(of_domain);
     cell.add(none);
 }
 
+void ElementTree::add(RegionId region, ElementId parent, const Patch& shape, double area) {
+    content_.change().add(region, parent, shape, area);
+    cuts_.change().nodes.add({.children = {}, .shape = shape.shape});
+}
+
+Patch ElementTree::fan_triangle(ElementId e) const {
+    const ElementId above = fanned(e);
+    const Patch& parent = content_->patch[above];
+    const FanView fan = this->fan(above);
+    const std::size_t i = e.value - cuts_->nodes[above].children.front().value;
+    const Point apex = parent.at(fan.apex);
+    return {apex, parent.at(fan.border[i]) - apex, parent.at(fan.border[i + 1]) - apex, Patch::Shape::triangle};
+}
+
+void ElementTree::store_triangles() {
+    const std::size_t first = stored(), last = size();
+    if (first == last) return;
+    std::vector<std::pair<ElementId, Patch>> triangles;
+    for (std::size_t i = first; i < last; ++i) triangles.emplace_back(fanned(ElementId(i)), fan_triangle(ElementId(i)));
+    cuts_.change().fan_of = {};
+    for (const auto& [parent, patch] : triangles) add(RegionId(content_->region[parent]), parent, patch, patch.area());
+}
+
 ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
-    Content& c = content_.change();
-    c.add(region, ElementId(), shape, shape.area());
-    c.roots.push_back(ElementId(c.patch.size() - 1));
-    return c.roots.back();
+    store_triangles();
+    add(region, ElementId(), shape, shape.area());
+    content_.change().roots.push_back(ElementId(stored() - 1));
+    return content_->roots.back();
 }
 
 ElementId ElementTree::split(ElementId leaf, Cut way, double ratio) {
     EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && way != Cut::none && way != Cut::line && way != Cut::fan);
-    Content& c = content_.change();
-    const std::size_t first = c.patch.size();
-    for (const Patch& piece : cut(c.patch[leaf], way, ratio))
-        c.add(RegionId(c.region[leaf]), leaf, piece, piece.area());
-    Node& node = c.nodes[leaf];
-    node.children = {first, c.patch.size()};
-    node.way = c.patch[leaf].is_triangle() ? Cut::both : way;
-    node.ratio = ratio;
+    store_triangles();
+    const std::size_t first = stored();
+    const RegionId region = content_->region[leaf];
+    const Patch whole = content_->patch[leaf];
+    for (const Patch& piece : cut(whole, way, ratio)) add(region, leaf, piece, piece.area());
+    Node& made = cuts_.change().nodes[leaf];
+    made.children = {first, stored()};
+    made.way = whole.is_triangle() ? Cut::both : way;
+    made.ratio = ratio;
     return ElementId(first);
 }
 
@@ -129,8 +152,9 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
     const std::array<std::vector<Vec2>, 2> side = {side_of_line(whole, line, -1), side_of_line(whole, line, +1)};
     for (const std::vector<Vec2>& polygon : side)
         if (polygon.size() < 3 || std::abs(polygon_area(polygon)) < least * whole_area) return ElementId();
+    store_triangles();
     Content& c = content_.change();
-    const std::size_t first = c.patch.size();
+    const std::size_t first = stored();
     const Patch parent = c.patch[leaf];
     LineCut record{line, {}, {}};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -143,18 +167,18 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
         const Patch frame{parent.at(lo), (hi.x - lo.x) * parent.a, (hi.y - lo.y) * parent.b,
                           Patch::Shape::parallelogram};
         for (Vec2& p : polygon) p = {(p.x - lo.x) / (hi.x - lo.x), (p.y - lo.y) / (hi.y - lo.y)};
-        c.add(RegionId(c.region[leaf]), leaf, frame, frame.area() * std::abs(polygon_area(polygon)));
+        add(RegionId(c.region[leaf]), leaf, frame, frame.area() * std::abs(polygon_area(polygon)));
         record.origin[i] = lo;
         record.size[i] = hi - lo;
         c.cell[ElementId(c.patch.size() - 1)] = static_cast<std::uint32_t>(c.first_corner.size() - 1);
         c.corners.insert(c.corners.end(), polygon.begin(), polygon.end());
         c.first_corner.push_back(static_cast<std::uint32_t>(c.corners.size()));
     }
-    Node& node = c.nodes[leaf];
-    node.children = {first, c.patch.size()};
-    node.way = Cut::line;
-    node.line = static_cast<std::uint32_t>(c.cuts.size());
-    c.cuts.push_back(record);
+    Node& made = cuts_.change().nodes[leaf];
+    made.children = {first, stored()};
+    made.way = Cut::line;
+    made.line = static_cast<std::uint32_t>(c.lines.size());
+    c.lines.push_back(record);
     return ElementId(first);
 }
 
@@ -163,26 +187,24 @@ ElementId ElementTree::split_fan(ElementId leaf, const Fan& fan) {
     constexpr double least = 1e-12;  // of the element's frame
     for (std::size_t i = 1; i < fan.border.size(); ++i)
         if (!(cross(fan.border[i - 1] - fan.apex, fan.border[i] - fan.apex) > least)) return ElementId();
-    Content& c = content_.change();
-    const std::size_t first = c.patch.size();
-    const Patch parent = c.patch[leaf];
-    const Point apex = parent.at(fan.apex);
-    for (std::size_t i = 1; i < fan.border.size(); ++i) {
-        const Patch triangle{apex, parent.at(fan.border[i - 1]) - apex, parent.at(fan.border[i]) - apex,
-                             Patch::Shape::triangle};
-        c.add(RegionId(c.region[leaf]), leaf, triangle, triangle.area());
-    }
-    Node& node = c.nodes[leaf];
-    node.children = {first, c.patch.size()};
-    node.way = Cut::fan;
-    node.line = static_cast<std::uint32_t>(c.fans.size());
-    c.fans.push_back(fan);
+    if (!is_stored(leaf)) store_triangles();
+    Cuts& c = cuts_.change();
+    const std::size_t first = size(), triangles = fan.border.size() - 1;
+    const auto number = static_cast<std::uint32_t>(c.fans.size());
+    c.fan_of.insert(c.fan_of.end(), triangles, number);
+    c.fans.push_back({leaf, static_cast<std::uint32_t>(c.places.size())});
+    c.places.push_back(fan.apex);
+    c.places.insert(c.places.end(), fan.border.begin(), fan.border.end());
+    Node& made = c.nodes[leaf];
+    made.children = {first, first + triangles};
+    made.way = Cut::fan;
+    made.line = number;
     return ElementId(first);
 }
 
 /// The triangle that a place lies in deepest.
 ElementTree::Place ElementTree::in_fan(ElementId e, Vec2 uv) const {
-    const Fan& fan = this->fan(e);
+    const FanView fan = this->fan(e);
     Place out;
     double deepest = -HUGE_VAL;
     for (std::size_t i = 1; i < fan.border.size(); ++i) {
@@ -199,19 +221,21 @@ std::vector<Vec2> ElementTree::domain(ElementId e) const {
         const std::span<const Vec2> corners = cell_domain(e);
         return {corners.begin(), corners.end()};
     }
+    const Patch shape = patch(e);
     std::vector<Vec2> out;
-    for (int i = 0; i < patch(e).corner_count(); ++i) out.push_back(patch(e).corner_uv(i));
+    for (int i = 0; i < shape.corner_count(); ++i) out.push_back(shape.corner_uv(i));
     return out;
 }
 
 std::vector<Point> ElementTree::outline(ElementId e) const {
     std::vector<Point> out;
-    for (const Vec2 p : domain(e)) out.push_back(patch(e).at(p));
+    const Patch whole = patch(e);
+    for (const Vec2 p : domain(e)) out.push_back(whole.at(p));
     return out;
 }
 
 Vec2 ElementTree::centre(ElementId e) const {
-    if (!is_cell(e)) return patch(e).is_triangle() ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0.5, 0.5};
+    if (!is_cell(e)) return node(e).shape == Patch::Shape::triangle ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0.5, 0.5};
     const std::span<const Vec2> p = cell_domain(e);
     Vec2 moment;
     for (std::size_t i = 2; i < p.size(); ++i)
@@ -232,7 +256,7 @@ double ElementTree::reach(ElementId e, Vec2 uv) const {
 }
 
 Vec2 ElementTree::uniform(ElementId e, double s, double t) const {
-    if (!is_cell(e)) return uniform_in_shape(patch(e).shape, s, t);
+    if (!is_cell(e)) return uniform_in_shape(node(e).shape, s, t);
     // A triangle of the fan around the first corner, chosen by its area with the first number, which is then stretched.
     const std::span<const Vec2> p = cell_domain(e);
     double rest = s * polygon_area(p);
@@ -256,45 +280,52 @@ std::vector<ElementId> ElementTree::leaves() const {
 
 ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
     uv = into_shape(uv, patch(e).shape);
-    for (const Node* node = &content_->nodes[e]; !node->children.empty(); node = &content_->nodes[e]) {
-        if (node->way == Cut::line) {
-            const LineCut& cut = content_->cuts[node->line];
+    for (const Node* at = &node(e); !at->children.empty(); at = &node(e)) {
+        if (at->way == Cut::line) {
+            const LineCut& cut = content_->lines[at->line];
             const std::size_t side = cut.line.distance(uv) <= 0 ? 0 : 1;
             const Vec2 from = uv - cut.origin[side];
             uv = {from.x / cut.size[side].x, from.y / cut.size[side].y};
-            e = node->children[side];
-        } else if (node->way == Cut::fan) {
+            e = at->children[side];
+        } else if (at->way == Cut::fan) {
             const Place place = in_fan(e, uv);
             uv = place.uv;
             e = place.element;
         } else {
-            const auto [child, inside] = descend(uv, node->shape, node->way, node->ratio);
+            const auto [child, inside] = descend(uv, at->shape, at->way, at->ratio);
             uv = inside;
-            e = node->children[child];
+            e = at->children[child];
         }
     }
-    return {e, into_shape(uv, content_->nodes[e].shape)};
+    return {e, into_shape(uv, node(e).shape)};
 }
 
 void ElementTree::reserve(std::size_t elements) {
     Content& c = content_.change();
-    c.patch.reserve(elements), c.nodes.reserve(elements), c.parent.reserve(elements), c.region.reserve(elements);
-    c.area.reserve(elements), c.cell.reserve(elements);
+    c.patch.reserve(elements), c.parent.reserve(elements), c.region.reserve(elements), c.area.reserve(elements);
+    c.cell.reserve(elements), cuts_.change().nodes.reserve(elements);
+}
+
+void ElementTree::reserve_fans(std::size_t fans, std::size_t triangles) {
+    Cuts& c = cuts_.change();
+    const std::size_t more = c.fans.size() + fans;
+    c.fans.reserve(more), c.places.reserve(c.places.size() + triangles + 2 * fans);
+    c.fan_of.reserve(c.fan_of.size() + triangles);
 }
 
 void ElementTree::shrink_to_fit() {
     Content& c = content_.change();
-    c.patch.shrink_to_fit(), c.nodes.shrink_to_fit(), c.parent.shrink_to_fit(), c.region.shrink_to_fit();
-    c.area.shrink_to_fit(), c.cell.shrink_to_fit();
-    c.first_corner.shrink_to_fit(), c.corners.shrink_to_fit(), c.cuts.shrink_to_fit(), c.fans.shrink_to_fit();
+    c.patch.shrink_to_fit(), c.parent.shrink_to_fit(), c.region.shrink_to_fit(), c.area.shrink_to_fit();
+    c.cell.shrink_to_fit(), c.first_corner.shrink_to_fit(), c.corners.shrink_to_fit(), c.lines.shrink_to_fit();
+    Cuts& cuts = cuts_.change();
+    cuts.nodes.shrink_to_fit(), cuts.fans.shrink_to_fit(), cuts.places.shrink_to_fit(), cuts.fan_of.shrink_to_fit();
 }
 
 std::size_t ElementTree::memory_bytes() const {
     const Content& c = *content_;
-    std::size_t of_fans = 0;
-    for (const Fan& fan : c.fans) of_fans += sizeof(Fan) + fan.border.size() * sizeof(Vec2);
-    return of_fans + c.patch.size() * (sizeof(Patch) + sizeof(Node) + 3 * sizeof(ElementId) + sizeof(double)) +
-           c.cuts.size() * sizeof(LineCut) + 4 * c.first_corner.size() + c.corners.size() * sizeof(Vec2);
+    return stored() * (sizeof(Patch) + sizeof(Node) + 3 * sizeof(ElementId) + sizeof(double)) +
+           c.lines.size() * sizeof(LineCut) + 4 * c.first_corner.size() + c.corners.size() * sizeof(Vec2) +
+           cuts_->fans.size() * sizeof(FanCut) + cuts_->places.size() * sizeof(Vec2) + 4 * cuts_->fan_of.size();
 }
 
 }  // namespace exitance

@@ -55,6 +55,11 @@ struct Fan {
     Vec2 apex;
     std::vector<Vec2> border;
 };
+/// A fan as a tree holds it.
+struct FanView {
+    Vec2 apex;
+    std::span<const Vec2> border;
+};
 
 /// Coordinates that rounding left at most a little outside the reference shape, moved onto it.
 Vec2 into_shape(Vec2 uv, Patch::Shape shape);
@@ -67,7 +72,8 @@ std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
 
 /// Elements from whole pieces of a region (roots) to leaves, in one growing pool. Children lie side by side and after
 /// their parent. Hence one forward sweep pushes light down, one backward sweep pulls it up, and neither recurses.
-/// Ids survive growth; spans and references do not. Copies share their memory until one of them is cut.
+/// Ids survive growth; spans and references do not. Copies share their memory until one of them is cut; cutting leaves
+/// into fans takes no more of it than what the fans are.
 ///
 /// Where other polygons touch an element (a box on a floor), light jumps along a straight line that follows none of its
 /// directions. There an element is cut along that line into cells: convex parts of a parallelogram, their frame. A
@@ -85,30 +91,40 @@ class ElementTree {
     /// done, when one of them has no area.
     ElementId split_fan(ElementId leaf, const Fan& fan);
 
-    std::size_t size() const { return content_->patch.size(); }
-    IdRange<ElementId> ids() const { return content_->patch.ids(); }  ///< Parents before children.
+    std::size_t size() const { return stored() + cuts_->fan_of.size(); }
+    IdRange<ElementId> ids() const { return {0, size()}; }  ///< Parents before children.
     const std::vector<ElementId>& roots() const { return content_->roots; }
-    IdRange<ElementId> children(ElementId e) const { return content_->nodes[e].children; }  ///< Empty for a leaf.
-    bool is_leaf(ElementId e) const { return content_->nodes[e].children.empty(); }
-    Cut way(ElementId e) const { return content_->nodes[e].way; }  ///< How an element was cut; none for a leaf.
-    double ratio(ElementId e) const {
-        return content_->nodes[e].ratio;
-    }  ///< Where; meaningful for cuts across one direction.
-    ElementId parent(ElementId e) const { return content_->parent[e]; }  ///< None for a root.
-    RegionId region(ElementId e) const { return content_->region[e]; }
-    const Patch& patch(ElementId e) const { return content_->patch[e]; }
-    double area(ElementId e) const { return content_->area[e]; }  ///< Of its domain, m^2.
+    IdRange<ElementId> children(ElementId e) const { return node(e).children; }  ///< Empty for a leaf.
+    bool is_leaf(ElementId e) const { return node(e).children.empty(); }
+    Cut way(ElementId e) const { return node(e).way; }         ///< How an element was cut; none for a leaf.
+    double ratio(ElementId e) const { return node(e).ratio; }  ///< Where; meaningful for cuts across one direction.
+    ElementId parent(ElementId e) const {
+        return is_stored(e) ? content_->parent[e] : fanned(e);
+    }  ///< None for a root.
+    RegionId region(ElementId e) const { return content_->region[is_stored(e) ? e : fanned(e)]; }
+    Patch patch(ElementId e) const { return is_stored(e) ? content_->patch[e] : fan_triangle(e); }
+    double area(ElementId e) const {
+        return is_stored(e) ? content_->area[e] : fan_triangle(e).area();
+    }  ///< Of its domain, m^2.
     const CutLine& line(ElementId e) const {
-        return content_->cuts[content_->nodes[e].line].line;
+        return content_->lines[node(e).line].line;
     }  ///< Of an element cut along a line.
     /// Of an element cut into a fan.
-    const Fan& fan(ElementId e) const { return content_->fans[content_->nodes[e].line]; }
+    FanView fan(ElementId e) const {
+        const std::uint32_t i = node(e).line, first = cuts_->fans[i].first_place;
+        const std::size_t end = i + 1 < cuts_->fans.size() ? cuts_->fans[i + 1].first_place : cuts_->places.size();
+        return {cuts_->places[first], std::span(cuts_->places).subspan(first + 1, end - first - 1)};
+    }
+    /// Elements from this one on are the triangles of fans, which are leaves: those that were cut last.
+    ElementId first_of_fans() const { return ElementId(stored()); }
     /// Of an element cut along a line: the frame of its cell on a side, origin and size in the element's coordinates.
     std::array<Vec2, 2> cell_frame(ElementId e, std::size_t side) const {
-        const LineCut& cut = content_->cuts[content_->nodes[e].line];
+        const LineCut& cut = content_->lines[node(e).line];
         return {cut.origin[side], cut.size[side]};
     }
-    bool is_cell(ElementId e) const { return content_->cell[e] != none; }  ///< Is its domain less than its patch?
+    bool is_cell(ElementId e) const {
+        return is_stored(e) && content_->cell[e] != none;
+    }  ///< Is its domain less than its patch?
     /// What the element covers, as a convex polygon in its own coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
     /// The same in space, metres.
@@ -134,11 +150,14 @@ class ElementTree {
     template <class Visit>
     void visit_arrays(const Visit& visit) const {
         const Content& c = *content_;
-        visit(c.patch.span()), visit(c.nodes.span()), visit(c.parent.span()), visit(c.region.span());
-        visit(c.area.span()), visit(c.cell.span()), visit(std::span(c.cuts)), visit(std::span(c.corners));
+        visit(c.patch.span()), visit(c.parent.span()), visit(c.region.span()), visit(c.area.span());
+        visit(c.cell.span()), visit(std::span(c.lines)), visit(std::span(c.corners)), visit(cuts_->nodes.span());
+        visit(std::span(cuts_->fan_of)), visit(std::span(cuts_->fans)), visit(std::span(cuts_->places));
     }
-    /// Makes room for so many elements in all, so that growing to them copies nothing.
+    /// Makes room for so many elements but for the triangles of fans, so that growing to them copies nothing.
     void reserve(std::size_t elements);
+    /// The same for fans, with so many triangles.
+    void reserve_fans(std::size_t fans, std::size_t triangles);
     /// Gives back memory kept for growth.
     void shrink_to_fit();
 
@@ -157,11 +176,11 @@ class ElementTree {
         CutLine line;
         std::array<Vec2, 2> origin, size;
     };
+    /// What elements are.
     struct Content {
         void add(RegionId region, ElementId parent, const Patch& shape, double area);
 
         Field<ElementId, Patch> patch;
-        Field<ElementId, Node> nodes;
         Field<ElementId, ElementId> parent;
         Field<ElementId, RegionId> region;
         Field<ElementId, double> area;
@@ -169,17 +188,43 @@ class ElementTree {
             cell;  ///< Of a cell: its domain is [first_corner[cell], first_corner[cell + 1])
         std::vector<std::uint32_t> first_corner = {0};
         std::vector<Vec2> corners;  ///< of these.
-        std::vector<LineCut> cuts;
-        std::vector<Fan> fans;
+        std::vector<LineCut> lines;
         std::vector<ElementId> roots;
     };
+    struct FanCut {
+        ElementId element;
+        std::uint32_t first_place;
+    };
+    /// How they are cut. The triangles of fans follow from these. Where they are many, as in functions that are joined
+    /// to continuous ones, each takes some 20 bytes in place of more than 100: as long as no others are added, those at
+    /// the end are not stored.
+    struct Cuts {
+        Field<ElementId, Node> nodes;       ///< Of what is stored.
+        std::vector<FanCut> fans;           ///< In the order in which they were cut.
+        std::vector<Vec2> places;           ///< Of each, its apex, then its border.
+        std::vector<std::uint32_t> fan_of;  ///< The fan of each triangle that is not stored.
+    };
+
+    std::size_t stored() const { return content_->patch.size(); }
+    bool is_stored(ElementId e) const { return e.value < stored(); }
+    const Node& node(ElementId e) const {
+        static constexpr Node triangle{.children = {}, .shape = Patch::Shape::triangle};
+        return is_stored(e) ? cuts_->nodes[e] : triangle;
+    }
+    /// The parent of a triangle that is not stored.
+    ElementId fanned(ElementId e) const { return cuts_->fans[cuts_->fan_of[e.value - stored()]].element; }
+    Patch fan_triangle(ElementId e) const;
+    /// Stores all triangles, so that other elements can follow them.
+    void store_triangles();
+    void add(RegionId region, ElementId parent, const Patch& shape, double area);
     Place in_fan(ElementId e, Vec2 uv) const;
     std::span<const Vec2> cell_domain(ElementId e) const {
         const std::uint32_t* const first = &content_->first_corner[content_->cell[e]];
         return std::span(content_->corners).subspan(first[0], first[1] - first[0]);
     }
 
-    CopyOnWrite<Content> content_;  ///< Many functions stand on one tree.
+    CopyOnWrite<Content> content_;  ///< Many functions stand on one tree,
+    CopyOnWrite<Cuts> cuts_;        ///< and on some that differ by their fans alone.
 };
 
 }  // namespace exitance

@@ -32,7 +32,7 @@ void archive(ArchiveWriter& a, const ElementTree& tree) {
             const Cut way = tree.way(parent);
             cuts.push_back({parent, way, tree.ratio(parent), way == Cut::line ? tree.line(parent) : CutLine{}});
             if (way != Cut::fan) continue;
-            const Fan& fan = tree.fan(parent);
+            const FanView fan = tree.fan(parent);
             cuts.back().fan_size = static_cast<std::uint32_t>(fan.border.size());
             fans.push_back(fan.apex);
             fans.insert(fans.end(), fan.border.begin(), fan.border.end());

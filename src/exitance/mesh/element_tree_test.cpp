@@ -73,6 +73,76 @@ TEST_P(EveryShape, UniformPlacesHaveTheDomainsCentre) {
     }
 }
 
+TEST_P(EveryShape, TrianglesOfFansAreTheSameWhetherTheyAreStored) {
+    const ElementTree tree = well_cut_tree(GetParam());
+    ASSERT_LT(tree.first_of_fans().value, tree.size());
+    ElementTree stored = tree;
+    stored.add_root(RegionId(1), patch(Patch::Shape::triangle));
+    EXPECT_EQ(stored.first_of_fans().value, stored.size());
+    EXPECT_EQ(stored.size(), tree.size() + 1);
+    EXPECT_EQ(tree.ids().size(), tree.size());
+    for (ElementId e : tree.ids()) {
+        const Patch a = tree.patch(e), b = stored.patch(e);
+        EXPECT_TRUE(a.origin == b.origin && a.a == b.a && a.b == b.b && a.shape == b.shape);
+        EXPECT_EQ(tree.area(e), stored.area(e));
+        EXPECT_EQ(tree.parent(e), stored.parent(e));
+        EXPECT_EQ(tree.region(e), stored.region(e));
+        EXPECT_EQ(tree.way(e), stored.way(e));
+        EXPECT_EQ(tree.is_cell(e), stored.is_cell(e));
+        ASSERT_EQ(tree.children(e).size(), stored.children(e).size());
+        for (ElementId child : tree.children(e)) EXPECT_EQ(tree.parent(child), e);
+    }
+    RandomStream random(1, Stream::mesh);
+    for (int k = 0; k < 200; ++k) {
+        const Vec2 uv = uniform_in_shape(GetParam(), random.uniform(), random.uniform());
+        const ElementTree::Place a = tree.leaf_at(ElementId(0), uv), b = stored.leaf_at(ElementId(0), uv);
+        EXPECT_TRUE(a.element == b.element && a.uv == b.uv);
+    }
+}
+
+TEST(ElementTree, TrianglesOfFansCanBeCut) {
+    ElementTree tree = well_cut_tree(Patch::Shape::parallelogram);
+    const ElementId last(tree.size() - 1);
+    const Patch before = tree.patch(last);
+    const ElementId first = tree.split(last, Cut::both);
+    EXPECT_EQ(first.value, last.value + 1);
+    EXPECT_EQ(tree.patch(first).origin, before.origin);
+    EXPECT_EQ(tree.children(last).size(), 4u);
+    // And into fans themselves.
+    ElementTree fans = well_cut_tree(Patch::Shape::parallelogram);
+    const std::vector<Vec2> corners = fans.domain(last);
+    const ElementId child = fans.split_fan(last, {fans.centre(last), {corners[0], corners[1], corners[2], corners[0]}});
+    EXPECT_EQ(child.value, last.value + 1);
+    EXPECT_EQ(fans.parent(child), last);
+    EXPECT_NEAR(fans.area(child) + fans.area(ElementId(child.value + 1)) + fans.area(ElementId(child.value + 2)),
+                before.area(), 1e-15);  // rounding
+}
+
+TEST(ElementTree, CopiesThatDifferByFansShareTheRest) {
+    ElementTree tree;
+    tree.add_root(RegionId(0), patch(Patch::Shape::parallelogram));
+    for (std::uint32_t e = 0; e < 200; ++e) tree.split(ElementId(e), Cut::both);
+    ElementTree fans = tree;
+    std::size_t triangles = 0;
+    for (ElementId leaf : tree.leaves()) {
+        std::vector<Vec2> border = fans.domain(leaf);
+        border.push_back(border[0]);
+        fans.split_fan(leaf, {fans.centre(leaf), border});
+        triangles += 4;
+    }
+    EXPECT_EQ(fans.size(), tree.size() + triangles);
+    // A place and a half of 16 bytes a triangle, and the fan's own few.
+    EXPECT_LE(fans.memory_bytes() - tree.memory_bytes(), 32 * triangles);
+    tree.visit_arrays([&](const auto& of_tree) {
+        if (of_tree.size_bytes() != tree.size() * sizeof(Patch)) return;
+        bool shared = false;
+        fans.visit_arrays([&](const auto& of_fans) {
+            shared |= static_cast<const void*>(of_fans.data()) == static_cast<const void*>(of_tree.data());
+        });
+        EXPECT_TRUE(shared);
+    });
+}
+
 TEST(ElementTree, ALineThatMissesAnElementCutsNothing) {
     ElementTree tree;
     tree.add_root(RegionId(0), patch(Patch::Shape::parallelogram));

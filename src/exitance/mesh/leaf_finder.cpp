@@ -5,6 +5,77 @@
 
 namespace exitance {
 
+/// Own coordinates of an element are (root's - origin) x scale: all but a fan's triangles are parallel to their
+/// root.
+struct LeafFinder::Frame {
+    Vec2 origin, scale;
+
+    Frame part(Vec2 at, Vec2 stretch) const {
+        return {{origin.x + at.x / scale.x, origin.y + at.y / scale.y}, {scale.x * stretch.x, scale.y * stretch.y}};
+    }
+    /// A cut along the line normal . uv = offset, in these coordinates.
+    Node line(Vec2 normal, double offset) const {
+        const Vec2 n = {normal.x * scale.x, normal.y * scale.y};
+        return {n, offset + dot(n, origin), {0, 1}};
+    }
+};
+
+/// Triangles of a fan, told apart by lines through its apex. Where they go all around it, the first line parts them in
+/// two halves, which share the triangle on its far side.
+class LeafFinder::FanWalk {
+  public:
+    FanWalk(const ElementTree& tree, ElementId e, const Frame& frame)
+        : tree_(tree), element_(e), fan_(tree.fan(e)), frame_(frame) {}
+
+    /// The triangle that holds a point of the root, by its place in the fan.
+    std::size_t find(Vec2 uv) const {
+        std::size_t begin = 0, end = fan_.border.size() - 1;
+        if (goes_around()) {
+            const std::size_t far = far_side();
+            if (ray(0).part_of(uv) == 1)
+                end = far + 1;
+            else
+                begin = far;
+        }
+        while (end - begin > 1) {
+            const std::size_t middle = (begin + end) / 2;
+            (ray(middle).part_of(uv) == 0 ? end : begin) = middle;
+        }
+        return begin;
+    }
+    Leaf leaf(std::size_t i) const {
+        const Vec2 a = fan_.border[i] - fan_.apex, b = fan_.border[i + 1] - fan_.apex, s = frame_.scale;
+        const double area = cross(a, b);
+        return {{frame_.origin.x + fan_.apex.x / s.x, frame_.origin.y + fan_.apex.y / s.y},
+                {s.x * b.y / area, -s.y * b.x / area},
+                {-s.x * a.y / area, s.y * a.x / area},
+                tree_.children(element_)[i],
+                Patch::Shape::triangle};
+    }
+
+    std::uint32_t add_nodes(Builder& builder) const;
+
+  private:
+    bool goes_around() const { return fan_.border.front() == fan_.border.back(); }
+    std::size_t far_side() const {
+        const Vec2 start = fan_.border[0] - fan_.apex;
+        std::size_t far = 0;
+        while (far + 2 < fan_.border.size() && cross(start, fan_.border[far + 1] - fan_.apex) >= 0) ++far;
+        return far;
+    }
+    /// The line through a place of the border; its parts are the triangles before it and those after it.
+    Node ray(std::size_t i) const {
+        const Vec2 d = fan_.border[i] - fan_.apex, n = {-d.y, d.x};
+        return frame_.line(n, dot(n, fan_.apex));
+    }
+    std::uint32_t add_sectors(Builder& builder, std::size_t begin, std::size_t end) const;
+
+    const ElementTree& tree_;
+    ElementId element_;
+    FanView fan_;
+    Frame frame_;
+};
+
 /// Walks the tree from its roots and writes cuts and leaves down in the coordinates of the root.
 struct LeafFinder::Builder {
     const ElementTree& tree;
@@ -12,31 +83,24 @@ struct LeafFinder::Builder {
     Field<ElementId, std::uint32_t> number;
     std::size_t leaves_met = 0;
 
-    /// Own coordinates of an element are (root's - origin) x scale: all but a fan's triangles are parallel to their
-    /// root.
-    struct Frame {
-        Vec2 origin, scale;
-
-        Frame part(Vec2 at, Vec2 stretch) const {
-            return {{origin.x + at.x / scale.x, origin.y + at.y / scale.y}, {scale.x * stretch.x, scale.y * stretch.y}};
-        }
-    };
-
     std::uint32_t add_node(const Frame& frame, Vec2 normal, double offset) {
-        const Vec2 n = {normal.x * frame.scale.x, normal.y * frame.scale.y};
-        out.nodes_.push_back({n, offset + dot(n, frame.origin), {0, 0}});
+        return add_node(frame.line(normal, offset));
+    }
+    std::uint32_t add_node(const Node& node) {
+        out.nodes_.push_back(node);
         return static_cast<std::uint32_t>(out.nodes_.size() - 1);
     }
     void set(std::uint32_t node, std::size_t side, std::uint32_t part) { out.nodes_[node].part[side] = part; }
 
-    std::uint32_t add_leaf(ElementId e, Vec2 origin, Vec2 du, Vec2 dv) {
+    std::uint32_t add_leaf(const Leaf& leaf) {
         ++leaves_met;
-        out.leaves_[number[e]] = {origin, du, dv, e, tree.patch(e).shape};
-        return is_leaf | number[e];
+        out.leaves_[number[leaf.id]] = leaf;
+        return is_leaf | number[leaf.id];
     }
 
     std::uint32_t add(ElementId e, const Frame& frame) {
-        if (tree.is_leaf(e)) return add_leaf(e, frame.origin, {frame.scale.x, 0}, {0, frame.scale.y});
+        if (tree.is_leaf(e))
+            return add_leaf({frame.origin, {frame.scale.x, 0}, {0, frame.scale.y}, e, tree.patch(e).shape});
         if (tree.way(e) == Cut::line) return add_line(e, frame);
         if (tree.way(e) == Cut::fan) return add_fan(e, frame);
         return tree.patch(e).is_triangle() ? add_triangle(e, frame) : add_parallelogram(e, frame);
@@ -53,41 +117,11 @@ struct LeafFinder::Builder {
         return node;
     }
 
-    /// Lines through the apex. Where the triangles go all around it, the first line parts them in two halves, which
-    /// share the triangle on its far side.
     std::uint32_t add_fan(ElementId e, const Frame& frame) {
-        const Fan& fan = tree.fan(e);
-        const std::size_t count = fan.border.size() - 1;
-        if (!(fan.border.front() == fan.border.back())) return add_sectors(e, frame, 0, count);
-        const Vec2 start = fan.border[0] - fan.apex;
-        std::size_t far = 0;
-        while (far + 1 < count && cross(start, fan.border[far + 1] - fan.apex) >= 0) ++far;
-        const std::uint32_t node = add_ray(fan, 0, frame);
-        set(node, 1, add_sectors(e, frame, 0, far + 1));
-        set(node, 0, add_sectors(e, frame, far, count));
-        return node;
-    }
-
-    std::uint32_t add_ray(const Fan& fan, std::size_t i, const Frame& frame) {
-        const Vec2 d = fan.border[i] - fan.apex, n = {-d.y, d.x};
-        return add_node(frame, n, dot(n, fan.apex));
-    }
-
-    /// Triangles that together take half a turn at most.
-    std::uint32_t add_sectors(ElementId e, const Frame& frame, std::size_t begin, std::size_t end) {
-        const Fan& fan = tree.fan(e);
-        if (end - begin == 1) {
-            const Vec2 a = fan.border[begin] - fan.apex, b = fan.border[end] - fan.apex, s = frame.scale;
-            const double area = cross(a, b);
-            return add_leaf(tree.children(e)[begin],
-                            {frame.origin.x + fan.apex.x / s.x, frame.origin.y + fan.apex.y / s.y},
-                            {s.x * b.y / area, -s.y * b.x / area}, {-s.x * a.y / area, s.y * a.x / area});
-        }
-        const std::size_t middle = (begin + end) / 2;
-        const std::uint32_t node = add_ray(fan, middle, frame);
-        set(node, 0, add_sectors(e, frame, begin, middle));
-        set(node, 1, add_sectors(e, frame, middle, end));
-        return node;
+        if (tree.children(e).front().value < number.size()) return FanWalk(tree, e, frame).add_nodes(*this);
+        ++leaves_met;
+        out.fans_.push_back({frame.origin, {frame.scale.x, 0}, {0, frame.scale.y}, e, tree.patch(e).shape});
+        return is_leaf | is_fan | static_cast<std::uint32_t>(out.fans_.size() - 1);
     }
 
     /// Corners at (1, 0) and (0, 1), then what the third line leaves: the corner at (0, 0) and the middle, upside down.
@@ -123,13 +157,36 @@ struct LeafFinder::Builder {
     }
 };
 
+std::uint32_t LeafFinder::FanWalk::add_nodes(Builder& builder) const {
+    if (!goes_around()) return add_sectors(builder, 0, fan_.border.size() - 1);
+    const std::size_t far = far_side();
+    const std::uint32_t node = builder.add_node(ray(0));
+    builder.set(node, 1, add_sectors(builder, 0, far + 1));
+    builder.set(node, 0, add_sectors(builder, far, fan_.border.size() - 1));
+    return node;
+}
+
+/// Triangles that together take half a turn at most.
+std::uint32_t LeafFinder::FanWalk::add_sectors(Builder& builder, std::size_t begin, std::size_t end) const {
+    if (end - begin == 1) return builder.add_leaf(leaf(begin));
+    const std::size_t middle = (begin + end) / 2;
+    const std::uint32_t node = builder.add_node(ray(middle));
+    builder.set(node, 0, add_sectors(builder, begin, middle));
+    builder.set(node, 1, add_sectors(builder, middle, end));
+    return node;
+}
+
 LeafFinder::LeafFinder(const ElementTree& tree) {
-    Builder builder{tree, *this, Field<ElementId, std::uint32_t>(tree.size())};
+    constexpr std::size_t many = std::size_t(1) << 17;  // with what reads them they take 200 bytes each: 25 MB
+    const bool by_fans = tree.size() - tree.first_of_fans().value > many;
+    const std::size_t stored = by_fans ? tree.first_of_fans().value : tree.size();
+    if (by_fans) tree_ = tree;
+    Builder builder{tree, *this, Field<ElementId, std::uint32_t>(stored)};
     std::uint32_t count = 0;
-    for (ElementId e : tree.ids())
+    for (ElementId e : builder.number.ids())
         if (tree.is_leaf(e)) builder.number[e] = count++;
     leaves_.resize(count);
-    nodes_.reserve(tree.size());
+    nodes_.reserve(stored);
     for (ElementId root : tree.roots()) {
         const std::size_t before = builder.leaves_met;
         const std::uint32_t whole = builder.add(root, {{0, 0}, {1, 1}});
@@ -149,7 +206,20 @@ LeafFinder::LeafFinder(const ElementTree& tree) {
             }
         grids_.push_back(grid);
     }
-    nodes_.shrink_to_fit(), start_.shrink_to_fit();
+    nodes_.shrink_to_fit(), start_.shrink_to_fit(), fans_.shrink_to_fit();
+}
+
+/// The leaf that a part leads to, and its number.
+LeafFinder::Leaf LeafFinder::leaf_at(std::uint32_t part, Vec2 uv, std::uint32_t& number) const {
+    if (!(part & is_fan)) {
+        number = part & ~is_leaf;
+        return leaves_[number];
+    }
+    const Leaf& fan = fans_[part & ~(is_leaf | is_fan)];
+    const FanWalk walk(tree_, fan.id, {fan.origin, {fan.du.x, fan.dv.y}});
+    const Leaf triangle = walk.leaf(walk.find(uv));
+    number = static_cast<std::uint32_t>(leaves_.size() + (triangle.id.value - tree_.first_of_fans().value));
+    return triangle;
 }
 
 /// The last part on the way down from `part` that holds a whole box.
@@ -179,8 +249,8 @@ std::size_t LeafFinder::cell(std::size_t root, Vec2 uv) const {
 LeafFinder::Found LeafFinder::find(std::size_t root, Vec2 uv) const {
     std::uint32_t part = start_[cell(root, uv)];
     while (!(part & is_leaf)) part = nodes_[part].part_of(uv);
-    const std::uint32_t number = part & ~is_leaf;
-    const Leaf& leaf = leaves_[number];
+    std::uint32_t number = 0;
+    const Leaf leaf = leaf_at(part, uv, number);
     const Vec2 from = uv - leaf.origin;
     return {number, into_shape({dot(leaf.du, from), dot(leaf.dv, from)}, leaf.shape)};
 }
@@ -216,7 +286,12 @@ void LeafFinder::find(std::span<Query> queries) const {
             }
             count = left;
         }
-        for (Query& q : batch) q.leaf &= ~is_leaf;
+        for (Query& q : batch) {
+            if (q.leaf & is_fan)
+                leaf_at(q.leaf, q.uv, q.leaf);
+            else
+                q.leaf &= ~is_leaf;
+        }
     }
 }
 

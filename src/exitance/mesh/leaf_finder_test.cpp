@@ -7,8 +7,9 @@
 namespace exitance {
 namespace {
 
-/// A parallelogram and a triangle, cut at random in every way there is.
-ElementTree cut_at_random(int cuts, std::uint64_t seed) {
+/// A parallelogram and a triangle, cut at random in every way there is; `many`: and a square cut into so many fans that
+/// their triangles are not held.
+ElementTree cut_at_random(int cuts, std::uint64_t seed, bool many = false) {
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {3, 0.2, 0}, {0.5, 1, 0}, Patch::Shape::parallelogram});
     tree.add_root(RegionId(1), {{0, 0, 1}, {1, 0, 0}, {0, 2, 0}, Patch::Shape::triangle});
@@ -22,6 +23,11 @@ ElementTree cut_at_random(int cuts, std::uint64_t seed) {
         } else {
             tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), 0.2 + 0.6 * random.uniform());
         }
+    }
+    if (many) {
+        const std::size_t first = tree.size();
+        tree.add_root(RegionId(2), {{0, 0, 2}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram});
+        for (std::size_t e = first; tree.size() < first + 160000; ++e) tree.split(ElementId(e), Cut::both);
     }
     // Fans of every third leaf, around its middle or around a place on its first side.
     for (ElementId leaf : tree.leaves()) {
@@ -58,6 +64,26 @@ TEST(LeafFinder, FindsWhatTheTreeFinds) {
             EXPECT_NEAR(found.uv.x, place.uv.x, 1e-9);
             EXPECT_NEAR(found.uv.y, place.uv.y, 1e-9);
         }
+    }
+}
+
+TEST(LeafFinder, FindsTrianglesOfFansWhetherTheyAreStored) {
+    const ElementTree tree = cut_at_random(60, 4, true);
+    ASSERT_LT(tree.first_of_fans().value, tree.size());
+    ElementTree stored = tree;
+    stored.add_root(RegionId(3), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::triangle});
+    ASSERT_EQ(stored.first_of_fans().value, stored.size());
+    const LeafFinder finder(tree), of_stored(stored);
+    EXPECT_LT(finder.own_leaves(), finder.size());
+    EXPECT_EQ(of_stored.own_leaves(), of_stored.size());
+    RandomStream random(5, Stream::mesh);
+    for (int i = 0; i < 2000; ++i) {
+        const std::size_t root = random.bits() % 3;
+        const double s = random.uniform(), t = random.uniform();
+        const Vec2 uv = uniform_in_shape(tree.patch(tree.roots()[root]).shape, s, t);
+        const LeafFinder::Found a = finder.find(root, uv), b = of_stored.find(root, uv);
+        ASSERT_EQ(a.leaf, b.leaf);
+        EXPECT_EQ(a.uv, b.uv);  // to the last bit
     }
 }
 

@@ -44,7 +44,7 @@ class Projection {
         : f_(f), tree_(tree), nodes_(nodes), leaves_(leaves), first_(nodes.first_node[plane]) {
         const std::size_t count = nodes.first_node[plane + 1] - first_;
         right_.resize(count), diagonal_.resize(count);
-        for (ElementId e : leaves) add_right_side(e);
+        for (ElementId e : leaves) area_.push_back(tree.area(e)), add_right_side(e, area_.back());
     }
 
     /// Conjugate gradients from the nodes' means, preconditioned by the diagonal: M's condition depends on neither size
@@ -88,9 +88,8 @@ class Projection {
     /// int phi dA of a node: for all these elements what its diagonal entry says, but for a factor.
     double mass_of(std::size_t i) const { return lumped_[i]; }
 
-    void add_right_side(ElementId e) {
+    void add_right_side(ElementId e, double area) {
         const std::span<const std::uint32_t> node = of(e);
-        const double area = tree_.area(e);
         const std::size_t corners = node.size();
         if (lumped_.size() != right_.size()) lumped_.resize(right_.size());
         for (std::size_t i = 0; i < corners; ++i) {
@@ -101,7 +100,7 @@ class Projection {
         if (parent.is_none() || tree_.way(parent) != Cut::fan) {
             std::array<Spectrum, 4> value;
             for (std::size_t i = 0; i < corners; ++i) value[i] = at_corner(f_, e, i);
-            add_products(e, std::span(value).first(corners), right_);
+            add_products(e, area, std::span(value).first(corners), right_);
             return;
         }
         // f is bilinear on the parent at most, its product with a linear function of degree 3.
@@ -114,9 +113,8 @@ class Projection {
     }
 
     /// Adds an element's products with the function of these values at its corners.
-    void add_products(ElementId e, std::span<const Spectrum> value, std::vector<Spectrum>& out) const {
+    void add_products(ElementId e, double area, std::span<const Spectrum> value, std::vector<Spectrum>& out) const {
         const std::span<const std::uint32_t> node = of(e);
-        const double area = tree_.area(e);
         for (std::size_t i = 0; i < node.size(); ++i) {
             Spectrum sum;
             for (std::size_t j = 0; j < node.size(); ++j)
@@ -128,10 +126,10 @@ class Projection {
     void multiply(const std::vector<Spectrum>& x, std::vector<Spectrum>& out) const {
         std::fill(out.begin(), out.end(), Spectrum());
         std::array<Spectrum, 4> value;
-        for (ElementId e : leaves_) {
-            const std::span<const std::uint32_t> node = of(e);
+        for (std::size_t k = 0; k < leaves_.size(); ++k) {
+            const std::span<const std::uint32_t> node = of(leaves_[k]);
             for (std::size_t i = 0; i < node.size(); ++i) value[i] = x[node[i] - first_];
-            add_products(e, std::span(value).first(node.size()), out);
+            add_products(leaves_[k], area_[k], std::span(value).first(node.size()), out);
         }
     }
 
@@ -139,6 +137,7 @@ class Projection {
     const ElementTree& tree_;
     const SharedNodes& nodes_;
     std::span<const ElementId> leaves_;
+    std::vector<double> area_;  ///< Of each, m^2.
     std::uint32_t first_;
     std::vector<Spectrum> right_;   ///< int phi f dA of every node, W.
     std::vector<double> diagonal_;  ///< int phi^2 dA, m^2,
@@ -171,7 +170,6 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
         const std::uint32_t p = plane[out.tree.region(e)];
         for (const std::uint32_t node : nodes.of(e, out.tree)) out.add_value(value[p][node - nodes.first_node[p]]);
     }
-    share_on_node(std::span(out.values));
     return out;
 }
 

@@ -30,8 +30,8 @@ class Interpolation {
         for (int round = 0;; ++round) {
             fitted_.resize(out_.tree.size());
             locator_.emplace(indirect_.tree, stage_.scene.regions().size());
-            shared_ranges(
-                active.size(), 8,
+            shared_ranges_of(
+                fitted_.span(), active.size(), 8,
                 [&](std::size_t begin, std::size_t end) {
                     DirectFitRoom room;
                     for (std::size_t i = begin; i < end; ++i) {
@@ -118,8 +118,9 @@ class Interpolation {
             stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts, &stop);
         for (auto& value : out.values)  // all light together is nowhere below zero
             for (float& of_band : value) of_band = std::max(of_band, 0.0f);
-        shared_ranges(
-            apart.tree.size(), 64,
+        share_on_node(std::span(out.values));
+        shared_ranges_of(
+            fitted_.span(), apart.tree.size(), 64,
             [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
                     const ElementId e(i);

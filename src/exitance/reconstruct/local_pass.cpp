@@ -184,10 +184,6 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
         report.leaves[leaf] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
     }
     out = nearest_continuous(out, stage_.scene, stage_.contacts);
-    report.leaves.resize(out.tree.size());
-    for (ElementId e : out.tree.ids())
-        if (!out.tree.parent(e).is_none() && out.tree.way(out.tree.parent(e)) == Cut::fan)
-            report.leaves[e] = report.leaves[out.tree.parent(e)];
     double noise = 0, interpolation = 0;
     for (ElementId e : tree_.leaves()) {
         const SampledElement& s = sampled_[e];
@@ -229,8 +225,10 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
         for (std::size_t first = std::exchange(begun, 0); first < active.size() && !stop.requested(); first += slice) {
             safe_points.pass([&](auto& a) { a(active, depth, first, report.rays); });
-            shared_ranges(
-                std::min(slice, active.size() - first), 1,
+            const auto slice_of = std::span(active).subspan(first, std::min(slice, active.size() - first));
+            const auto [lowest, highest] = std::minmax_element(slice_of.begin(), slice_of.end());
+            shared_ranges_of(
+                sampled_.span().subspan(lowest->value, highest->value - lowest->value + 1), slice_of.size(), 1,
                 [&](std::size_t begin, std::size_t end) {
                     Workspace workspace;
                     for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)

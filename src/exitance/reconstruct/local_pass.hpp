@@ -33,12 +33,16 @@ struct LocalPassReport {
     /// room's light, all rooms alike, times the mean light.
     double noise = 0;
     double interpolation = 0;  ///< The same of the interpolation's error, as estimated.
-    /// What is known of every leaf; of inner elements: unused.
+    /// What is known of every leaf before it was joined to others; of inner elements: unused.
     struct Leaf {
         double expected_error = 0;  ///< Of rho E_ind, W/m^2.
         unsigned rays = 0;          ///< That the element took to bring its noise down to what is allowed.
     };
     Field<ElementId, Leaf> leaves;
+    /// What is known of a leaf of the delivered tree: a triangle of a fan is a part of what was gathered.
+    static const Leaf& known(const Field<ElementId, Leaf>& leaves, const ElementTree& tree, ElementId e) {
+        return leaves[e.value < leaves.size() ? e : tree.parent(e)];
+    }
     bool interrupted = false;
 };
 

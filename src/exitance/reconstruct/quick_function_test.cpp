@@ -29,5 +29,37 @@ TEST(QuickFunction, HasTheValuesOfTheFunction) {
     }
 }
 
+TEST(QuickFunction, HasTheSameValuesOnTrianglesThatTheFinderDoesNotHold) {
+    ElementFunction function;
+    function.tree.add_root(RegionId(0), {{0, 0, 0}, {3, 0.2, 0}, {0.5, 1, 0}, Patch::Shape::parallelogram});
+    for (std::uint32_t e = 0; function.tree.size() < 50000; ++e) function.tree.split(ElementId(e), Cut::both);
+    for (ElementId leaf : function.tree.leaves()) {
+        std::vector<Vec2> border = function.tree.domain(leaf);
+        border.push_back(border[0]);
+        function.tree.split_fan(leaf, {function.tree.centre(leaf), border});
+    }
+    RandomStream random(3, Stream::mesh);
+    function.first_value.resize(function.tree.size());
+    for (ElementId leaf : function.tree.leaves()) {
+        function.first_value[leaf] = static_cast<std::uint32_t>(function.values.size());
+        for (int i = 0; i < 3; ++i) function.add_value(Spectrum(random.uniform()));
+    }
+    ElementFunction stored = function;
+    stored.tree.add_root(RegionId(1), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::triangle});
+    stored.first_value.resize(stored.tree.size());
+    const LeafFinder finder(function.tree), of_stored_tree(stored.tree);
+    ASSERT_LT(finder.own_leaves(), finder.size());
+    ASSERT_EQ(of_stored_tree.own_leaves(), of_stored_tree.size());
+    const QuickFunction quick(function, 2), of_stored(stored, 2);
+    for (int i = 0; i < 500; ++i) {
+        const double s = random.uniform(), t = random.uniform();
+        const HitPoint hit{RegionId(0), function.tree.patch(ElementId(0)).at(s, t)};
+        Spectrum a, b;
+        quick.read(std::span(&hit, 1), std::span(&a, 1));
+        of_stored.read(std::span(&hit, 1), std::span(&b, 1));
+        for (std::size_t k = 0; k < bands; ++k) EXPECT_EQ(a[k], b[k]);  // to the last bit
+    }
+}
+
 }  // namespace
 }  // namespace exitance

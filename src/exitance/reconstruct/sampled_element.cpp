@@ -110,8 +110,8 @@ std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const Ele
     for (ElementId e : fitted) parts.push_back({e, e});
     for (int cuts = 0; !parts.empty(); ++cuts) {
         std::vector<StraightFit> fit(parts.size());
-        shared_ranges(
-            parts.size(), 64,
+        shared_ranges_of(
+            std::span(fit), parts.size(), 64,
             [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
                     const auto [part, whole] = parts[i];

@@ -11,7 +11,7 @@ void ElementFunction::add_value(const Spectrum& value) {
 Spectrum ElementFunction::at(ElementTree::Place place) const {
     if (place.element.is_none()) return Spectrum();
     const auto [u, v] = place.uv;
-    const bool triangle = tree.patch(place.element).is_triangle();
+    const bool triangle = place.element >= tree.first_of_fans() || tree.patch(place.element).is_triangle();
     const double weight[4] = {triangle ? 1 - u - v : (1 - u) * (1 - v), triangle ? u : u * (1 - v),
                               triangle ? v : u * v, triangle ? 0 : (1 - u) * v};
     const std::size_t first = first_value[place.element];

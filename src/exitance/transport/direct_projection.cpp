@@ -120,7 +120,7 @@ class Projector {
             active = cut(active);
         }
         out_.tree.shrink_to_fit(), out_.fit.shrink_to_fit();
-        share_on_node(out_.tree), share_on_node(out_.fit.span());
+        share_on_node(out_.tree);
         return std::move(out_);
     }
 
@@ -176,8 +176,8 @@ class Projector {
 
     void fit_all(const std::vector<ElementId>& active, int depth) {
         found_.assign(active.size(), {});
-        shared_ranges(
-            active.size(), 8,
+        shared_ranges_of(
+            std::span(found_), active.size(), 8,
             [&](std::size_t begin, std::size_t end) {
                 if (options_.may_give_up && stop_.requested()) return;
                 DirectFitRoom room;

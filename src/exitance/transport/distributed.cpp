@@ -28,6 +28,7 @@ struct Team {
     MPI_Comm node = MPI_COMM_NULL;  ///< Those that have memory in common with this one.
     int node_size = 1;
     std::size_t shared_bytes = 0;
+    int common_file = -1;  ///< Of what is open in common.
     std::map<std::string, Traffic> traffic;
     ExchangeTime time;
 };
@@ -192,18 +193,14 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
 
 namespace {
 
-/// A file without a name that holds these bytes in memory, or -1.
-int memory_file(const char* bytes, std::size_t size) {
-    const int file = memfd_create("exitance", MFD_CLOEXEC);
-    for (std::size_t done = 0; file >= 0 && done < size;) {
-        const ssize_t written = write(file, bytes + done, size - done);
-        if (written <= 0) {
-            close(file);
-            return -1;
-        }
-        done += static_cast<std::size_t>(written);
+/// Writes bytes to a place of a file; false where the system does not let it.
+bool write_to(int file, std::size_t place, std::span<const char> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (written <= 0) return false;
+        place += static_cast<std::size_t>(written), bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
-    return file;
+    return true;
 }
 
 /// Is it so in all processes of the node?
@@ -223,31 +220,86 @@ bool is_alike_on_node(std::size_t a, std::size_t b) {
 }  // namespace
 
 namespace detail {
+namespace {
 
-void share_pages(char* begin, std::size_t size) {
-    constexpr std::size_t least = std::size_t(1) << 20;
+/// The whole pages of an array, where they are as many as `least` bytes make, and stand alike in all processes of the
+/// node; else empty.
+std::span<char> whole_pages(std::span<char> array, std::size_t least) {
     const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    const std::size_t skipped = (page - reinterpret_cast<std::uintptr_t>(begin) % page) % page;
-    if (team.node_size == 1 || size < least + page || !is_alike_on_node(skipped, size)) return;
-    begin += skipped;
-    const std::size_t bytes = (size - skipped) / page * page;
+    const std::size_t skipped = (page - reinterpret_cast<std::uintptr_t>(array.data()) % page) % page;
+    if (team.node_size == 1 || array.size() < least + page || !is_alike_on_node(skipped, array.size())) return {};
+    return array.subspan(skipped, (array.size() - skipped) / page * page);
+}
+
+/// A file in memory of so many bytes, which the first of the node makes and the others find by its name; -1 in all
+/// where one of them does not.
+int file_of_node(std::size_t size) {
     int rank = 0;
     MPI_Comm_rank(team.node, &rank);
-    // The first of the node writes its pages to memory that the others find by its name.
-    int file = rank == 0 ? memory_file(begin, bytes) : -1;
+    int file = rank == 0 ? memfd_create("exitance", MFD_CLOEXEC) : -1;
+    if (file >= 0 && ftruncate(file, static_cast<off_t>(size)) != 0) close(std::exchange(file, -1));
     std::array<std::int64_t, 2> place{getpid(), file};
     MPI_Bcast(place.data(), 2, MPI_INT64_T, 0, team.node);
     if (rank != 0 && place[1] >= 0) {
         const std::string path = "/proc/" + std::to_string(place[0]) + "/fd/" + std::to_string(place[1]);
-        file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+        file = open(path.c_str(), O_RDWR | O_CLOEXEC);
     }
-    // Private pages: whoever writes to one gets its own, and memory that is freed is nobody else's.
-    if (all_on_node(file >= 0)) {
-        if (mmap(begin, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, file, 0) == MAP_FAILED)
-            end_job("the system does not let processes have memory in common any more");
-        team.shared_bytes += bytes;
-    }
+    if (all_on_node(file >= 0)) return file;
     if (file >= 0) close(file);
+    return -1;
+}
+
+/// `kind`: of mmap; private pages are those of whoever writes to them, and memory that is freed is nobody else's.
+void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
+    if (mmap(pages.data(), pages.size(), PROT_READ | PROT_WRITE, kind | MAP_FIXED, file, static_cast<off_t>(place)) ==
+        MAP_FAILED)
+        end_job("the system does not let processes have memory in common any more");
+}
+
+/// Has the pages stand in the file, as the first of the node holds them. Part by part, so that little stands twice.
+void move_pages(std::span<char> pages, int file, int kind) {
+    constexpr std::size_t least = std::size_t(1) << 23, most_parts = 64;  // the system counts what is mapped, too
+    const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
+                      step = std::max(least, (pages.size() / most_parts / page + 1) * page);
+    int rank = 0;
+    MPI_Comm_rank(team.node, &rank);
+    for (std::size_t first = 0; first < pages.size(); first += step) {
+        const std::span<char> part = pages.subspan(first, std::min(step, pages.size() - first));
+        if (!all_on_node(rank != 0 || write_to(file, first, part))) end_job("no memory is left for processes to share");
+        map_pages(part, file, first, kind);
+    }
+}
+
+}  // namespace
+
+void share_pages(char* begin, std::size_t size) {
+    constexpr std::size_t least = std::size_t(1) << 20;
+    const std::span<char> pages = whole_pages({begin, size}, least);
+    const int file = pages.empty() ? -1 : file_of_node(pages.size());
+    if (file < 0) return;
+    move_pages(pages, file, MAP_PRIVATE);
+    team.shared_bytes += pages.size();
+    close(file);
+}
+
+std::span<char> open_in_common(std::span<char> array) {
+    constexpr std::size_t least = std::size_t(1) << 17;
+    if (team.node_size != static_cast<int>(team.size)) return {};
+    const std::span<char> pages = whole_pages(array, least);
+    team.common_file = pages.empty() ? -1 : file_of_node(pages.size());
+    if (team.common_file < 0) return {};
+    move_pages(pages, team.common_file, MAP_SHARED);
+    return pages;
+}
+
+void close_in_common(std::span<char> pages) {
+    map_pages(pages, team.common_file, 0, MAP_PRIVATE);
+    team.shared_bytes += pages.size();
+    close(std::exchange(team.common_file, -1));
+}
+
+void count_as_sent(std::size_t bytes, const char* what) {
+    team.traffic[what].bytes += bytes * (team.size - 1);
 }
 
 void send_from_first(void* data, std::size_t size, const char* what) {

@@ -169,7 +169,41 @@ void shared_ranges(std::size_t count, std::size_t grain, const std::function<voi
 }
 
 namespace detail {
+/// Whole pages of an array that all processes hold alike, from here on one memory that all of them write to; empty, and
+/// nothing is done, where not all can see one another's memory, or the array is small. To be closed before the next.
+std::span<char> open_in_common(std::span<char> array);
+/// Each process has what stands there now; whoever writes to it gets pages of its own.
+void close_in_common(std::span<char> pages);
+/// Counts bytes as sent that the processes have in common.
+void count_as_sent(std::size_t bytes, const char* what);
 void share_pages(char* begin, std::size_t size);
+}  // namespace detail
+
+/// `shared_ranges` where value(i) stands in `array`, which all hold alike and which lasts: on one node it stands there
+/// once, each process writes its own part of it, and nothing is sent. All.
+template <class T, class Value>
+void shared_ranges_of(std::span<T> array, std::size_t count, std::size_t grain,
+                      const std::function<void(std::size_t, std::size_t)>& body, const Value& value, const Work& work) {
+    using Held = std::remove_reference_t<decltype(value(0))>;
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_copyable_v<Held>);
+    constexpr std::size_t sparse = 4;  // of an array little of which is written, more is moved than is sent
+    const bool is_dense = sparse * count * sizeof(Held) >= array.size_bytes();
+    const std::span<char> pages =
+        processes() > 1 && is_dense ? detail::open_in_common(detail::bytes_of(array)) : std::span<char>();
+    if (pages.empty()) return shared_ranges(count, grain, body, value, work);
+    parallel_own_ranges(count, grain, body, work);
+    const auto is_common = [&](std::size_t i) {
+        const char* const at = reinterpret_cast<const char*>(&value(i));
+        return at >= pages.data() && at + sizeof(Held) <= pages.data() + pages.size();
+    };
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        if (is_own(i, grain) && is_common(i)) bytes += sizeof(Held);
+    // What stands in the pages around them is sent.
+    exchange_values(
+        count, grain, [&](std::size_t i) { return std::span<Held>(&value(i), is_common(i) ? 0 : 1); }, work.name);
+    detail::close_in_common(pages);
+    detail::count_as_sent(bytes, work.name);
 }
 
 /// Finished values that all processes hold alike stand once in the memory of a node from here on, instead of once a

@@ -5,6 +5,7 @@
 
 #include "exitance/core/disjoint_sets.hpp"
 #include "exitance/core/random.hpp"
+#include "exitance/transport/distributed.hpp"
 #include "exitance/transport/light_openings.hpp"
 #include "exitance/transport/light_portals.hpp"
 
@@ -254,38 +255,33 @@ void LightRooms::weigh(const ElementTree& tree, const LeafNumbering& numbering, 
 LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
     constexpr std::size_t elements = 600;  // beyond those that the pieces are
     const std::vector<Piece> pieces = stage.lit_pieces();
-    auto tree = std::make_shared<const ElementTree>(
-        stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop));
-    auto locator = std::make_shared<const ElementLocator>(*tree, stage.scene.regions().size());
-    const LeafNumbering numbering(*tree);
-    const RayRows rows(stage, *tree, numbering, *locator,
-                       {.average = 24, .least = 16, .most = 256, .front_alone = true}, seed, Dealing::by_element,
-                       RowsHeld::everywhere, &stop);
+    const ElementTree tree = stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop);
+    auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
+    const LeafNumbering numbering(tree);
+    const RayRows rows(stage, tree, numbering, *locator, {.average = 24, .least = 16, .most = 256, .front_alone = true},
+                       seed, Dealing::by_element, RowsHeld::everywhere, &stop);
     const DistantLight& outside = stage.scene.distant();
     const bool has_sky = !outside.domes.empty();
-    const std::vector<Part> parts = RoomFinder(rows, *tree, numbering, seed, has_sky).find(stop);
+    const std::vector<Part> parts = RoomFinder(rows, tree, numbering, seed, has_sky).find(stop);
     LightRooms out;
-    out.lost_.resize(tree->size());
-    if (stop.requested()) {  // rows that were not cast tell nothing
-        out.tree_ = std::move(tree), out.locator_ = std::move(locator);
-        return out;
-    }
+    if (stop.requested()) return out;  // rows that were not cast tell nothing
     const std::vector<double> kept = rows.kept();
+    const bool loses = std::any_of(kept.begin(), kept.end(), [](double share) { return share < 1; });
+    if (parts.size() < 2 && !loses) return out;
+    out.lost_.resize(tree.size());
     for (std::size_t i = 0; i < kept.size(); ++i) out.lost_[numbering.leaves[i]] = static_cast<float>(1 - kept[i]);
-    if (parts.size() < 2) {
-        out.tree_ = std::move(tree), out.locator_ = std::move(locator);
-        return out;
-    }
-    out.room_of_.resize(tree->size());
+    out.locator_ = std::move(locator);
+    share_on_node(out.lost_.span()), share_on_node(out.locator_->leaves());
+    if (parts.size() < 2) return out;
+    out.room_of_.resize(tree.size());
     for (std::size_t room = 0; room < parts.size(); ++room) {
         out.areas_.push_back(parts[room].area);
         out.mean_area_ += parts[room].area / static_cast<double>(parts.size());
         for (std::uint32_t i : parts[room].leaves) out.room_of_[numbering.leaves[i]] = static_cast<std::uint16_t>(room);
     }
-    out.tree_ = tree, out.locator_ = std::move(locator);
-    const std::vector<double> light = coarse_light(stage, out, *tree, numbering, rows);
-    out.weigh(*tree, numbering, rows);
-    out.portals_ = find_light_portals(stage, out, *tree, numbering, light, seed, stop);
+    const std::vector<double> light = coarse_light(stage, out, tree, numbering, rows);
+    out.weigh(tree, numbering, rows);
+    out.portals_ = find_light_portals(stage, out, tree, numbering, light, seed, stop);
     return out;
 }
 

@@ -29,7 +29,9 @@ class LightRooms {
     /// The room of an element's centre.
     std::size_t of(const ElementTree& tree, ElementId e) const;
     /// The share of the light that leaves a surface there which meets no front; by few rays.
-    double lost_share(RegionId region, const Point& x) const { return lost_[locator_->find(region, x).element]; }
+    double lost_share(RegionId region, const Point& x) const {
+        return locator_ ? lost_[locator_->find(region, x).element] : 0;
+    }
     /// What an area in the room of an element counts, so that all rooms count alike, and all together as much as they
     /// are large: the mean area of a room by that of this one. 1 where all is one room.
     double weight(const ElementTree& tree, ElementId e) const;
@@ -48,9 +50,9 @@ class LightRooms {
     friend LightRooms find_light_rooms(const Stage&, std::uint64_t, const StopRequest&);
     std::vector<double> areas_;
     double mean_area_ = 0;
-    std::shared_ptr<const ElementTree> tree_;  ///< Coarse, over all pieces.
+    /// Of a coarse mesh over all pieces; none where all is one room that loses no light.
     std::shared_ptr<const ElementLocator> locator_;
-    Field<ElementId, std::uint16_t> room_of_;  ///< Of its leaves.
+    Field<ElementId, std::uint16_t> room_of_;  ///< Of the mesh's leaves.
     std::vector<double> piece_importance_;
     Field<ElementId, float> lost_, importance_;
     std::shared_ptr<const LightPortals> portals_;

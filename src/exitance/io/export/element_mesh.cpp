@@ -152,6 +152,26 @@ ElementMesh make_cells(const Solution& solution) {
     return mesh;
 }
 
+void CornerWalk::next() {
+    if (++at_ < corners_.size()) return;
+    while (!tree_.is_leaf(ElementId(next_leaf_))) ++next_leaf_;
+    leaf_ = ElementId(next_leaf_++);
+    corners_ = tree_.domain(leaf_);
+    at_ = 0;
+}
+
+std::vector<std::int32_t> faces_of_leaves(const Solution& solution) {
+    const ElementTree& tree = solution.interpolant.tree;
+    FaceFinder finder(solution.scene);
+    std::vector<std::int32_t> out;
+    out.reserve(tree.size());
+    for (ElementId e : tree.ids())
+        if (tree.is_leaf(e))
+            out.push_back(
+                static_cast<std::int32_t>(finder.find(tree.region(e), tree.patch(e).at(tree.centre(e))).value));
+    return out;
+}
+
 ElementMesh make_element_mesh(const Solution& solution) {
     const Scene& scene = solution.scene;
     const ElementTree& tree = solution.interpolant.tree;

@@ -36,6 +36,27 @@ struct ElementMesh {
 
 ElementMesh make_element_mesh(const Solution& solution);
 
+/// Its corners, one after the other, where nobody needs the whole of it.
+class CornerWalk {
+  public:
+    /// The tree must outlive it.
+    explicit CornerWalk(const ElementTree& tree) : tree_(tree) {}
+
+    /// Goes to the next corner, at first to the first one; there has to be one.
+    void next();
+    ElementId leaf() const { return leaf_; }
+    Vec2 uv() const { return corners_[at_]; }
+
+  private:
+    const ElementTree& tree_;
+    ElementId leaf_;
+    std::size_t next_leaf_ = 0, at_ = 0;
+    std::vector<Vec2> corners_;
+};
+
+/// The face that each leaf of a solution's interpolant shows.
+std::vector<std::int32_t> faces_of_leaves(const Solution& solution);
+
 /// The same with the quadratic triangles of a discontinuity mesh, whose nodes are shared, where there is one; of Clough
 /// and Tocher's elements, three cubic triangles each.
 ElementMesh make_cells(const Solution& solution);

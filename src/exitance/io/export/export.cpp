@@ -6,9 +6,9 @@
 namespace exitance {
 
 Result<void> write_vtkhdf_file(const Solution& solution, const std::string& path) {
-    Hdf5Writer file;
+    Hdf5Writer file(path);
     write_vtkhdf(file, solution);
-    return file.write_file(path);
+    return file.commit();
 }
 
 Result<void> export_solution(const Solution& solution, const std::string& path) {

@@ -1,6 +1,7 @@
 #include "exitance/io/files/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -130,7 +131,7 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
     temporary_ = std::exchange(other.temporary_, {});
     unfinished_ = std::exchange(other.unfinished_, nullptr);
     buffer_ = std::exchange(other.buffer_, {});
-    file_ = std::exchange(other.file_, -1);
+    file_ = std::exchange(other.file_, -1), kept_ = std::exchange(other.kept_, -1);
     error_ = other.error_, sync_ = other.sync_;
     return *this;
 }
@@ -141,6 +142,7 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::abandon() {
     if (file_ >= 0) ::close(std::exchange(file_, -1));
+    if (kept_ >= 0) ::close(std::exchange(kept_, -1));
     if (!temporary_.empty()) ::unlink(std::exchange(temporary_, {}).c_str());
     if (unfinished_) std::exchange(unfinished_, nullptr)->state = Unfinished::free;
 }
@@ -159,8 +161,55 @@ void AtomicFile::write(std::string_view text) {
     }
 }
 
+/// The file that write_at() writes to.
+int AtomicFile::seekable() {
+    if (!temporary_.empty()) return file_;
+    if (kept_ < 0 && (kept_ = ::memfd_create("exitance", MFD_CLOEXEC)) < 0 && error_ == 0) error_ = errno;
+    return kept_;
+}
+
+void AtomicFile::write_at(std::size_t place, std::span<const std::byte> bytes) {
+    const int file = seekable();
+    while (!bytes.empty() && error_ == 0) {
+        const ssize_t n = ::pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) {
+            error_ = errno;
+            return;
+        }
+        place += static_cast<std::size_t>(n), bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+}
+
+void AtomicFile::read_at(std::size_t place, std::span<std::byte> bytes) {
+    const int file = seekable();
+    while (!bytes.empty() && file >= 0) {
+        const ssize_t n = ::pread(file, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0 && error_ == 0) error_ = errno;
+        if (n <= 0) break;
+        place += static_cast<std::size_t>(n), bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+    std::fill(bytes.begin(), bytes.end(), std::byte{0});
+}
+
+/// Writes what stands in memory to where it belongs.
+void AtomicFile::pass_on_kept() {
+    std::array<std::byte, 1 << 16> block;
+    struct stat held;
+    if (kept_ < 0 || error_ != 0) return;
+    const std::size_t size = ::fstat(kept_, &held) == 0 ? static_cast<std::size_t>(held.st_size) : 0;
+    for (std::size_t done = 0; done < size && error_ == 0;) {
+        const std::span<std::byte> part = std::span(block).first(std::min(block.size(), size - done));
+        read_at(done, part);
+        if (error_ == 0) error_ = write_all(file_, reinterpret_cast<const char*>(part.data()), part.size());
+        done += part.size();
+    }
+}
+
 Result<void> AtomicFile::commit() {
     flush();
+    pass_on_kept();
     if (error_ == 0 && sync_ && ::fsync(file_) != 0) error_ = errno;
     if (file_ >= 0 && ::close(std::exchange(file_, -1)) != 0 && error_ == 0) error_ = errno;
     if (error_ == 0 && !temporary_.empty()) {

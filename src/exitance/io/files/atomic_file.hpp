@@ -27,6 +27,13 @@ class AtomicFile {
     void write(std::span<const std::byte> bytes) {
         write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
     }
+    /// The same anywhere in the file, for what goes back and forth in it; not together with write(). What is no plain
+    /// file gets it all by commit(), in its order.
+    void write_at(std::size_t place, std::span<const std::byte> bytes);
+    /// What stands there; zeros where nothing was written, or could be.
+    void read_at(std::size_t place, std::span<std::byte> bytes);
+    /// Has the system refused anything so far?
+    bool failed() const { return error_ != 0; }
     Result<void> commit();
 
     /// See remove_unfinished_files.
@@ -36,6 +43,8 @@ class AtomicFile {
     AtomicFile() = default;
     void flush();
     void abandon();
+    int seekable();
+    void pass_on_kept();
 
     std::string path_;       ///< As the user wrote it, for messages.
     std::string target_;     ///< Where it is renamed to.
@@ -44,6 +53,7 @@ class AtomicFile {
     Unfinished* unfinished_ = nullptr;  ///< Its entry among the files that handlers of signals remove.
     std::string buffer_;
     int file_ = -1;
+    int kept_ = -1;  ///< A file in memory that stands for one that is not plain until commit().
     int error_ = 0;  ///< The first failure, as errno.
     bool sync_ = true;
 };

@@ -84,6 +84,29 @@ TEST_F(AtomicFiles, WriteThroughLinksAndKeepRights) {
     EXPECT_EQ(fs::status(folder / "a.txt").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
+TEST_F(AtomicFiles, AreWrittenAndReadAnywhere) {
+    const auto bytes = [](std::string_view text) { return std::as_bytes(std::span(text)); };
+    Result<AtomicFile> file = AtomicFile::create(folder / "a.txt");
+    ASSERT_TRUE(file);
+    file->write_at(3, bytes("light"));
+    file->write_at(0, bytes("ray"));
+    std::array<std::byte, 10> there;
+    file->read_at(1, there);
+    EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(there.data()), 10), std::string_view("aylight\0\0\0", 10));
+    EXPECT_FALSE(fs::exists(folder / "a.txt"));
+    ASSERT_TRUE(file->commit());
+    EXPECT_EQ(read(folder / "a.txt"), "raylight");
+    // What cannot be gone back and forth in gets all of it in the end.
+    if (!fs::exists("/dev/full")) return;
+    Result<AtomicFile> full = AtomicFile::create("/dev/full");
+    ASSERT_TRUE(full);
+    full->write_at(0, bytes("ray"));
+    EXPECT_FALSE(full->failed());
+    const Result<void> written = full->commit();
+    ASSERT_FALSE(written);
+    EXPECT_NE(written.error().message.find("No space"), std::string::npos);
+}
+
 TEST_F(AtomicFiles, DevicesAreWrittenToDirectly) {
     ASSERT_TRUE(write_file("/dev/null", "x"));
     EXPECT_TRUE(fs::is_character_file("/dev/null"));

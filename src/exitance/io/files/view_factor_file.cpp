@@ -145,7 +145,7 @@ Result<void> write_hdf5(const std::string& path, const ViewFactors& table, const
         if (stop.requested()) return stopped();
     }
     const std::string group = "view_factors";
-    Hdf5Writer file;
+    Hdf5Writer file(path);
     file.make_group(group);
     file.set_attribute(group, "format", std::string_view("csr"));
     const std::int64_t shape[] = {static_cast<std::int64_t>(n), static_cast<std::int64_t>(n)};
@@ -159,7 +159,7 @@ Result<void> write_hdf5(const std::string& path, const ViewFactors& table, const
     file.write(group + "/emittances", table.emittances, 1, {"1", "emittances of faces"});
     file.write(group + "/row_sums", table.row_sums, 1, {"1", "sums of rows"});
     if (stop.requested()) return stopped();
-    return file.write_file(path);
+    return file.commit();
 }
 
 }  // namespace

@@ -27,7 +27,9 @@ class Replay {
 
     std::optional<std::string> run(ElementTree& tree) {
         std::size_t root = 0;
-        tree.reserve(parent_.size());
+        const auto in_fan = [&](std::uint32_t p) { return p < cut_.size() && cut_[p] == 5; };
+        const auto triangles = static_cast<std::size_t>(std::count_if(parent_.begin(), parent_.end(), in_fan));
+        tree.reserve(parent_.size() - triangles), tree.reserve_fans(fan_element_.size(), triangles);
         while (tree.size() < parent_.size()) {
             const std::size_t at = tree.size();
             const bool good = parent_[at] == none ? add_root(tree, root++) : split(tree);
@@ -122,35 +124,56 @@ class Replay {
 };
 
 /// The values of a function, those of its leaves in the order of their ids.
-std::vector<float> leaf_values(const ElementFunction& function) {
+void write_values(Hdf5Writer& file, const std::string& name, const ElementFunction& function) {
     const ElementTree& tree = function.tree;
-    std::vector<float> out;
-    out.reserve(bands * function.values.size());
-    for (ElementId e : tree.ids()) {
-        if (!tree.is_leaf(e)) continue;
-        const std::size_t first = function.first_value[e],
-                          count = static_cast<std::size_t>(tree.patch(e).corner_count());
-        EXI_CHECK(first + count <= function.values.size());
-        for (std::size_t i = first; i < first + count; ++i)
-            out.insert(out.end(), function.values[i].begin(), function.values[i].end());
-    }
-    return out;
+    const auto corners_of = [&](ElementId e) {
+        return e < tree.first_of_fans() ? static_cast<std::size_t>(tree.patch(e).corner_count()) : 3;
+    };
+    std::size_t rows = 0, leaf = 0, corner = 0;
+    for (ElementId e : tree.ids())
+        if (tree.is_leaf(e)) {
+            EXI_CHECK(function.first_value[e] + corners_of(e) <= function.values.size());
+            rows += corners_of(e);
+        }
+    file.write_rows<float>(name, rows, bands,
+                           {"W/m^2", "irradiance at the corners of the leaves' patches, leaf after leaf"},
+                           [&](std::size_t, std::span<float> row) {
+                               while (!tree.is_leaf(ElementId(leaf))) ++leaf;
+                               const auto& value = function.values[function.first_value[ElementId(leaf)] + corner];
+                               std::copy(value.begin(), value.end(), row.begin());
+                               if (++corner == corners_of(ElementId(leaf))) ++leaf, corner = 0;
+                           });
+}
+
+/// How elements came to be, a row each.
+void write_elements(Hdf5Writer& file, const std::string& group, const ElementTree& tree) {
+    file.write_rows<std::uint32_t>(
+        group + "/parent", tree.size(), 1, {"1", "parent of an element; 4294967295 for a root"},
+        [&](std::size_t i, std::span<std::uint32_t> row) { row[0] = tree.parent(ElementId(i)).value; });
+    file.write_rows<std::uint8_t>(
+        group + "/cut", tree.size(), 1,
+        {"1",
+         "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line, "
+         "5 into triangles around a place"},
+        [&](std::size_t i, std::span<std::uint8_t> row) {
+            row[0] = static_cast<std::uint8_t>(tree.way(ElementId(i)));
+        });
+    file.write_rows<double>(group + "/ratio", tree.size(), 1,
+                            {"1", "where a cut across one direction stands, in (0, 1)"},
+                            [&](std::size_t i, std::span<double> row) { row[0] = tree.ratio(ElementId(i)); });
 }
 
 }  // namespace
 
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function) {
     const ElementTree& tree = function.tree;
-    std::vector<std::uint32_t> parent, line_element, fan_element, fan_places, region;
-    std::vector<std::uint8_t> way, shape;
-    std::vector<double> ratio, line, fans, patches;
+    std::vector<std::uint32_t> line_element, fan_element, fan_places, region;
+    std::vector<std::uint8_t> shape;
+    std::vector<double> line, fans, patches;
     for (ElementId e : tree.ids()) {
-        parent.push_back(tree.parent(e).value);
-        way.push_back(static_cast<std::uint8_t>(tree.way(e)));
-        ratio.push_back(tree.ratio(e));
         if (!tree.parent(e).is_none() && tree.way(tree.parent(e)) == Cut::fan &&
             tree.children(tree.parent(e)).front() == e) {
-            const Fan& fan = tree.fan(tree.parent(e));
+            const FanView fan = tree.fan(tree.parent(e));
             fan_element.push_back(tree.parent(e).value);
             fan_places.push_back(static_cast<std::uint32_t>(1 + fan.border.size()));
             fans.insert(fans.end(), {fan.apex.x, fan.apex.y});
@@ -161,19 +184,14 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
         line.insert(line.end(), {tree.line(e).normal.x, tree.line(e).normal.y, tree.line(e).offset});
     }
     for (ElementId e : tree.roots()) {
-        const Patch& p = tree.patch(e);
+        const Patch p = tree.patch(e);
         region.push_back(tree.region(e).value);
         shape.push_back(p.is_triangle() ? 1 : 0);
         for (const Vec3& v : {p.origin, p.a, p.b}) patches.insert(patches.end(), {v.x, v.y, v.z});
     }
     const auto in = [&](const char* name) { return group + "/" + name; };
     file.make_group(group);
-    file.write(in("parent"), parent, 1, {"1", "parent of an element; 4294967295 for a root"});
-    file.write(in("cut"), way, 1,
-               {"1",
-                "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line, "
-                "5 into triangles around a place"});
-    file.write(in("ratio"), ratio, 1, {"1", "where a cut across one direction stands, in (0, 1)"});
+    write_elements(file, group, tree);
     file.write(in("line_element"), line_element, 1, {"1", "elements that are cut along a line, ascending"});
     file.write(in("line"), line, 3, {"1", "n and d of a cut n . (u, v) = d in the element's coordinates"});
     file.write(in("fan_element"), fan_element, 1, {"1", "elements that are cut into triangles, in the order of these"});
@@ -183,8 +201,7 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
     file.write(in("root_region"), region, 1, {"1", "region of a root"});
     file.write(in("root_shape"), shape, 1, {"1", "shape of a root: 0 parallelogram, 1 triangle"});
     file.write(in("root_patch"), patches, 9, {"m", "origin, a and b of a root: its points are origin + u a + v b"});
-    file.write(in("values"), leaf_values(function), bands,
-               {"W/m^2", "irradiance at the corners of the leaves' patches, leaf after leaf"});
+    write_values(file, in("values"), function);
 }
 
 ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "exitance/core/result.hpp"
+#include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/rehearsal.hpp"
 
 namespace exitance {
@@ -33,12 +35,13 @@ struct Hdf5Label {
     const char* long_name;  ///< A few words.
 };
 
-/// An HDF5 file in the making. It grows in memory and is written whole at the end, so that a full disk is found by us
-/// and not by the library. The same calls give the same bytes: no times, no pointers. The first failure is remembered,
-/// what follows it does nothing, and write() reports it. One thread at a time.
+/// An HDF5 file in the making, which appears whole or not at all (AtomicFile). It is written as it grows, so that it
+/// takes next to no memory; what the disk refuses is remembered by us, and not the library's to deal with. The same
+/// calls give the same bytes: no times, no pointers. The first failure is remembered, what follows it does nothing, and
+/// commit() reports it. One thread at a time.
 class Hdf5Writer {
   public:
-    Hdf5Writer();
+    explicit Hdf5Writer(const std::string& path);
     Hdf5Writer(const Hdf5Writer&) = delete;
     Hdf5Writer& operator=(const Hdf5Writer&) = delete;
     ~Hdf5Writer();
@@ -56,6 +59,14 @@ class Hdf5Writer {
     void write(const std::string& name, const std::vector<T>& values, std::size_t columns, Hdf5Label label) {
         write(name, std::span<const T>(values), columns, label);
     }
+    /// The same where nobody holds them: make(i, row) writes row i, and is called for every i from 0 on in its order.
+    template <class T, class Make>
+    void write_rows(const std::string& name, std::size_t rows, std::size_t columns, Hdf5Label label, const Make& make) {
+        write_blocks(name, hdf5_type<T>(), rows, columns, label, [&](std::size_t first, std::size_t count, void* out) {
+            T* const values = static_cast<T*>(out);
+            for (std::size_t i = 0; i < count; ++i) make(first + i, std::span<T>(values + i * columns, columns));
+        });
+    }
     void write_text(const std::string& name, std::string_view text, Hdf5Label label);
     /// Padded to the longest.
     void write_texts(const std::string& name, const std::vector<std::string>& texts, Hdf5Label label);
@@ -70,18 +81,27 @@ class Hdf5Writer {
         set_numbers(object, name, &value, hdf5_type<T>(), 1, false);
     }
 
-    Result<void> write_file(const std::string& path);
+    /// The file is whole.
+    Result<void> commit();
 
   private:
+    using MakeBlock = std::function<void(std::size_t first, std::size_t count, void* out)>;
+    void write_blocks(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns, Hdf5Label label,
+                      const MakeBlock& make);
     void write_numbers(const std::string& name, const void* data, Hdf5Type type, std::size_t rows, std::size_t columns,
                        Hdf5Label label);
     void set_numbers(const std::string& object, const char* name, const void* data, Hdf5Type type, std::size_t count,
                      bool is_array);
     void write_set(const std::string& name, const void* data, std::int64_t memory_type, std::int64_t file_type,
                    std::span<const std::size_t> shape, std::size_t item_bytes, Hdf5Label label);
+    std::int64_t make_set(const std::string& name, std::int64_t file_type, std::span<const std::size_t> shape,
+                          std::size_t item_bytes);
+    void describe(const std::string& name, Hdf5Label label);
     void set(std::int64_t object, const char* name, const void* data, std::int64_t type, std::int64_t space);
     void fail(const std::string& what);
 
+    std::string path_;
+    Result<AtomicFile> output_;
     std::int64_t file_ = -1;  ///< The library's handle.
     std::string failure_;
 };

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "exitance/io/files/atomic_file.hpp"
-#include "exitance/io/solution/hdf5_checksum.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/io/solution/hdf5_library.hpp"
+#include "exitance/io/solution/hdf5_output.hpp"
 
 namespace exitance {
 namespace {
@@ -22,15 +21,21 @@ hid_t text_type(std::size_t length, bool ascii) {
     return type;
 }
 
+/// How many rows are packed together.
+std::size_t rows_of_chunk(std::size_t row_bytes, std::size_t rows) {
+    return std::clamp<std::size_t>(chunk_bytes / row_bytes, 1, std::max<std::size_t>(rows, 1));
+}
+
 bool is_ascii(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
 }
 
 /// Metadata in the layout of version 1.10: every block of it carries a checksum.
-hid_t file_access() {
+hid_t file_access(AtomicFile& output) {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+    set_hdf5_output(access, output);
     return access;
 }
 
@@ -43,21 +48,15 @@ hid_t group_creation(hid_t of_class) {
     return creation;
 }
 
-/// An image still has its superblock's checksum from when the file was open for writing: version 1.10 of the library
-/// clears that mark in the image, and forgets the checksum.
-void mend_superblock(std::string& image) {
-    constexpr std::size_t version_at = 8, checksum_at = 44;
-    if (image.size() < checksum_at + 4 || image[version_at] != 3) return;
-    const std::uint32_t sum = hdf5_checksum(std::string_view(image).substr(0, checksum_at));
-    for (std::size_t k = 0; k < 4; ++k) image[checksum_at + k] = static_cast<char>(sum >> 8 * k & 0xff);
-}
-
 }  // namespace
 
-Hdf5Writer::Hdf5Writer() {
+Hdf5Writer::Hdf5Writer(const std::string& path) : path_(path), output_(AtomicFile::create(path)) {
+    if (!output_) {
+        fail("the file");
+        return;
+    }
     quieten_hdf5();
-    const Hdf5Handle access(file_access()), creation(group_creation(H5P_FILE_CREATE));
-    H5Pset_fapl_core(access, 1 << 20, false);
+    const Hdf5Handle access(file_access(*output_)), creation(group_creation(H5P_FILE_CREATE));
     file_ = H5Fcreate("exitance", H5F_ACC_TRUNC, creation, access);
     if (file_ < 0) fail("the file");
 }
@@ -77,8 +76,9 @@ void Hdf5Writer::make_group(const std::string& name) {
     if (group < 0) fail("group " + name);
 }
 
-void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64_t memory_type, std::int64_t file_type,
-                           std::span<const std::size_t> shape, std::size_t item_bytes, Hdf5Label label) {
+/// The library's handle of a new set without values; negative where it fails.
+std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_type, std::span<const std::size_t> shape,
+                                  std::size_t item_bytes) {
     const int rank = static_cast<int>(shape.size());
     std::array<hsize_t, 2> extent{}, chunk{};
     std::size_t items = 1;
@@ -91,8 +91,7 @@ void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64
     if (items * item_bytes < big_bytes) {
         if (items > 0) H5Pset_layout(creation, H5D_COMPACT);  // in the header, under its checksum
     } else if (rank > 0) {
-        const std::size_t row_bytes = items / shape[0] * item_bytes;
-        chunk[0] = std::clamp<hsize_t>(chunk_bytes / row_bytes, 1, extent[0]);
+        chunk[0] = rows_of_chunk(items / shape[0] * item_bytes, shape[0]);
         H5Pset_chunk(creation, rank, chunk.data());
         // The digits of light do not shrink: deflating them takes long and gains a sixth. They get a checksum instead.
         if (H5Tequal(file_type, hdf5_stored_type(Hdf5Type::float32)) > 0) {
@@ -102,11 +101,46 @@ void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64
             H5Pset_deflate(creation, 1);
         }
     }
-    const Hdf5Handle set(H5Dcreate2(file_, name.c_str(), file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    if (set < 0 || (items > 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
-        return fail("data set " + name);
+    return H5Dcreate2(file_, name.c_str(), file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+}
+
+void Hdf5Writer::describe(const std::string& name, Hdf5Label label) {
     set_attribute(name, "units", std::string_view(label.units));
     set_attribute(name, "long_name", std::string_view(label.long_name));
+}
+
+void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64_t memory_type, std::int64_t file_type,
+                           std::span<const std::size_t> shape, std::size_t item_bytes, Hdf5Label label) {
+    std::size_t items = 1;
+    for (const std::size_t extent : shape) items *= extent;
+    const Hdf5Handle set(make_set(name, file_type, shape, item_bytes));
+    if (set < 0 || (items > 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
+        return fail("data set " + name);
+    describe(name, label);
+}
+
+/// In blocks of whole chunks, each of which is written at once.
+void Hdf5Writer::write_blocks(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns,
+                              Hdf5Label label, const MakeBlock& make) {
+    if (!failure_.empty()) return;
+    const std::array<std::size_t, 2> extent = {rows, columns};
+    const std::span<const std::size_t> shape = std::span(extent).first(columns == 1 ? 1 : 2);
+    const std::size_t item_bytes = H5Tget_size(hdf5_native_type(type)), row_bytes = columns * item_bytes;
+    const Hdf5Handle set(make_set(name, hdf5_stored_type(type), shape, item_bytes));
+    if (set < 0) return fail("data set " + name);
+    const Hdf5Handle in_file(H5Dget_space(set));
+    const std::size_t together = rows_of_chunk(row_bytes, rows);
+    std::vector<std::byte> block(std::min(rows, together) * row_bytes);
+    for (std::size_t first = 0; first < rows; first += together) {
+        const std::size_t count = std::min(together, rows - first);
+        make(first, count, block.data());
+        const std::array<hsize_t, 2> start{first, 0}, size{count, columns};
+        const Hdf5Handle in_memory(H5Screate_simple(static_cast<int>(shape.size()), size.data(), nullptr));
+        if (H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr) < 0 ||
+            H5Dwrite(set, hdf5_native_type(type), in_memory, in_file, H5P_DEFAULT, block.data()) < 0)
+            return fail("data set " + name);
+    }
+    describe(name, label);
 }
 
 void Hdf5Writer::write_numbers(const std::string& name, const void* data, Hdf5Type type, std::size_t rows,
@@ -158,17 +192,14 @@ void Hdf5Writer::set_numbers(const std::string& object, const char* name, const 
     set(target, name, data, hdf5_native_type(type), space);
 }
 
-Result<void> Hdf5Writer::write_file(const std::string& path) {
-    std::string image;
-    if (failure_.empty()) {
-        if (H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) fail("the file");
-        const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
-        if (size > 0) image.resize(static_cast<std::size_t>(size));
-        if (size <= 0 || H5Fget_file_image(file_, image.data(), image.size()) != size) fail("the file");
-        mend_superblock(image);
-    }
-    if (!failure_.empty()) return Error{ErrorCode::cannot_write, "cannot be written: " + failure_, path, ""};
-    return exitance::write_file(path, image);
+Result<void> Hdf5Writer::commit() {
+    if (!output_) return output_.error();
+    if (file_ >= 0 && H5Fclose(std::exchange(file_, -1)) < 0) fail("the file");
+    // What the disk has refused comes first: the library may have failed for it.
+    const Result<void> written = failure_.empty() || output_->failed() ? output_->commit() : Result<void>();
+    if (!written) return written;
+    if (!failure_.empty()) return Error{ErrorCode::cannot_write, "cannot be written: " + failure_, path_, ""};
+    return {};
 }
 
 }  // namespace exitance

@@ -11,7 +11,7 @@ constexpr std::int64_t format = 1;  ///< Raised when older programs could not re
 }  // namespace
 
 Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups) {
-    Hdf5Writer file;
+    Hdf5Writer file(path);
     write_vtkhdf(file, solution);
     file.make_group("exitance");
     file.set_attribute("exitance", "format", format);
@@ -32,7 +32,7 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
     if (groups && !groups->empty()) write_light_groups(file, "exitance/groups", *groups);
     write_statistics(file, "exitance/statistics", solution.statistics);
-    return file.write_file(path);
+    return file.commit();
 }
 
 Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, LightGroups* groups) {

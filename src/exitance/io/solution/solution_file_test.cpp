@@ -162,9 +162,9 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
     EXPECT_EQ(smooth->discontinuity.gradient_of, mesh.gradient_of);
     // Nothing that evaluates light may see this one: its group is written alone.
     mesh.gradient_of[0][2] = 2;
-    Hdf5Writer out;
+    Hdf5Writer out(path("bad.h5"));
     write_discontinuity(out, "mesh", mesh);
-    ASSERT_TRUE(out.write_file(path("bad.h5")));
+    ASSERT_TRUE(out.commit());
     Result<Hdf5Reader> in = Hdf5Reader::open(path("bad.h5"));
     ASSERT_TRUE(in) << in.error().message;
     read_discontinuity(*in, "mesh", 2);

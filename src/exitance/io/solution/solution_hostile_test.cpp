@@ -4,6 +4,7 @@
 
 #include "exitance/io/export/export.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
@@ -26,7 +27,7 @@ struct Parts {
     std::vector<float> values = std::vector<float>(16 * bands, 1);
 
     std::string wrong(const std::string& path) const {
-        Hdf5Writer out;
+        Hdf5Writer out(path);
         out.make_group("f");
         out.write("f/parent", parent, 1, label);
         out.write("f/cut", cut, 1, label);
@@ -40,7 +41,7 @@ struct Parts {
         out.write("f/root_shape", root_shape, 1, label);
         out.write("f/root_patch", root_patch, 9, label);
         out.write("f/values", values, bands, label);
-        if (!out.write_file(path)) return "cannot write";
+        if (!out.commit()) return "cannot write";
         Result<Hdf5Reader> in = Hdf5Reader::open(path);
         if (!in) return "cannot open";
         read_function(*in, "f", 1);
@@ -179,14 +180,47 @@ TEST(HostileSolutions, AreDarkAtPointsThatAreNotFinite) {
     for (RegionId r : s.scene.regions().ids()) EXPECT_EQ(s.indirect.at(locator.find(r, {nan, nan, nan})), Spectrum());
 }
 
+TEST(Hdf5Writers, WriteRowsAsTheyWriteArrays) {
+    const TemporaryFolder folder;
+    std::vector<double> values(3 * 50000);  // several chunks, the last of them not whole
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sqrt(static_cast<double>(i));
+    for (const bool by_rows : {false, true}) {
+        Hdf5Writer out(folder / (by_rows ? "rows.h5" : "array.h5"));
+        if (by_rows)
+            out.write_rows<double>("a", 50000, 3, label, [&](std::size_t i, std::span<double> row) {
+                std::copy_n(&values[3 * i], 3, row.begin());
+            });
+        else
+            out.write("a", values, 3, label);
+        ASSERT_TRUE(out.commit());
+    }
+    Result<Hdf5Reader> in = Hdf5Reader::open(folder / "rows.h5");
+    ASSERT_TRUE(in) << in.error().message;
+    EXPECT_EQ(in->read<double>("a", 3), values);
+    EXPECT_EQ(*read_whole_file(folder / "rows.h5"), *read_whole_file(folder / "array.h5"));
+}
+
+TEST(Hdf5Writers, SayWhatTheDiskRefuses) {
+    if (!std::filesystem::exists("/dev/full")) return;
+    Hdf5Writer out("/dev/full");
+    out.write("a", std::vector<double>(100000, 1.0), 1, label);
+    const Result<void> written = out.commit();
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::cannot_write);
+    EXPECT_NE(written.error().message.find("No space"), std::string::npos) << written.error().message;
+    Hdf5Writer nowhere("/nowhere/at/all.h5");
+    nowhere.write("a", std::vector<double>(10, 1.0), 1, label);
+    EXPECT_FALSE(nowhere.commit());
+}
+
 TEST(HostileSolutions, MayNotChangeTheKindOfASet) {
     const TemporaryFolder folder;
-    Hdf5Writer out;
+    Hdf5Writer out(folder / "f.h5");
     out.write("a", std::vector<double>{1, 2, 3, 4}, 2, label);
     out.write("b", std::vector<std::int64_t>{-1, 2}, 1, label);
     out.write_text("c", "text", label);
     out.make_group("g");
-    ASSERT_TRUE(out.write_file(folder / "f.h5"));
+    ASSERT_TRUE(out.commit());
     const auto wrong = [&](const auto& read) {
         Result<Hdf5Reader> in = Hdf5Reader::open(folder / "f.h5");
         EXPECT_TRUE(in);

@@ -68,6 +68,7 @@ void Solver::project_direct() {
         const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);
         progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
         direct_ = std::move(fresh);
+        share_on_node(direct_.fit.span());  // nobody writes to it any more
     }
     statistics().seconds["mesh"] += watch.seconds();
 }
@@ -95,8 +96,10 @@ void Solver::attempt() {
     }
     if (step_ == Step::decide) return;
     Stopwatch watch;
-    const ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
+    ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
+    share_on_node(std::span(light.values));
     const QuickFunction b(light, stage_.scene.regions().size());
+    if (b.stands_alone() && !sums_) light = {};
     release_freed_memory();
     if (step_ == Step::gather) {
         refined_.clear();
@@ -118,6 +121,7 @@ void Solver::attempt() {
                             .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
     if (sums_) look.points /= 2;  // without noise
     if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
+    look.coarse = &b.locator();
     certify_solution(look, options_.error_demand(), elements);
     statistics().seconds["certify"] += watch.restart();
     reach(Step::decide);
@@ -132,6 +136,10 @@ void Solver::find_light() {
         if (!gives_up()) share_ = direct_share();
         light_in_ = light_by_room(stage_, *light_);
         allowed_in_ = allowed_by_room(stage_, light_in_, calibrated::whole_beyond_rooms);
+        for (const auto* const values : {&light_->direct, &light_->indirect, &light_->reflected})
+            share_on_node(std::span(*values));
+        for (const auto* const corners : {&light_->direct_corners, &light_->indirect_corners})
+            share_on_node(std::span(*corners));
     }
     statistics().seconds["solve"] += watch.seconds();
 }
@@ -152,6 +160,8 @@ bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunctio
     gathered_ = {};
     ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
     if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
+    share_on_node(std::span(indirect.values)), share_on_node(indirect.first_value.span());
+    share_on_node(gathered_.leaves.span());
     if (stop_.requested()) {
         // Half a local pass is worth less than the last whole one, or than what the method has found.
         if (step_ != Step::refine) {

@@ -1,6 +1,7 @@
 #include "exitance/reconstruct/error/certificate.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -61,7 +62,8 @@ struct Certifier::Content {
     const ReflectedLight& b;
     CertificateOptions options;
     double mean_reflected, constant = 1;
-    ElementLocator coarse;
+    std::optional<ElementLocator> own_coarse;
+    const ElementLocator& coarse;
     std::vector<Spectrum> rho;
     std::vector<double> area;
     RayRows H;                   ///< Between the leaves of `light`.
@@ -80,11 +82,12 @@ struct Certifier::Content {
           b(b_),
           options(options_),
           mean_reflected(light.mean_reflected(stage.area)),
-          coarse(light.tree, stage.scene.regions().size()),
+          coarse(options.coarse ? *options.coarse : own_coarse.emplace(light.tree, stage.scene.regions().size())),
           rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
           area(leaf_areas(light.tree, light.numbering)),
           H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1,
             Dealing::by_element, RowsHeld::by_owner) {
+        share_on_node(std::span(rho)), share_on_node(std::span(area));
         if (mean_reflected <= 0) return;
         even = even_irradiance(H, rho, area);
         constant = error_constant(H, rho, area, even);

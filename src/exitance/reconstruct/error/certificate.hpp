@@ -33,6 +33,8 @@ struct CertificateOptions {
     std::vector<ElementTree::Place> places = {};
     /// What the local pass gathered, where there was one: tells its error from the method's.
     const ReflectedLight* gathered = nullptr;
+    /// Of the method's mesh; null: made anew.
+    const ElementLocator* coarse = nullptr;
     /// In place of rays. Null where those are cast.
     const SummedLight* summed = nullptr;
     /// The light of every room by the mean light; empty where all is one room.

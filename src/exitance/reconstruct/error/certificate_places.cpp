@@ -24,7 +24,7 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
     // Where rooms are judged apart, all are looked at alike, and errors count by what is allowed there.
     const auto error_at = [&](ElementId e) {
         const double allowed = options.allowed_in.empty() ? 1 : options.allowed_in[stage.rooms.of(tree, e)];
-        return std::pow((*known)[e].expected_error / allowed, 2);
+        return std::pow(LocalPassReport::known(*known, tree, e).expected_error / allowed, 2);
     };
     double area = 0, error = 0, in_gaps = 0;
     for (ElementId e : leaves) {

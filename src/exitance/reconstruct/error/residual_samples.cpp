@@ -52,7 +52,9 @@ ResidualSampler::ResidualSampler(const Stage& stage, const ElementFunction& indi
       numbering_(numbering) {}
 
 unsigned ResidualSampler::rays_at(ElementId leaf) const {
-    if (options_.leaves) return certificate_rays(calibrated::certificate_ray_share * (*options_.leaves)[leaf].rays);
+    if (options_.leaves)
+        return certificate_rays(calibrated::certificate_ray_share *
+                                LocalPassReport::known(*options_.leaves, indirect_.tree, leaf).rays);
     return certificate_rays(often_ * rays_to_tell(options_.error, options_.points));
 }
 
