@@ -65,7 +65,8 @@ SeenPolygon::SeenPolygon(std::span<const Point> corners, const Normal& n, double
         const double seen = 2 * std::atan2(std::abs(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
         constexpr double least = 1e-9;  // sr: below it angles lose their digits
         if (!(seen > least)) continue;
-        triangles_.push_back({a, b, c, angle_at(a, b, c), seen});
+        const double angle = angle_at(a, b, c);
+        triangles_.push_back({a, b, c, angle, std::sin(angle), std::cos(angle), seen});
         solid_angle_ += seen;
     }
 }
@@ -74,14 +75,13 @@ Vec3 SeenPolygon::direction(double s, double t) const {
     double rest = s * solid_angle_;
     std::size_t k = 0;
     while (k + 1 < triangles_.size() && rest >= triangles_[k].solid_angle) rest -= triangles_[k++].solid_angle;
-    const auto& [a, b, c, alpha, solid_angle] = triangles_[k];
+    const auto& [a, b, c, alpha, sin_alpha, cos_alpha, solid_angle] = triangles_[k];
     // The part of that area beside the arc ab ends at the arc from b to a point of the arc ac.
-    const double beta = angle_at(b, c, a), gamma = angle_at(c, a, b);
-    const double phi = std::clamp(rest / solid_angle, 0.0, 1.0) * (alpha + beta + gamma - pi) - alpha;
-    const double sine = std::sin(phi), cosine = std::cos(phi), u = cosine - std::cos(alpha);
-    const double v = sine + std::sin(alpha) * dot(a, b);
-    const double down = (v * sine + u * cosine) * std::sin(alpha);
-    const double q = down != 0 ? ((v * cosine - u * sine) * std::cos(alpha) - v) / down : 1;
+    const double phi = std::clamp(rest, 0.0, solid_angle) - alpha;
+    const double sine = std::sin(phi), cosine = std::cos(phi), u = cosine - cos_alpha;
+    const double v = sine + sin_alpha * dot(a, b);
+    const double down = (v * sine + u * cosine) * sin_alpha;
+    const double q = down != 0 ? ((v * cosine - u * sine) * cos_alpha - v) / down : 1;
     const double along = std::clamp(q, dot(a, c), 1.0);
     const Vec3 end = along * a + std::sqrt(std::max(0.0, 1 - along * along)) * turned_to(c, a);
     const double z = 1 - t * (1 - dot(end, b));

@@ -24,10 +24,10 @@ class SeenPolygon {
     double weight(const Vec3& d, const Normal& receiver) const;
 
   private:
-    /// A part of what is seen: unit vectors to its corners, the angle at the first, and the solid angle.
+    /// A part of what is seen: unit vectors to its corners, the angle at the first, and the solid angle, sr.
     struct Triangle {
         Vec3 a, b, c;
-        double angle, solid_angle;
+        double angle, sine, cosine, solid_angle;
     };
     Vec3 direction(double s, double t) const;
 
