@@ -16,13 +16,24 @@ constexpr double beside = 0.2;          ///< Of the smaller room's walls: how fa
 constexpr int steps =
     60;  ///< Of light to and fro, half of which stays: what an opening of a twentieth joins differs by a third still.
 
+/// What a leaf of exitance 1 sends to the sky, m^2.
+double sent_to_sky(const Flow& flow, std::uint32_t leaf) {
+    const auto hits = flow.rows.hits(leaf);
+    const auto lost = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
+    return flow.area[leaf] * lost / static_cast<double>(hits.size());
+}
+
+double sent_to_sky(const Flow& flow, const LeafNumbers& leaves) {
+    double sum = 0;
+    for (std::uint32_t i : leaves) sum += sent_to_sky(flow, i);
+    return sum;
+}
+
 /// Of what leaves send to the sky.
 double mean_towards_sky(const Flow& flow, const LeafNumbers& leaves, const std::vector<double>& x) {
     double sum = 0, all = 0;
     for (std::uint32_t i : leaves) {
-        const auto hits = flow.rows.hits(i);
-        const auto lost = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
-        const double sent = flow.area[i] * lost / static_cast<double>(hits.size());
+        const double sent = sent_to_sky(flow, i);
         sum += sent * x[i], all += sent;
     }
     return all > 0 ? sum / all : 0;
@@ -116,11 +127,13 @@ std::size_t best_cut(const Cuts& cuts) {
 }
 
 /// Moves leaves to the side that they see most of. An order by few rays has some on the wrong side of a cut, where the
-/// light of one room would be judged by that of the other. None, if a side is left without leaves.
+/// light of one room would be judged by that of the other. The sky is on the side that sends most to it. None, if a
+/// side is left without leaves.
 std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween sides, std::uint16_t part) {
     constexpr int most_sweeps = 8;
     std::vector<std::uint8_t> is_large(flow.area.size());
     for (std::uint32_t i : sides.large) is_large[i] = 1;
+    const int sky = !flow.has_sky ? 0 : sent_to_sky(flow, sides.large) > sent_to_sky(flow, sides.small) ? 1 : -1;
     LeafNumbers all = sides.small;
     all.insert(all.end(), sides.large.begin(), sides.large.end());
     std::sort(all.begin(), all.end());
@@ -128,8 +141,10 @@ std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween s
         std::vector<std::uint8_t> next = is_large;
         for (std::uint32_t i : all) {
             int towards_large = 0;
-            for (std::uint32_t j : flow.rows.hits(i))
+            for (std::uint32_t j : flow.rows.hits(i)) {
+                if (j == RayRows::missed) towards_large += sky;
                 if (j != RayRows::missed && flow.part[j] == part) towards_large += is_large[j] ? 1 : -1;
+            }
             if (towards_large != 0) next[i] = towards_large > 0 ? 1 : 0;
         }
         if (std::exchange(is_large, next) == next) break;
