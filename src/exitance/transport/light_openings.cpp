@@ -86,8 +86,8 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
             if (other > k) up[k] += each, up[other] -= each;
             if (other < k) down[other] += each, down[k] -= each;
         }
-        // What sees nothing at all is covered, not outdoors.
-        if (std::count(hits.begin(), hits.end(), RayRows::missed) == std::ssize(hits)) lost[k] = 0;
+        // Without a sky what sees nothing at all is covered, not outdoors.
+        if (!flow.has_sky && std::count(hits.begin(), hits.end(), RayRows::missed) == std::ssize(hits)) lost[k] = 0;
         all_lost += lost[k];
     }
     Cuts out{std::vector<double>(n), std::vector<double>(n)};

@@ -19,6 +19,9 @@ constexpr double flattest = 0.1;         ///< A room's height by its length; bel
 constexpr double thinnest = 0.03;        ///< How far off what walls see is, by the root of their area; likewise.
 constexpr std::size_t fewest_walls = 4;  ///< Of a room.
 constexpr std::size_t most_rooms = 64;
+constexpr unsigned least_rays = 16;  ///< Of a leaf, and 24 of one of mean area: rooms that are all there is have many.
+constexpr unsigned most_rays = 256;  ///< Of a leaf. Outdoors most leaves are ground, and a room may have a few.
+constexpr std::size_t rays_outdoors = 1 << 18;  ///< Of all leaves there.
 
 /// By place: rooms lie apart from, or within one another; and a little by chance.
 std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
@@ -258,10 +261,11 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     const ElementTree tree = stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop);
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
     const LeafNumbering numbering(tree);
-    const RayRows rows(stage, tree, numbering, *locator, {.average = 24, .least = 16, .most = 256, .front_alone = true},
-                       seed, Dealing::by_element, RowsHeld::everywhere, &stop);
-    const DistantLight& outside = stage.scene.distant();
-    const bool has_sky = !outside.domes.empty();
+    const bool has_sky = !stage.scene.distant().domes.empty();
+    RayBudget rays{.average = 24, .least = least_rays, .most = most_rays, .front_alone = true};
+    if (has_sky)
+        while (rays.least < most_rays && 2 * rays.least * numbering.leaves.size() <= rays_outdoors) rays.least *= 2;
+    const RayRows rows(stage, tree, numbering, *locator, rays, seed, Dealing::by_element, RowsHeld::everywhere, &stop);
     const std::vector<Part> parts = RoomFinder(rows, tree, numbering, seed, has_sky).find(stop);
     LightRooms out;
     if (stop.requested()) return out;  // rows that were not cast tell nothing

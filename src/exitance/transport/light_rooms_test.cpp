@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 
@@ -77,6 +79,45 @@ TEST(LightRooms, SmallRoomsBelongToTheirNeighbourUnlessThatIsGroundOrSky) {
     // 0.7% of the area: too small, but for beside a box of the size of a landscape.
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {12, 12, 12}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 0u);
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {900, 900, 900}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 2u);
+}
+
+/// A house without a floor on ground of 300 m under an even sky: 5 x 4 x 2.5 m, with a slit of 5 x 0.4 m in one wall.
+Scene house_on_ground() {
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.distant.domes.push_back({uniform_sky(), Spectrum(1.0)});
+    const auto face = [&](const std::vector<Point>& corners) {
+        SceneDescription::Face f;
+        for (const Point& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        d.faces.push_back(f);
+    };
+    const auto wall = [&](std::vector<Point> corners) {
+        face(corners);
+        std::reverse(corners.begin(), corners.end());
+        face(corners);
+    };
+    face({{-150, -150, 0}, {150, -150, 0}, {150, 150, 0}, {-150, 150, 0}});
+    wall({{0, 0, 0}, {5, 0, 0}, {5, 0, 1}, {0, 0, 1}});
+    wall({{0, 0, 1.4}, {5, 0, 1.4}, {5, 0, 2.5}, {0, 0, 2.5}});
+    wall({{5, 0, 0}, {5, 4, 0}, {5, 4, 2.5}, {5, 0, 2.5}});
+    wall({{5, 4, 0}, {0, 4, 0}, {0, 4, 2.5}, {5, 4, 2.5}});
+    wall({{0, 4, 0}, {0, 0, 0}, {0, 0, 2.5}, {0, 4, 2.5}});
+    wall({{0, 0, 2.5}, {5, 0, 2.5}, {5, 4, 2.5}, {0, 4, 2.5}});
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+TEST(LightRooms, AHouseOnGroundUnderTheSkyIsOneOfItsOwn) {
+    const Scene scene = house_on_ground();
+    const Stage stage(scene);
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const LightRooms rooms = find_light_rooms(stage, seed, StopRequest());
+        ASSERT_EQ(rooms.count(), 2u) << seed;
+        EXPECT_NEAR(rooms.area(1), 83, 1e-6) << "floor, ceiling and walls without the slit; seed " << seed;
+    }
 }
 
 TEST(LightRooms, SeveralGapsAreNoRoom) {
