@@ -3,6 +3,9 @@
 #include <malloc.h>
 #include <sys/resource.h>
 
+#include <fstream>
+#include <string>
+
 namespace exitance {
 
 std::size_t peak_memory_bytes() {
@@ -11,10 +14,17 @@ std::size_t peak_memory_bytes() {
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
 }
 
+std::size_t proportional_memory_bytes() {
+    std::ifstream file("/proc/self/smaps_rollup");
+    for (std::string word; file >> word;)
+        if (std::size_t kib = 0; word == "Pss:" && file >> kib) return kib * 1024;
+    return 0;
+}
+
 void keep_large_arrays_apart() {
 #ifdef __GLIBC__
     // Else the library takes larger and larger arrays from its heap, in whose gaps much of the memory stays.
-    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+    mallopt(M_MMAP_THRESHOLD, 1 << 18);
 #endif
 }
 

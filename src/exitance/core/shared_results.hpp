@@ -17,10 +17,31 @@ struct ResultSharing {
     std::size_t processes = 1, own = 0;
     /// Block b's bytes are known to process b % processes, and to all afterwards. All processes call it.
     void (*exchange)(std::span<std::string> blocks, const char* what) = nullptr;
+    /// Whole pages of a finished array, which all processes hold alike, stand once a node from here on. All call it.
+    void (*share)(char* begin, std::size_t size) = nullptr;
 };
 inline ResultSharing& result_sharing() {
     static ResultSharing sharing;
     return sharing;
+}
+
+/// Finished values that all processes hold alike stand once in the memory of a node from here on, instead of once a
+/// process: whole pages of them. Whoever writes to them all the same gets pages of its own again. Where the system does
+/// not let processes have pages in common, and where values are few, nothing is done. All processes call it alike.
+template <class T>
+void share_on_node(std::span<T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (const auto share = result_sharing().share)
+        // Only the place matters, which is not written to here.
+        share(reinterpret_cast<char*>(const_cast<std::remove_const_t<T>*>(values.data())), values.size_bytes());
+}
+/// The same of what stands in several arrays.
+template <class T>
+requires requires(const T& value) {
+    value.visit_arrays([](const auto&) {});
+}
+void share_on_node(const T& value) {
+    value.visit_arrays([](const auto& array) { share_on_node(array); });
 }
 
 /// out[i] = find(i) for all i of `out`, on all threads and, where several processes work together, dealt out to them by

@@ -314,8 +314,8 @@ void PlaneNodes::choose_fans() {
     }
 }
 
-/// Makes room for all fans, and for the nodes of all leaves.
-void reserve(const std::vector<FoundLeaves>& found, ElementTree& tree, SharedNodes& nodes) {
+/// Makes room for fans and for the nodes of leaves, `share` times as many as were found.
+void reserve(const std::vector<FoundLeaves>& found, double share, ElementTree& tree, SharedNodes& nodes) {
     std::size_t fans = 0, all = 0, corners = 0;
     for (const FoundLeaves& f : found)
         for (std::size_t k = 0; k < f.leaf.size(); ++k) {
@@ -323,8 +323,9 @@ void reserve(const std::vector<FoundLeaves>& found, ElementTree& tree, SharedNod
             fans += triangles > 0, all += triangles;
             corners += triangles > 0 ? 3 * triangles : f.nodes[k];
         }
-    tree.reserve_fans(fans, all);
-    nodes.first_corner.reserve(tree.size() + all), nodes.node_of.reserve(corners);
+    const auto shared = [&](std::size_t count) { return static_cast<std::size_t>(share * static_cast<double>(count)); };
+    tree.reserve_fans(shared(fans), shared(all));
+    nodes.first_corner.reserve(tree.size() + shared(all)), nodes.node_of.reserve(shared(corners));
 }
 
 /// Cuts the leaves of one plane into their fans, and gives all of them their nodes, after those of the planes before.
@@ -364,31 +365,38 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
     const std::size_t planes = leaves.size();
     std::vector<std::vector<RegionId>> regions(planes);
     for (RegionId r : plane.ids()) regions[plane[r]].push_back(r);
-    std::vector<FoundLeaves> found(planes);
-    find_together(
-        found, 1,
-        [&](std::size_t p) {
-            if (leaves[p].empty() || (stop && stop->requested())) return FoundLeaves();
-            double largest = 0;
-            for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
-            const PlaneNodes nodes(tree, leaves[p],
-                                   contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
-            FoundLeaves out;
-            out.node_count = nodes.node_count;
-            for (const PlaneNodes::Leaf& l : nodes.leaves) out.add(l.leaf, l.fan, l.node);
-            return out;
-        },
-        [](auto& archive, FoundLeaves& f) { archive(f.node_count, f.leaf, f.places, f.nodes, f.place, f.node); },
-        "nodes");
-
+    const auto find = [&](std::size_t p) {
+        if (leaves[p].empty() || (stop && stop->requested())) return FoundLeaves();
+        double largest = 0;
+        for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
+        const PlaneNodes nodes(tree, leaves[p],
+                               contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
+        FoundLeaves out;
+        out.node_count = nodes.node_count;
+        for (const PlaneNodes::Leaf& l : nodes.leaves) out.add(l.leaf, l.fan, l.node);
+        return out;
+    };
+    std::size_t left = 0;
+    for (const std::vector<ElementId>& of_plane : leaves) left += of_plane.size();
+    // Some planes after the other: what is found takes more memory than what is made of it.
+    constexpr std::size_t together = std::size_t(1) << 17;  // leaves
     SharedNodes out;
-    for (std::size_t p = 0; p < planes; ++p)
-        if (!leaves[p].empty() && found[p].leaf.empty()) return out;
     out.first_node.push_back(0);
-    reserve(found, tree, out);
-    for (FoundLeaves& f : found) {
-        add_plane(f, tree, out);
-        f = {};
+    for (std::size_t first = 0, end = 0; first < planes; first = end) {
+        std::size_t count = 0;
+        for (; end < planes && count < together; ++end) count += leaves[end].size();
+        std::vector<FoundLeaves> found(end - first);
+        find_together(
+            found, 1, [&](std::size_t k) { return find(first + k); },
+            [](auto& archive, FoundLeaves& f) { archive(f.node_count, f.leaf, f.places, f.nodes, f.place, f.node); },
+            "nodes");
+        for (std::size_t k = 0; k < found.size(); ++k)
+            if (!leaves[first + k].empty() && found[k].leaf.empty()) return {};
+        if (first == 0 && count > 0) {
+            constexpr double margin = 1.1;  // by which others may be cut more often; only memory that is used counts
+            reserve(found, left > count ? margin * static_cast<double>(left) / static_cast<double>(count) : 1, tree, out);
+        }
+        for (const FoundLeaves& f : found) add_plane(f, tree, out);
     }
     out.first_corner.resize(tree.size());
     return out;

@@ -24,7 +24,7 @@ struct SharedNodes {
 /// Makes a function that is one polynomial a leaf and one value a node continuous over whole planes: leaves on whose
 /// sides corners of others stand, and cells, are cut into fans of triangles. A sliver that has no triangles keeps nodes
 /// of its own. Light jumps at contacts, as leaves of their size see it. O(n log n).
-/// Where `stop` is requested before all leaves are looked at, the tree stays as it is and no nodes are returned.
+/// Where `stop` is requested before all leaves are looked at, no nodes are returned, and the tree is of no use.
 SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
                             const ContactLines& contacts, const StopRequest* stop = nullptr);
 

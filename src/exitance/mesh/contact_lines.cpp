@@ -1,11 +1,6 @@
 #include "exitance/mesh/contact_lines.hpp"
 
 #include <algorithm>
-#include <memory>
-#include <tuple>
-
-#include "exitance/core/shared_results.hpp"
-#include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
 namespace {
@@ -145,23 +140,6 @@ bool clip_to_domain(const std::vector<Vec2>& domain, Vec2& a, Vec2& b) {
     return true;
 }
 
-/// Cuts a leaf along a line; a parallelogram along its own directions into parallelograms, else into cells. False, and
-/// nothing is done, when that leaves hardly anything on one side: so for a line along the border.
-bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
-    constexpr double least = 1e-5;     // of the area
-    constexpr double parallel = 1e-6;  // of the element that a line may be off a direction
-    if (!tree.is_cell(e) && !tree.patch(e).is_triangle())
-        for (const auto& [way, along, across] :
-             {std::tuple{Cut::u, line.normal.x, line.normal.y}, {Cut::v, line.normal.y, line.normal.x}}) {
-            if (std::abs(across) > parallel * std::abs(along)) continue;
-            const double ratio = line.offset / along;
-            if (ratio < least || ratio > 1 - least) return false;
-            tree.split(e, way, ratio);
-            return true;
-        }
-    return !tree.split_by_line(e, line, least).is_none();
-}
-
 }  // namespace
 
 ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7 * scene.size()) {
@@ -287,104 +265,6 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
         if (is_of_others(scene_->surfaces()[s].region)) crossing_of_face(scene_->outline(s), plane, near, highest, out);
     });
     return out;
-}
-
-namespace {
-
-/// Cuts elements along the contacts inside them.
-///
-/// Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at. But
-/// around a point where many meet there is no end to it: what has been halved some times in vain is left as it is.
-class ContactCutter {
-  public:
-    ContactCutter(ElementTree& tree, const ContactLines& contacts, const StopRequest* stop)
-        : tree_(tree), contacts_(contacts), stop_(stop) {}
-
-    void run(const std::vector<ElementId>& from) {
-        find_lines(from);
-        while (!open_.empty() && !stops()) {
-            Open now = std::move(open_.back());
-            open_.pop_back();
-            cut(std::move(now));
-        }
-    }
-
-  private:
-    using Lines = std::vector<ContactLines::Line>;
-
-    struct Open {
-        ElementId element;
-        double area;                               ///< Before contacts cut it, m^2.
-        std::size_t lines = ~std::size_t(0);       ///< When they last became fewer by a quarter,
-        int in_vain = 0;                           ///< and how many cuts ago that was.
-        std::size_t of_parent = ~std::size_t(0);   ///< Lines that the element had before a line cut it,
-        int unchanged = 0;                         ///< and how often a part had no fewer.
-        std::shared_ptr<const Lines> around = {};  ///< If they were found already.
-    };
-
-    bool stops() const { return stop_ && stop_->requested(); }
-
-    /// Most have none: all are looked at together, and what is left to cut is little.
-    void find_lines(const std::vector<ElementId>& from) {
-        std::vector<Lines> found(from.size());
-        find_together(
-            found, 64,
-            [&](std::size_t i) {
-                if (stops()) return Lines();
-                Lines lines = contacts_.around(tree_, from[i], tree_.area(from[i]));
-                contacts_.inside(tree_, from[i], lines);
-                return lines;
-            },
-            [](auto& archive, Lines& lines) { archive(lines); }, "contacts");
-        for (std::size_t i = 0; i < from.size(); ++i)
-            if (!found[i].empty())
-                open_.push_back({.element = from[i],
-                                 .area = tree_.area(from[i]),
-                                 .around = std::make_shared<Lines>(std::move(found[i]))});
-    }
-
-    void cut(Open now) {
-        constexpr std::size_t many = 24;
-        constexpr int most_in_vain = 6;
-        const ElementId e = now.element;
-        Lines around = now.around ? *now.around : contacts_.around(tree_, e, now.area);
-        const std::vector<std::pair<Vec2, Vec2>> lines = contacts_.inside(tree_, e, around);
-        // A line that has cut an element stands in neither part, unless rounding leaves it there, as among nearly
-        // parallel ones that are closer than the cut is exact.
-        if (lines.size() >= now.of_parent && ++now.unchanged > most_in_vain) return;
-        if (lines.size() > many) {
-            if (lines.size() < now.lines - now.lines / 4)
-                now = {e, now.area, lines.size()};
-            else if (++now.in_vain > most_in_vain)
-                return;
-            // Halves are smaller elements, for which less is a gap: their lines are found anew.
-            for (ElementId child : refine_element(tree_, e))
-                open_.push_back({child, now.area * tree_.area(child) / tree_.area(e), now.lines, now.in_vain});
-            if (!tree_.is_leaf(e)) return;
-        }
-        const auto of_parts = std::make_shared<Lines>(std::move(around));
-        for (const auto& [a, b] : lines) {
-            const Vec2 d = b - a;
-            const double length = std::hypot(d.x, d.y);
-            const Vec2 normal = {-d.y / length, d.x / length};
-            if (!cut_along(tree_, e, {normal, dot(normal, a)})) continue;
-            for (ElementId child : tree_.children(e))
-                open_.push_back({child, now.area, now.lines, now.in_vain, lines.size(), now.unchanged, of_parts});
-            return;  // the children look for their own share of the other contacts
-        }
-    }
-
-    ElementTree& tree_;
-    const ContactLines& contacts_;
-    const StopRequest* stop_;
-    std::vector<Open> open_;
-};
-
-}  // namespace
-
-void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts,
-                        const StopRequest* stop) {
-    ContactCutter(tree, contacts, stop).run(from);
 }
 
 }  // namespace exitance

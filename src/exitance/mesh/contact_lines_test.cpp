@@ -69,6 +69,36 @@ TEST(ContactLines, AcrossItsDirectionsAnElementIsCutIntoCells) {
     for (ElementId e : tree.leaves()) EXPECT_TRUE(tree.is_cell(e));
 }
 
+/// A floor that slanting lines have parted already, one cell within another, which the plate crosses from part to part.
+TEST(ContactLines, CellsAreCutAsWholeElementsAre) {
+    const Scene scene = floor_and_plate(0);
+    ElementTree tree;
+    const ElementId floor = tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
+    const ElementId left = tree.split_by_line(floor, {{0.8, 0.6}, 0.52});
+    ASSERT_FALSE(tree.split_by_line(left, {{-0.6, 0.8}, 0.2}).is_none());
+    const std::vector<ElementId> before = tree.leaves();
+    ASSERT_EQ(before.size(), 3u);
+    cut_along_contacts(tree, before, ContactLines(scene));
+    double area = 0;
+    for (ElementId e : tree.leaves()) area += tree.area(e);
+    EXPECT_NEAR(area, 16, 1e-9);
+    // Each as if it were alone.
+    for (ElementId e : before) {
+        ElementTree alone;
+        alone.add_root(RegionId(0), tree.patch(floor));
+        alone.split_by_line(floor, {{0.8, 0.6}, 0.52}), alone.split_by_line(left, {{-0.6, 0.8}, 0.2});
+        cut_along_contacts(alone, {e}, ContactLines(scene));
+        ASSERT_EQ(tree.is_leaf(e), alone.is_leaf(e));
+        for (std::size_t i = 0; i < tree.children(e).size(); ++i) {
+            const std::vector<Point> one = tree.outline(tree.children(e)[i]), other = alone.outline(alone.children(e)[i]);
+            ASSERT_EQ(one.size(), other.size());
+            for (std::size_t k = 0; k < one.size(); ++k) EXPECT_EQ(norm(one[k] - other[k]), 0);
+        }
+    }
+    for (const double y : {1.2, 1.8, 2.6})
+        EXPECT_NE(tree.leaf_at(floor, {0.2499, y / 4}).element, tree.leaf_at(floor, {0.2501, y / 4}).element) << y;
+}
+
 TEST(ContactLines, AnEdgeThatHoversHasAStripOnEitherSide) {
     const Scene scene = floor_and_plate(0.05);
     const ContactLines contacts(scene);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "exitance/core/shared_results.hpp"
+
 namespace exitance {
 namespace {
 
@@ -70,6 +72,7 @@ ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count
         grid_of_[r] = static_cast<std::int32_t>(grids_.size());
         grids_.push_back(make_grid(mine));
     }
+    share_on_node(std::span(roots_)), share_on_node(std::span(first_root_)), share_on_node(std::span(grid_of_));
 }
 
 ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {

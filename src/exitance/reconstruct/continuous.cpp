@@ -144,6 +144,27 @@ class Projection {
     std::vector<double> lumped_;    ///< and int phi dA.
 };
 
+/// The projection on all planes: the value of every node.
+void project(const ElementFunction& f, const ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
+             const SharedNodes& nodes, std::vector<Spectrum>& value) {
+    const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(tree, plane);
+    shared_parts(
+        value, nodes.first_node, 1,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const std::vector<Spectrum> solved = Projection(f, tree, nodes, p, leaves[p]).solve();
+                std::copy(solved.begin(), solved.end(), value.begin() + nodes.first_node[p]);
+            }
+        },
+        {"continuous"});
+}
+
+std::array<float, bands> in_single(const Spectrum& value) {
+    std::array<float, bands> out;
+    for (std::size_t k = 0; k < bands; ++k) out[k] = static_cast<float>(value[k]);
+    return out;
+}
+
 }  // namespace
 
 ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene, const ContactLines& contacts,
@@ -154,22 +175,30 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
     const SharedNodes nodes = make_conforming(out.tree, plane, contacts, stop);
     if (nodes.first_node.empty()) return f;
     share_on_node(out.tree);
-    const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(out.tree, plane);
-    std::vector<std::vector<Spectrum>> value(leaves.size());
-    for (std::size_t p = 0; p < value.size(); ++p) value[p].resize(nodes.first_node[p + 1] - nodes.first_node[p]);
-    shared_ranges(
-        leaves.size(), 1,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) value[p] = Projection(f, out.tree, nodes, p, leaves[p]).solve();
-        },
-        [&](std::size_t p) { return std::span(value[p]); }, {"continuous"});
+    share_on_node(std::span(nodes.node_of)), share_on_node(nodes.first_corner.span());
+    std::vector<Spectrum> value;  // of every node
+    project(f, out.tree, plane, nodes, value);
+    constexpr std::size_t together = 4096;
+    std::vector<std::uint32_t> first;  // value of so many elements
+    std::uint32_t corners = 0;
     out.first_value.resize(out.tree.size());
-    out.values.reserve(nodes.node_of.size());
-    for (ElementId e : out.tree.leaves()) {
-        out.first_value[e] = static_cast<std::uint32_t>(out.values.size());
-        const std::uint32_t p = plane[out.tree.region(e)];
-        for (const std::uint32_t node : nodes.of(e, out.tree)) out.add_value(value[p][node - nodes.first_node[p]]);
+    for (ElementId e : out.tree.ids()) {
+        if (e.value % together == 0) first.push_back(corners);
+        if (!out.tree.is_leaf(e)) continue;
+        out.first_value[e] = corners;
+        corners += static_cast<std::uint32_t>(nodes.of(e, out.tree).size());
     }
+    first.push_back(corners);
+    shared_parts(
+        out.values, first, 1,
+        [&](std::size_t begin, std::size_t end) {
+            for (ElementId e : IdRange<ElementId>(begin * together, std::min(end * together, out.tree.size()))) {
+                if (!out.tree.is_leaf(e)) continue;
+                std::size_t corner = out.first_value[e];
+                for (const std::uint32_t node : nodes.of(e, out.tree)) out.values[corner++] = in_single(value[node]);
+            }
+        },
+        {"continuous"});
     return out;
 }
 

@@ -1,7 +1,5 @@
 #include "exitance/transport/distributed.hpp"
 
-#include "exitance/core/shared_results.hpp"
-
 #define OMPI_SKIP_MPICXX 1
 #include <fcntl.h>
 #include <mpi.h>
@@ -55,18 +53,29 @@ void count(const char* what, std::size_t bytes) {
 }
 
 /// Until it is done, without taking the processor from others: MPI itself would look again and again. Looks follow one
-/// another at first, and are then up to `longest` microseconds apart.
-void wait_for(MPI_Request& request, int longest) {
+/// another at first; then the time between them is a share of what has been waited, so that little is lost by it.
+void wait_for(MPI_Request& request) {
+    constexpr int eager = 200;
+    constexpr double share = 0.05, longest = 5000;  // microseconds
+    const Stopwatch watch;
     int done = 0;
     for (int looks = 0; !done; ++looks) {
-        constexpr int eager = 200, step = 20;
         if (looks >= eager)
-            usleep(static_cast<useconds_t>(std::min(longest, (looks - eager) * step)));
+            usleep(static_cast<useconds_t>(std::clamp(share * 1e6 * watch.seconds(), 20.0, longest)));
         else if (looks > 0)
             sched_yield();
         MPI_Test(&request, &done, MPI_STATUS_IGNORE);
     }
 }
+
+/// The same operation on the values of all processes of a group.
+template <class T>
+void reduce(const T* own, T* all, int count, MPI_Datatype type, MPI_Op operation, MPI_Comm group) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(own, all, count, type, operation, group, &request);
+    wait_for(request);
+}
+
 void exchange_results(std::span<std::string> blocks, const char* what) {
     std::vector<std::uint64_t> sizes(blocks.size());
     for (std::size_t b = 0; b < blocks.size(); ++b) sizes[b] = blocks[b].size();
@@ -76,8 +85,6 @@ void exchange_results(std::span<std::string> blocks, const char* what) {
     exchange_values(
         blocks.size(), 1, [&](std::size_t b) { return std::span<char>(blocks[b]); }, what);
 }
-
-constexpr int between_meetings = 1000, while_sending = 100;  // microseconds
 
 }  // namespace
 
@@ -91,7 +98,7 @@ Result<void> join_processes() {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     team.joined = true;
     team.size = static_cast<std::size_t>(size), team.own = static_cast<std::size_t>(rank);
-    if (size > 1) result_sharing() = {team.size, team.own, exchange_results};
+    if (size > 1) result_sharing() = {team.size, team.own, exchange_results, detail::share_pages};
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &team.node);
     MPI_Comm_size(team.node, &team.node_size);
     return {};
@@ -154,10 +161,21 @@ Result<void> by_first(const std::function<Result<void>()>& work) {
     return error;
 }
 
+std::size_t processes_on_node() {
+    return static_cast<std::size_t>(team.node_size);
+}
+
+double sum_on_node(double value) {
+    if (team.node_size == 1) return value;
+    double out = value;
+    reduce(&value, &out, 1, MPI_DOUBLE, MPI_SUM, team.node);
+    return out;
+}
+
 double largest_of_all(double value) {
     if (team.size == 1) return value;
     double out = value;
-    MPI_Allreduce(&value, &out, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    reduce(&value, &out, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     count("agreement", sizeof value);
     return out;
 }
@@ -165,7 +183,9 @@ double largest_of_all(double value) {
 double sum_of_all(double value) {
     if (team.size == 1) return value;
     std::vector<double> all(team.size);
-    MPI_Allgather(&value, 1, MPI_DOUBLE, all.data(), 1, MPI_DOUBLE, MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallgather(&value, 1, MPI_DOUBLE, all.data(), 1, MPI_DOUBLE, MPI_COMM_WORLD, &request);
+    wait_for(request);
     count("agreement", sizeof value);
     double sum = 0;
     for (double v : all) sum += v;
@@ -206,14 +226,14 @@ bool write_to(int file, std::size_t place, std::span<const char> bytes) {
 /// Is it so in all processes of the node?
 bool all_on_node(bool own) {
     int value = own ? 1 : 0, all = 0;
-    MPI_Allreduce(&value, &all, 1, MPI_INT, MPI_MIN, team.node);
+    reduce(&value, &all, 1, MPI_INT, MPI_MIN, team.node);
     return all == 1;
 }
 
 /// What all processes of the node give alike, for what stands at one place of a page in all of them.
 bool is_alike_on_node(std::size_t a, std::size_t b) {
     std::array<std::uint64_t, 4> own{a, ~std::uint64_t{a}, b, ~std::uint64_t{b}}, all{};
-    MPI_Allreduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, team.node);
+    reduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, team.node);
     return all == own;
 }
 
@@ -239,7 +259,9 @@ int file_of_node(std::size_t size) {
     int file = rank == 0 ? memfd_create("exitance", MFD_CLOEXEC) : -1;
     if (file >= 0 && ftruncate(file, static_cast<off_t>(size)) != 0) close(std::exchange(file, -1));
     std::array<std::int64_t, 2> place{getpid(), file};
-    MPI_Bcast(place.data(), 2, MPI_INT64_T, 0, team.node);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibcast(place.data(), 2, MPI_INT64_T, 0, team.node, &request);
+    wait_for(request);
     if (rank != 0 && place[1] >= 0) {
         const std::string path = "/proc/" + std::to_string(place[0]) + "/fd/" + std::to_string(place[1]);
         file = open(path.c_str(), O_RDWR | O_CLOEXEC);
@@ -273,7 +295,7 @@ void move_pages(std::span<char> pages, int file, int kind) {
 }  // namespace
 
 void share_pages(char* begin, std::size_t size) {
-    constexpr std::size_t least = std::size_t(1) << 20;
+    constexpr std::size_t least = std::size_t(1) << 18;
     const std::span<char> pages = whole_pages({begin, size}, least);
     const int file = pages.empty() ? -1 : file_of_node(pages.size());
     if (file < 0) return;
@@ -308,7 +330,7 @@ void send_from_first(void* data, std::size_t size, const char* what) {
         MPI_Request request = MPI_REQUEST_NULL;
         MPI_Ibcast(static_cast<char*>(data) + done, static_cast<int>(std::min(most, size - done)), MPI_BYTE, 0,
                    MPI_COMM_WORLD, &request);
-        wait_for(request, while_sending);
+        wait_for(request);
     }
     Traffic& t = team.traffic[what];
     ++t.exchanges;
@@ -320,9 +342,7 @@ void meet(std::size_t things, const char* what) {
     const std::uint64_t place = ++team.meetings << 40 ^ things;
     std::array<std::uint64_t, 3> own{place, ~place, stops}, all{};
     const Stopwatch watch;
-    MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Iallreduce(own.data(), all.data(), 3, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD, &request);
-    wait_for(request, between_meetings);
+    reduce(own.data(), all.data(), 3, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     team.time.waiting += watch.seconds();
     count("agreement", sizeof own);
     if (all[0] != place || all[1] != ~place)
@@ -340,7 +360,7 @@ void exchange(std::span<char> all, std::span<const std::size_t> first, const cha
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), sizes.data(), places.data(), MPI_BYTE,
                     MPI_COMM_WORLD, &request);
-    wait_for(request, while_sending);
+    wait_for(request);
     team.time.sending += watch.seconds();
     count(what, first[team.own + 1] - first[team.own]);
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <span>
@@ -11,6 +13,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/progress.hpp"
 #include "exitance/core/result.hpp"
+#include "exitance/core/shared_results.hpp"
 
 namespace exitance {
 
@@ -62,6 +65,10 @@ std::string as_first(std::string bytes, const char* what);
 /// What only the first process does; how it went, for all.
 Result<void> by_first(const std::function<Result<void>()>& work);
 
+/// How many processes have memory in common with this one, itself among them: those of its node.
+std::size_t processes_on_node();
+/// The sum of their values, the same for all of them. All.
+double sum_on_node(double value);
 /// The largest of all processes' values; their sum, in the order of the processes. All.
 double largest_of_all(double value);
 double sum_of_all(double value);
@@ -176,6 +183,7 @@ std::span<char> open_in_common(std::span<char> array);
 void close_in_common(std::span<char> pages);
 /// Counts bytes as sent that the processes have in common.
 void count_as_sent(std::size_t bytes, const char* what);
+/// `share_on_node` of bytes.
 void share_pages(char* begin, std::size_t size);
 }  // namespace detail
 
@@ -206,25 +214,45 @@ void shared_ranges_of(std::span<T> array, std::size_t count, std::size_t grain,
     detail::count_as_sent(bytes, work.name);
 }
 
-/// Finished values that all processes hold alike stand once in the memory of a node from here on, instead of once a
-/// process: whole pages of them. Whoever writes to them all the same gets pages of its own again. Where the system does
-/// not let processes have pages in common, and where values are few, nothing is done. All.
+/// Makes an array of parts, part i of which is [first[i], first[i + 1]): body(begin, end) writes those of its range and
+/// nothing else that lasts; afterwards all processes have all of it. On one node it stands there once from the
+/// beginning. All.
 template <class T>
-void share_on_node(std::span<T> values) {
+void shared_parts(std::vector<T>& array, std::span<const std::uint32_t> first, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body, const Work& work) {
     static_assert(std::is_trivially_copyable_v<T>);
-    if (processes() == 1) return;
-    // Only the place matters, which is not written to here.
-    detail::share_pages(reinterpret_cast<char*>(const_cast<std::remove_const_t<T>*>(values.data())),
-                        values.size_bytes());
+    const std::size_t count = first.size() - 1, size = first.back();
+    array = {};
+    array.reserve(size);
+    const std::span<char> all(reinterpret_cast<char*>(array.data()), size * sizeof(T)),
+        pages = processes() > 1 ? detail::open_in_common(all) : std::span<char>();
+    array.resize(size);
+    if (!pages.empty()) detail::meet(count, work.name);  // before anybody writes, all have made it zero
+    parallel_own_ranges(count, grain, body, work);
+    const auto part = [&](std::size_t i) {
+        return all.subspan(first[i] * sizeof(T), (first[i + 1] - first[i]) * sizeof(T));
+    };
+    if (pages.empty()) return exchange_values(count, grain, part, work.name);
+    // What stands before the pages and behind them is sent.
+    const std::size_t before = static_cast<std::size_t>(pages.data() - all.data()), behind = before + pages.size();
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        if (is_own(i, grain)) bytes += part(i).size();
+    exchange_values(
+        count, grain,
+        [&](std::size_t i) { return part(i).first(std::min(part(i).size(), before - std::min(before, first[i] * sizeof(T)))); },
+        work.name);
+    exchange_values(
+        count, grain,
+        [&](std::size_t i) {
+            const std::size_t end = first[i + 1] * sizeof(T);
+            return part(i).last(std::min(part(i).size(), end - std::min(end, behind)));
+        },
+        work.name);
+    detail::close_in_common(pages);
+    detail::count_as_sent(bytes, work.name);
 }
-/// The same of what stands in several arrays.
-template <class T>
-requires requires(const T& value) {
-    value.visit_arrays([](const auto&) {});
-}
-void share_on_node(const T& value) {
-    if (processes() > 1) value.visit_arrays([](const auto& array) { share_on_node(array); });
-}
+
 /// Of what this process holds, bytes that stand once a node.
 std::size_t shared_memory_bytes();
 

@@ -51,6 +51,10 @@ struct Part {
         volume += other.volume;
         box.add(other.box.lo), box.add(other.box.hi);
     }
+    template <class Archive>
+    friend void archive(Archive& a, Part& part) {
+        a(part.leaves, part.area, part.volume, part.box);
+    }
     /// Not so a gap, several gaps, or a single wall.
     bool may_be_room() const {
         const Vec3 size = box.size();
@@ -211,6 +215,20 @@ void RoomFinder::join_smallest() {
     sort();
 }
 
+/// Parts follow from one another: the first process finds them, for all.
+std::vector<Part> find_parts(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
+                             std::uint64_t seed, bool has_sky, const StopRequest& stop) {
+    if (processes() == 1) return RoomFinder(rows, tree, numbering, seed, has_sky).find(stop);
+    std::vector<Part> parts;
+    ArchiveWriter writer;
+    if (is_first_process()) parts = RoomFinder(rows, tree, numbering, seed, has_sky).find(stop), writer(parts);
+    const std::string bytes = as_first(writer.take(), "rooms");
+    ArchiveReader reader(bytes);
+    reader(parts);
+    EXI_CHECK(reader.good() && reader.left() == 0);
+    return parts;
+}
+
 }  // namespace
 
 std::size_t LightRooms::at(RegionId region, const Point& x) const {
@@ -266,7 +284,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     if (has_sky)
         while (rays.least < most_rays && 2 * rays.least * numbering.leaves.size() <= rays_outdoors) rays.least *= 2;
     const RayRows rows(stage, tree, numbering, *locator, rays, seed, Dealing::by_element, RowsHeld::everywhere, &stop);
-    const std::vector<Part> parts = RoomFinder(rows, tree, numbering, seed, has_sky).find(stop);
+    const std::vector<Part> parts = find_parts(rows, tree, numbering, seed, has_sky, stop);
     LightRooms out;
     if (stop.requested()) return out;  // rows that were not cast tell nothing
     const std::vector<double> kept = rows.kept();

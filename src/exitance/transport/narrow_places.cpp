@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -35,11 +35,14 @@ Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const Elem
     const double touching = coplanar * stage.scene.size();
     Field<ElementId, std::uint8_t> out(tree.size());
     const std::vector<ElementId> leaves = tree.leaves();
-    parallel_ranges(leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (!stage.is_left_out(tree.region(leaves[i])))
-                out[leaves[i]] = is_narrow(stage, tree, leaves[i], touching) ? 1 : 0;
-    });
+    shared_ranges(
+        leaves.size(), 256,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (!stage.is_left_out(tree.region(leaves[i])))
+                    out[leaves[i]] = is_narrow(stage, tree, leaves[i], touching) ? 1 : 0;
+        },
+        [&](std::size_t i) -> std::uint8_t& { return out[leaves[i]]; }, {"narrow places"});
     return out;
 }
 

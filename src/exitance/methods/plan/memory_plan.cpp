@@ -13,6 +13,19 @@ namespace {
 /// up.
 constexpr double leaves_an_element = 4;
 
+/// What processes of one node hold together, by what one would hold alone: each has `own` of it for itself.
+double share_of_process(double own) {
+    const auto count = static_cast<double>(processes_on_node());
+    return (1 + own * (count - 1)) / count;
+}
+
+/// What a process holds now: what those of a node have in common counts for each by its share.
+double bytes_in_use() {
+    const std::size_t proportional = processes() > 1 ? proportional_memory_bytes() : 0;
+    const double own = static_cast<double>(proportional > 0 ? proportional : peak_memory_bytes());
+    return largest_of_all(sum_on_node(own) / static_cast<double>(processes_on_node()));
+}
+
 double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
     const auto elements = static_cast<double>(predict_elements(pieces, knobs.solve_mesh.edge) +
                                               predict_elements(pieces, knobs.gather_mesh.edge));
@@ -24,14 +37,15 @@ double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, con
                                                                                    : 0;
     const double entries =
         words_a_pair > 0 ? words_a_pair * elements * elements : 4 * elements * knobs.solve_rays.average;
-    return bytes_a_leaf * leaves_an_element * elements + 4 * entries;
+    const double of_all = bytes_a_leaf * leaves_an_element * elements + 4 * entries;
+    return largest_of_all(share_of_process(own_memory)) * of_all;
 }
 
 }  // namespace
 
 Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
     const double limit = static_cast<double>(*options.memory_limit_bytes);
-    const double used = largest_of_all(static_cast<double>(peak_memory_bytes()));
+    const double used = bytes_in_use();
     bool unchanged = true;
     for (double before = 0; used + predicted_bytes(knobs, pieces, options) > limit; unchanged = false) {
         const double now = predicted_bytes(knobs, pieces, options);

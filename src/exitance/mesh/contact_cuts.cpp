@@ -1,0 +1,199 @@
+#include "exitance/mesh/contact_lines.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <tuple>
+
+#include "exitance/core/shared_results.hpp"
+#include "exitance/mesh/adaptive.hpp"
+
+namespace exitance {
+namespace {
+
+/// Cuts a leaf along a line; a parallelogram along its own directions into parallelograms, else into cells. False, and
+/// nothing is done, when that leaves hardly anything on one side: so for a line along the border.
+bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
+    constexpr double least = 1e-5;     // of the area
+    constexpr double parallel = 1e-6;  // of the element that a line may be off a direction
+    if (!tree.is_cell(e) && !tree.patch(e).is_triangle())
+        for (const auto& [way, along, across] :
+             {std::tuple{Cut::u, line.normal.x, line.normal.y}, {Cut::v, line.normal.y, line.normal.x}}) {
+            if (std::abs(across) > parallel * std::abs(along)) continue;
+            const double ratio = line.offset / along;
+            if (ratio < least || ratio > 1 - least) return false;
+            tree.split(e, way, ratio);
+            return true;
+        }
+    return !tree.split_by_line(e, line, least).is_none();
+}
+
+/// Cuts one element along the contacts inside it.
+///
+/// Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at. But
+/// around a point where many meet there is no end to it: what has been halved some times in vain is left as it is.
+class ContactCutter {
+  public:
+    using Lines = std::vector<ContactLines::Line>;
+
+    ContactCutter(ElementTree& tree, const ContactLines& contacts, const StopRequest* stop)
+        : tree_(tree), contacts_(contacts), stop_(stop) {}
+
+    /// `around`: the lines that run through the element.
+    void run(ElementId e, Lines around) {
+        open_.push_back(
+            {.element = e, .area = tree_.area(e), .around = std::make_shared<const Lines>(std::move(around))});
+        while (!open_.empty() && !(stop_ && stop_->requested())) {
+            Open now = std::move(open_.back());
+            open_.pop_back();
+            cut(std::move(now));
+        }
+    }
+
+  private:
+    struct Open {
+        ElementId element;
+        double area;                               ///< Before contacts cut it, m^2.
+        std::size_t lines = ~std::size_t(0);       ///< When they last became fewer by a quarter,
+        int in_vain = 0;                           ///< and how many cuts ago that was.
+        std::size_t of_parent = ~std::size_t(0);   ///< Lines that the element had before a line cut it,
+        int unchanged = 0;                         ///< and how often a part had no fewer.
+        std::shared_ptr<const Lines> around = {};  ///< If they were found already.
+    };
+
+    void cut(Open now) {
+        constexpr std::size_t many = 24;
+        constexpr int most_in_vain = 6;
+        const ElementId e = now.element;
+        Lines around = now.around ? *now.around : contacts_.around(tree_, e, now.area);
+        const std::vector<std::pair<Vec2, Vec2>> lines = contacts_.inside(tree_, e, around);
+        // A line that has cut an element stands in neither part, unless rounding leaves it there, as among nearly
+        // parallel ones that are closer than the cut is exact.
+        if (lines.size() >= now.of_parent && ++now.unchanged > most_in_vain) return;
+        if (lines.size() > many) {
+            if (lines.size() < now.lines - now.lines / 4)
+                now = {e, now.area, lines.size()};
+            else if (++now.in_vain > most_in_vain)
+                return;
+            // Halves are smaller elements, for which less is a gap: their lines are found anew.
+            for (ElementId child : refine_element(tree_, e))
+                open_.push_back({child, now.area * tree_.area(child) / tree_.area(e), now.lines, now.in_vain});
+            if (!tree_.is_leaf(e)) return;
+        }
+        const auto of_parts = std::make_shared<Lines>(std::move(around));
+        for (const auto& [a, b] : lines) {
+            const Vec2 d = b - a;
+            const double length = std::hypot(d.x, d.y);
+            const Vec2 normal = {-d.y / length, d.x / length};
+            if (!cut_along(tree_, e, {normal, dot(normal, a)})) continue;
+            for (ElementId child : tree_.children(e))
+                open_.push_back({child, now.area, now.lines, now.in_vain, lines.size(), now.unchanged, of_parts});
+            return;  // the children look for their own share of the other contacts
+        }
+    }
+
+    ElementTree& tree_;
+    const ContactLines& contacts_;
+    const StopRequest* stop_;
+    std::vector<Open> open_;
+};
+
+/// A leaf of one tree as one of another: a root, or where it is a cell, what the same lines cut from a root.
+ElementId copy_leaf(const ElementTree& tree, ElementId e, ElementTree& out) {
+    if (!tree.is_cell(e)) return out.add_root(tree.region(e), tree.patch(e));
+    const ElementId parent = tree.parent(e);
+    const ElementId first = out.split_by_line(copy_leaf(tree, parent, out), tree.line(parent), 0);
+    return ElementId(first.value + e.value - tree.children(parent).front().value);
+}
+
+/// How elements are cut, one after the other, to be done again in another tree.
+class FoundCuts {
+  public:
+    /// All that comes of `element` stands in the tree from `first` on.
+    void add(const ElementTree& tree, ElementId element, std::size_t first) {
+        const std::size_t before = cuts_.size();
+        for (std::size_t i = first; i < tree.size(); ++i) {
+            const ElementId e(i), parent = tree.parent(e);
+            if (tree.children(parent).front() != e) continue;
+            const auto number = static_cast<std::uint32_t>(parent == element ? 0 : parent.value - first + 1);
+            const Cut way = tree.way(parent);
+            cuts_.push_back({number, way, way == Cut::line ? tree.line(parent) : CutLine{{}, tree.ratio(parent)}});
+        }
+        count_.push_back(static_cast<std::uint32_t>(cuts_.size() - before));
+    }
+    void add_none() { count_.push_back(0); }
+
+    /// Cuts these, the last first.
+    void cut(ElementTree& tree, std::span<const ElementId> elements) const {
+        auto end = cuts_.end();
+        for (std::size_t i = count_.size(); i-- > 0;) {
+            const auto begin = end - count_[i];
+            const std::size_t first = tree.size();
+            for (auto made = begin; made != end; ++made) {
+                const ElementId e = made->element == 0 ? elements[i] : ElementId(first + made->element - 1);
+                if (made->way == Cut::line)
+                    tree.split_by_line(e, made->line, 0);
+                else
+                    tree.split(e, made->way, made->line.offset);
+            }
+            end = begin;
+        }
+    }
+
+    template <class Archive>
+    friend void archive(Archive& a, FoundCuts& found) {
+        a(found.count_, found.cuts_);
+    }
+
+  private:
+    struct MadeCut {
+        std::uint32_t element;  ///< 0: the element itself; else the so-many-th of those that came of it.
+        Cut way;
+        CutLine line;  ///< Of a cut across one direction, its ratio in place of the offset.
+    };
+    std::vector<std::uint32_t> count_;  ///< Of each element's cuts.
+    std::vector<MadeCut> cuts_;
+};
+
+/// In a tree of their own, so that elements are cut side by side.
+FoundCuts find_cuts(const ElementTree& tree, std::span<const ElementId> elements, const ContactLines& contacts,
+                    const StopRequest* stop) {
+    FoundCuts out;
+    ElementTree room;
+    for (ElementId e : elements) {
+        std::vector<ContactLines::Line> lines;
+        if (!stop || !stop->requested()) {
+            lines = contacts.around(tree, e, tree.area(e));
+            contacts.inside(tree, e, lines);
+        }
+        if (lines.empty()) {
+            out.add_none();
+            continue;
+        }
+        const ElementId own = copy_leaf(tree, e, room);
+        const std::size_t first = room.size();
+        ContactCutter(room, contacts, stop).run(own, std::move(lines));
+        out.add(room, own, first);
+    }
+    return out;
+}
+
+}  // namespace
+
+void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts,
+                        const StopRequest* stop) {
+    constexpr std::size_t together = 64;
+    const auto block = [&](std::size_t b) {
+        const std::size_t first = b * together;
+        return std::span(from).subspan(first, std::min(together, from.size() - first));
+    };
+    std::vector<FoundCuts> found((from.size() + together - 1) / together);
+    find_together(
+        found, 1, [&](std::size_t b) { return find_cuts(tree, block(b), contacts, stop); },
+        [](auto& a, FoundCuts& cuts) { a(cuts); }, "contacts");
+    for (std::size_t b = found.size(); b-- > 0;) {
+        found[b].cut(tree, block(b));
+        found[b] = {};
+    }
+}
+
+}  // namespace exitance
