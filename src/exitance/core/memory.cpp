@@ -24,7 +24,7 @@ std::size_t proportional_memory_bytes() {
 void keep_large_arrays_apart() {
 #ifdef __GLIBC__
     // Else the library takes larger and larger arrays from its heap, in whose gaps much of the memory stays.
-    mallopt(M_MMAP_THRESHOLD, 1 << 18);
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
 }
 

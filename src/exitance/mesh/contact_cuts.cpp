@@ -181,7 +181,7 @@ FoundCuts find_cuts(const ElementTree& tree, std::span<const ElementId> elements
 
 void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts,
                         const StopRequest* stop) {
-    constexpr std::size_t together = 64;
+    constexpr std::size_t together = 8;  // few: of neighbours many may be cut often
     const auto block = [&](std::size_t b) {
         const std::size_t first = b * together;
         return std::span(from).subspan(first, std::min(together, from.size() - first));
