@@ -98,6 +98,27 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
     }
 }
 
+/// A limit too low for one process alone is enough for each of two on a node, where what both hold stands once and
+/// counts half for each.
+TEST_F(ProgramOfProcesses, CountTheirShareOfCommonMemoryAgainstTheirLimit) {
+    const std::vector<std::string> error{"--error", "0.1"};
+    ASSERT_EQ(run_program(solve("one", error)).status, 0);
+    const auto under = [&](int mib) {
+        return solve("several", {"--error", "0.1", "--memory-limit", std::to_string(mib) + "M"});
+    };
+    const Finished tight = run_program(under(1));
+    EXPECT_EQ(tight.status, 5) << tight.err;
+    const std::string before = "--memory-limit: ";
+    const std::size_t at = tight.err.find(before);
+    ASSERT_NE(at, std::string::npos) << tight.err;
+    const int limit = std::stoi(tight.err.substr(at + before.size())) - 2;  // below what is in use
+    EXPECT_EQ(run_program(under(limit)).status, 5);
+    const Finished two = run_on(2, under(limit));
+    EXPECT_EQ(two.status, 0) << two.err;
+    EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one"));
+    EXPECT_EQ(run_on(2, under(1)).status, 5);
+}
+
 TEST_F(ProgramOfProcesses, RefuseWhatOneAloneCanDo) {
     const Finished method = run_on(2, solve("none", {"--method", "progressive"}));
     EXPECT_EQ(method.status, 2);
