@@ -7,8 +7,8 @@ namespace exitance {
 /// The most memory the process has held at once so far, bytes (its peak resident set).
 std::size_t peak_memory_bytes();
 
-/// The memory that the process holds now, bytes: of pages that several processes have in common its even share (proportional set
-/// size). 0 where the system does not tell.
+/// The memory that the process holds now, bytes: of pages that several processes have in common its even share
+/// (proportional set size). 0 where the system does not tell.
 std::size_t proportional_memory_bytes();
 
 /// From here on large arrays have pages of their own, which go back to the system as soon as they are freed. To be

@@ -369,8 +369,7 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         if (leaves[p].empty() || (stop && stop->requested())) return FoundLeaves();
         double largest = 0;
         for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
-        const PlaneNodes nodes(tree, leaves[p],
-                               contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
+        const PlaneNodes nodes(tree, leaves[p], contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));
         FoundLeaves out;
         out.node_count = nodes.node_count;
         for (const PlaneNodes::Leaf& l : nodes.leaves) out.add(l.leaf, l.fan, l.node);
@@ -394,7 +393,8 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
             if (!leaves[first + k].empty() && found[k].leaf.empty()) return {};
         if (first == 0 && count > 0) {
             constexpr double margin = 1.1;  // by which others may be cut more often; only memory that is used counts
-            reserve(found, left > count ? margin * static_cast<double>(left) / static_cast<double>(count) : 1, tree, out);
+            reserve(found, left > count ? margin * static_cast<double>(left) / static_cast<double>(count) : 1, tree,
+                    out);
         }
         for (const FoundLeaves& f : found) add_plane(f, tree, out);
     }

@@ -90,7 +90,8 @@ TEST(ContactLines, CellsAreCutAsWholeElementsAre) {
         cut_along_contacts(alone, {e}, ContactLines(scene));
         ASSERT_EQ(tree.is_leaf(e), alone.is_leaf(e));
         for (std::size_t i = 0; i < tree.children(e).size(); ++i) {
-            const std::vector<Point> one = tree.outline(tree.children(e)[i]), other = alone.outline(alone.children(e)[i]);
+            const std::vector<Point> one = tree.outline(tree.children(e)[i]),
+                                     other = alone.outline(alone.children(e)[i]);
             ASSERT_EQ(one.size(), other.size());
             for (std::size_t k = 0; k < one.size(); ++k) EXPECT_EQ(norm(one[k] - other[k]), 0);
         }

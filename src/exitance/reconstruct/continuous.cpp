@@ -148,15 +148,14 @@ class Projection {
 void project(const ElementFunction& f, const ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
              const SharedNodes& nodes, std::vector<Spectrum>& value) {
     const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(tree, plane);
-    shared_parts(
-        value, nodes.first_node, 1,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) {
-                const std::vector<Spectrum> solved = Projection(f, tree, nodes, p, leaves[p]).solve();
-                std::copy(solved.begin(), solved.end(), value.begin() + nodes.first_node[p]);
-            }
-        },
-        {"continuous"});
+    shared_parts(value, nodes.first_node, 1,
+                 [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t p = begin; p < end; ++p) {
+                         const std::vector<Spectrum> solved = Projection(f, tree, nodes, p, leaves[p]).solve();
+                         std::copy(solved.begin(), solved.end(), value.begin() + nodes.first_node[p]);
+                     }
+                 },
+                 {"continuous"});
 }
 
 std::array<float, bands> in_single(const Spectrum& value) {

@@ -221,11 +221,13 @@ template <class T>
 void shared_parts(std::vector<T>& array, std::span<const std::uint32_t> first, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body, const Work& work) {
     static_assert(std::is_trivially_copyable_v<T>);
+    constexpr std::size_t largest_page = std::size_t(1) << 16;  // of systems that there are: room up to its end
     const std::size_t count = first.size() - 1, size = first.back();
     array = {};
-    array.reserve(size);
-    const std::span<char> all(reinterpret_cast<char*>(array.data()), size * sizeof(T)),
-        pages = processes() > 1 ? detail::open_in_common(all) : std::span<char>();
+    array.reserve(size + largest_page / sizeof(T) + 1);
+    const std::span<char> all(reinterpret_cast<char*>(array.data()), size * sizeof(T));
+    const std::span<char> pages =
+        processes() > 1 ? detail::open_in_common({all.data(), all.size() + largest_page}) : std::span<char>();
     array.resize(size);
     if (!pages.empty()) detail::meet(count, work.name);  // before anybody writes, all have made it zero
     parallel_own_ranges(count, grain, body, work);
@@ -233,22 +235,15 @@ void shared_parts(std::vector<T>& array, std::span<const std::uint32_t> first, s
         return all.subspan(first[i] * sizeof(T), (first[i + 1] - first[i]) * sizeof(T));
     };
     if (pages.empty()) return exchange_values(count, grain, part, work.name);
-    // What stands before the pages and behind them is sent.
-    const std::size_t before = static_cast<std::size_t>(pages.data() - all.data()), behind = before + pages.size();
+    // What stands before the first whole page is sent.
+    const auto before = static_cast<std::size_t>(pages.data() - all.data());
+    const auto sent = [&](std::size_t i) {
+        return part(i).first(std::min(part(i).size(), before - std::min(before, first[i] * sizeof(T))));
+    };
     std::size_t bytes = 0;
     for (std::size_t i = 0; i < count; ++i)
-        if (is_own(i, grain)) bytes += part(i).size();
-    exchange_values(
-        count, grain,
-        [&](std::size_t i) { return part(i).first(std::min(part(i).size(), before - std::min(before, first[i] * sizeof(T)))); },
-        work.name);
-    exchange_values(
-        count, grain,
-        [&](std::size_t i) {
-            const std::size_t end = first[i + 1] * sizeof(T);
-            return part(i).last(std::min(part(i).size(), end - std::min(end, behind)));
-        },
-        work.name);
+        if (is_own(i, grain)) bytes += part(i).size() - sent(i).size();
+    exchange_values(count, grain, sent, work.name);
     detail::close_in_common(pages);
     detail::count_as_sent(bytes, work.name);
 }

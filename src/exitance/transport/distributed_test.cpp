@@ -27,13 +27,13 @@ TEST(Distributed, AloneAProcessDoesEverythingItself) {
 TEST(Distributed, AloneItMakesAllPartsOfAnArray) {
     const std::vector<std::uint32_t> first{0, 3, 3, 4, 10};
     std::vector<double> out(2, -1.0);
-    shared_parts(
-        out, first, 2,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) out[k] += static_cast<double>(10 * i + k);
-        },
-        {"test"});
+    shared_parts(out, first, 2,
+                 [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t i = begin; i < end; ++i)
+                         for (std::uint32_t k = first[i]; k < first[i + 1]; ++k)
+                             out[k] += static_cast<double>(10 * i + k);
+                 },
+                 {"test"});
     EXPECT_EQ(out, (std::vector<double>{0, 1, 2, 23, 34, 35, 36, 37, 38, 39}));
     EXPECT_EQ(processes_on_node(), 1u);
     EXPECT_EQ(sum_on_node(1.5), 1.5);
