@@ -316,16 +316,11 @@ void PlaneNodes::choose_fans() {
 
 /// Makes room for fans and for the nodes of leaves, `share` times as many as were found.
 void reserve(const std::vector<FoundLeaves>& found, double share, ElementTree& tree, SharedNodes& nodes) {
-    std::size_t fans = 0, all = 0, corners = 0;
-    for (const FoundLeaves& f : found)
-        for (std::size_t k = 0; k < f.leaf.size(); ++k) {
-            const std::size_t triangles = f.places[k] == 0 ? 0 : f.places[k] - 2;
-            fans += triangles > 0, all += triangles;
-            corners += triangles > 0 ? 3 * triangles : f.nodes[k];
-        }
+    FoundLeaves::Counts counts;
+    for (const FoundLeaves& f : found) f.count(counts);
     const auto shared = [&](std::size_t count) { return static_cast<std::size_t>(share * static_cast<double>(count)); };
-    tree.reserve_fans(shared(fans), shared(all));
-    nodes.first_corner.reserve(tree.size() + shared(all)), nodes.node_of.reserve(shared(corners));
+    tree.reserve_fans(shared(counts.fans), shared(counts.triangles));
+    nodes.first_corner.reserve(tree.size() + shared(counts.triangles)), nodes.node_of.reserve(shared(counts.corners));
 }
 
 /// Cuts the leaves of one plane into their fans, and gives all of them their nodes, after those of the planes before.

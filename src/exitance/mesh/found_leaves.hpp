@@ -25,6 +25,18 @@ struct FoundLeaves {
         place.insert(place.end(), fan.border.begin(), fan.border.end());
         node.insert(node.end(), of_leaf.begin(), of_leaf.end());
     }
+
+    /// What is made of them: fans, their triangles, and corners of these and of leaves that stay.
+    struct Counts {
+        std::size_t fans = 0, triangles = 0, corners = 0;
+    };
+    void count(Counts& out) const {
+        for (std::size_t k = 0; k < leaf.size(); ++k) {
+            const std::size_t of_fan = places[k] == 0 ? 0 : places[k] - 2;
+            out.fans += of_fan > 0, out.triangles += of_fan;
+            out.corners += of_fan > 0 ? 3 * of_fan : nodes[k];
+        }
+    }
 };
 
 }  // namespace exitance
