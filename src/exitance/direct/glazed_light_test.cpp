@@ -87,6 +87,44 @@ TEST(GlazedLight, RaysPassInTheSameShare) {
     EXPECT_NEAR(passed / rays, diffuse(wide, 0), 4 * 0.5 / std::sqrt(rays));
 }
 
+TEST(GlazedLight, RaysAreMirroredInTheirShareAndArriveWhereMirrorsSay) {
+    // Ground below a low pane that is wider: what is mirrored comes back to the ground, whose frame is at x = y = +-1.
+    const Pane wide = pane(square(1000, 0.25), Spectrum(0.7));
+    const Scene scene = ground_under({}, {wide});
+    const Stage stage(scene);
+    constexpr std::uint32_t rays = 1 << 14;
+    const ScrambledSobol points(5);
+    const Frame frame(Normal{0, 0, 1});
+    std::vector<Vec3> directions;
+    for (std::uint32_t i = 0; i < rays; ++i) directions.push_back(cosine_direction(frame, points(i, 0), points(i, 1)));
+    std::vector<RayHit> hits(rays);
+    const Point from{0.1, 0.2, 0};
+    stage.tracer.nearest(directions, from, own, hits, Mirrored::followed);
+    double mirrored = 0;
+    for (std::size_t i = 0; i < rays; ++i) {
+        if (hits[i].mirror < 0) continue;
+        mirrored += 1;
+        const Vec3 w = arriving(scene, hits[i], directions[i]);
+        EXPECT_EQ(w, (Vec3{directions[i].x, directions[i].y, -directions[i].z}));
+        const double way = 0.5 / directions[i].z;
+        const Point there = from + way * Vec3{directions[i].x, directions[i].y, 0};
+        const bool on_ground = std::max(std::abs(there.x), std::abs(there.y)) < 1;
+        if (std::abs(std::max(std::abs(there.x), std::abs(there.y)) - 1) > 1e-5) {
+            EXPECT_EQ(hits[i].front && !hits[i].surface.is_none(), on_ground);
+        }
+        if (hits[i].surface.is_none()) continue;
+        EXPECT_NEAR(hits[i].distance, way, 1e-5 * way);
+        EXPECT_LT(norm(place_of(scene, hits[i], from, directions[i]) - there), 1e-5 * way);
+    }
+    double sum = 0;  // of R cos over the hemisphere
+    constexpr int steps = 2000;
+    for (int i = 0; i < steps; ++i) {
+        const double theta = (i + 0.5) * 0.5 * pi / steps;
+        sum += wide.reflection(std::cos(theta))[0] * std::sin(2 * theta) * 0.5 * pi / steps;
+    }
+    EXPECT_NEAR(mirrored / rays, sum, 4 * std::sqrt(sum / rays));
+}
+
 TEST(GlazedLight, TheSunThroughOnePaneOfTwo) {
     const Normal sun = sky_direction(50, 90);  // +x
     const DistantLight light{{}, {{sun, sun_half_angle, Spectrum(700.0)}}};
