@@ -11,6 +11,9 @@ std::size_t peak_memory_bytes();
 /// (proportional set size). 0 where the system does not tell.
 std::size_t proportional_memory_bytes();
 
+/// The machine's memory, bytes.
+std::size_t machine_memory_bytes();
+
 /// From here on large arrays have pages of their own, which go back to the system as soon as they are freed. To be
 /// called once, first of all.
 void keep_large_arrays_apart();
