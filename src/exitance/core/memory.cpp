@@ -6,26 +6,31 @@
 
 #include <fstream>
 #include <string>
+#include <string_view>
 
 namespace exitance {
+namespace {
+
+/// What the system tells of this process by a name, bytes; 0 where it does not.
+std::size_t told(const char* file, std::string_view name) {
+    std::ifstream in(file);
+    for (std::string word; in >> word;)
+        if (std::size_t kibibytes = 0; word == name && in >> kibibytes) return kibibytes * 1024;
+    return 0;
+}
+
+}  // namespace
 
 std::size_t peak_memory_bytes() {
     // What `getrusage` tells begins with the memory of the process that has started this one.
-    std::ifstream status("/proc/self/status");
-    for (std::string word; status >> word;) {
-        std::size_t kibibytes = 0;
-        if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
-    }
+    if (const std::size_t own = told("/proc/self/status", "VmHWM:"); own > 0) return own;
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
 }
 
 std::size_t proportional_memory_bytes() {
-    std::ifstream file("/proc/self/smaps_rollup");
-    for (std::string word; file >> word;)
-        if (std::size_t kib = 0; word == "Pss:" && file >> kib) return kib * 1024;
-    return 0;
+    return told("/proc/self/smaps_rollup", "Pss:");
 }
 
 std::size_t machine_memory_bytes() {
