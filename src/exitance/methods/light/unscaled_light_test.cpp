@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A closed box where B = M / (1 - rho): half of what surfaces emit, on two elements' worth of light.
+/// A closed box where all surfaces emit M and B = M / (1 - rho).
 struct Furnace {
     static constexpr double rho = 0.5, M = 1, E_dir = M, E_ind = rho * M / (1 - rho);
     Scene scene = box_scene(2, 1, 1.5, rho, M, 1);
@@ -58,15 +58,16 @@ TEST(UnscaledLight, SendsLessByWhatDirectLightAndReturnsAreLess) {
     EXPECT_NEAR(sent(0.99, 1, 1), (0.99 + 1) / 2, 1e-12) << "what is emitted is gathered as it is";
 }
 
-TEST(UnscaledLight, IsToldOfASolve) {
+TEST(UnscaledLight, IsToldOfAClosedSceneWhereItIsMadeGood) {
     Progress progress;
     const StopRequest stop;
-    const Result<Solution> solution = solve_scene(built_scene("boxes"), {.error = 0.05}, progress, stop);
+    const Result<Solution> solution = solve_scene(built_scene("gaps"), {.error = 0.05}, progress, stop);
     ASSERT_TRUE(solution);
     const auto before = solution->statistics.figures.find("energy_defect_before");
     ASSERT_NE(before, solution->statistics.figures.end());
-    EXPECT_GT(before->second, solution->statistics.energy.defect);
-    EXPECT_LE(before->second, 0.05 / 20) << "the figure asked for at 5%";
+    EXPECT_LT(solution->statistics.energy.defect, 1e-6) << "rounding of values in single precision";
+    EXPECT_GT(before->second, 1e-6) << "noise of rays";
+    EXPECT_LT(before->second, 0.01) << "six times its root mean square over seeds";
 }
 
 }  // namespace
