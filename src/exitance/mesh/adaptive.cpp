@@ -21,15 +21,25 @@ CutLine across_longest_extent(const ElementTree& tree, ElementId e) {
 
 }  // namespace
 
-IdRange<ElementId> refine_element(ElementTree& tree, ElementId leaf) {
+IdRange<ElementId> refine_element(ElementTree& tree, ElementId leaf, Cut only) {
     if (tree.is_cell(leaf)) {
         tree.split_by_line(leaf, across_longest_extent(tree, leaf), 0);
         return tree.children(leaf);
     }
     const Patch& patch = tree.patch(leaf);
     const double a = norm(patch.a), b = norm(patch.b);
-    tree.split(leaf, patch.is_triangle() ? Cut::both : a > 1.5 * b ? Cut::u : b > 1.5 * a ? Cut::v : Cut::both);
+    tree.split(leaf, only != Cut::none     ? only
+                     : patch.is_triangle() ? Cut::both
+                     : a > 1.5 * b         ? Cut::u
+                     : b > 1.5 * a         ? Cut::v
+                                           : Cut::both);
     return tree.children(leaf);
+}
+
+Cut sufficient_cut(double misfit_squared, const std::array<double, 2>& along, double allowed_squared) {
+    const double most = std::max(along[0], along[1]);
+    if (!(most > 0) || !(misfit_squared - most <= allowed_squared)) return Cut::none;
+    return along[0] >= along[1] ? Cut::u : Cut::v;
 }
 
 }  // namespace exitance

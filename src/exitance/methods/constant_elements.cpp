@@ -35,9 +35,10 @@ void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, s
         correction[i] = c * (correction[i] - light.direct[i]);
         first[i] = rho[i] * (light.direct[i] + correction[i]);
     }
-    const std::size_t before = light.report.iterations;
+    const SolveReport before = light.report;
     solve(input, F, rho, first, area, light);
-    light.report.iterations += before;
+    light.report.iterations += before.iterations;
+    light.report.unscaled = before.unscaled;  // F was scaled to begin with
     F.gather(light.reflected, light.indirect);
     for (std::size_t i = 0; i < n; ++i) light.indirect[i] += correction[i];
     light.direct_share = c;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "exitance/basis/element_fit.hpp"
+#include "exitance/basis/misfit_along.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/mesh/element_locator.hpp"
@@ -62,9 +63,12 @@ class Interpolation {
     struct Fit {
         std::array<std::array<float, bands>, 4> corners;
         double misfit_squared = 0;
+        std::array<float, 2> misfit_along = {};
 
         Fit() = default;
-        explicit Fit(const DirectFit& fit) : misfit_squared(fit.misfit_squared) {
+        explicit Fit(const DirectFit& fit)
+            : misfit_squared(fit.misfit_squared),
+              misfit_along{static_cast<float>(fit.misfit_along[0]), static_cast<float>(fit.misfit_along[1])} {
             for (std::size_t i = 0; i < corners.size(); ++i)
                 for (std::size_t k = 0; k < bands; ++k) corners[i][k] = static_cast<float>(fit.corners[i][k]);
         }
@@ -86,7 +90,8 @@ class Interpolation {
                             : fit_direct_light(stage_, out_.tree, e, options_.tolerance * options_.tolerance, room);
         for (Spectrum& corner : out.corners) corner *= direct_weight_;
         out.mean *= direct_weight_;
-        out.misfit_squared *= max(direct_weight_ * direct_weight_);
+        const double of_direct = max(direct_weight_ * direct_weight_);
+        out.misfit_squared *= of_direct;
         const std::vector<WeightedPlace> rule = element_rule(out_.tree, e, RuleOrder::fine);
         std::vector<Spectrum> value(rule.size());
         for (std::size_t i = 0; i < rule.size(); ++i) {
@@ -96,10 +101,14 @@ class Interpolation {
         const ElementFit indirect(out_.tree, e, rule, value);
         for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] += indirect.corner(i);
         const Spectrum w = light_weight(stage_.scene.material(region));
-        for (std::size_t i = 0; i < rule.size(); ++i)
-            out.misfit_squared +=
-                rule[i].weight * squared(w * (value[i] - indirect.at(rule[i].uv))) / static_cast<double>(bands);
-        if (!options_.light_in.empty()) out.misfit_squared *= relative_weight(e);
+        for (std::size_t i = 0; i < rule.size(); ++i) {
+            value[i] = w * (value[i] - indirect.at(rule[i].uv));
+            out.misfit_squared += rule[i].weight * squared(value[i]) / static_cast<double>(bands);
+        }
+        const double counts = options_.light_in.empty() ? 1 : relative_weight(e);
+        out.misfit_squared *= counts;
+        const std::array<double, 2> along = misfit_along(out_.tree, e, rule, value, Degree::straight);
+        for (std::size_t k = 0; k < 2; ++k) out.misfit_along[k] = counts * (of_direct * out.misfit_along[k] + along[k]);
         return out;
     }
 
@@ -169,7 +178,9 @@ class Interpolation {
         std::vector<ElementId> fresh;
         for (ElementId e : leaves) {
             if (out_.tree.area(e) * fitted_[e].misfit_squared <= share) continue;
-            for (ElementId child : refine_element(out_.tree, e)) fresh.push_back(child);
+            const auto& [u, v] = fitted_[e].misfit_along;
+            const Cut only = sufficient_cut(fitted_[e].misfit_squared, {u, v}, share / out_.tree.area(e));
+            for (ElementId child : refine_element(out_.tree, e, only)) fresh.push_back(child);
         }
         return fresh;
     }

@@ -54,10 +54,16 @@ double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDeman
     return std::min(share, std::max(demand.relative_tolerance * light, calibrated::minor_misfit * demand.tolerance));
 }
 
-bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
+/// The mean square that its polynomial may leave over, noise and all.
+double LocalPass::tolerated_misfit_squared(ElementId e, const SampledElement& sampled,
+                                           const LocalPassDemand& demand) const {
     const double share = allowed_misfit(e, sampled.light, demand);
     // Given by five freedoms: noise alone leaves over 2.3 times what they do on average once in twenty times.
-    return sampled.misfit_squared > share * share + 2.3 * sampled.noise_in_misfit;
+    return share * share + 2.3 * sampled.noise_in_misfit;
+}
+
+bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
+    return sampled.misfit_squared > tolerated_misfit_squared(e, sampled, demand);
 }
 
 /// All places' light: summed over elements, exact but for what they may miss, or by rays, twice as many at every second
@@ -166,8 +172,11 @@ std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId
                                                      const LocalPassDemand& demand) {
     std::vector<ElementId> fresh;
     for (ElementId e : candidates)
-        if (is_too_rough(e, sampled_[e], demand))
-            for (ElementId child : refine_element(tree_, e)) fresh.push_back(child);
+        if (const SampledElement& s = sampled_[e]; is_too_rough(e, s, demand)) {
+            const double tolerated = tolerated_misfit_squared(e, s, demand);
+            const Cut only = sufficient_cut(s.misfit_squared, s.misfit_along, tolerated);
+            for (ElementId child : refine_element(tree_, e, only)) fresh.push_back(child);
+        }
     return fresh;
 }
 

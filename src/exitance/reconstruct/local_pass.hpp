@@ -51,9 +51,10 @@ struct LocalPassReport {
 /// polynomials of second degree), and the polynomial nearest to them in the mean square. The gather smooths what is
 /// rough in b and doubles its order (the iterated or Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber
 /// the polynomial's freedoms: what they leave over, less the rays' noise, is the error of interpolation, and elements
-/// are cut where that has more than its share of the tolerance. Rays are doubled until their noise is what is allowed:
-/// a polynomial of many places needs few from each, which is why elements as large as light allows are what makes this
-/// cheap. What is delivered are straight elements for all that. O(elements x rays).
+/// are cut where that has more than its share of the tolerance, across the one direction that it varies along where
+/// that is enough. Rays are doubled until their noise is what is allowed: a polynomial of many places needs few from
+/// each, which is why elements as large as light allows are what makes this cheap. What is delivered are straight
+/// elements for all that. O(elements x rays).
 ///
 /// Mesh and gathers stay: called again with a stricter demand, only what falls short of it is done again; with other
 /// light, everything is gathered anew, on the mesh found so far.
@@ -106,6 +107,7 @@ class LocalPass {
     double light_near(ElementId e, const LocalPassDemand& demand) const;
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
+    double tolerated_misfit_squared(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double share_in_crowd(const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);

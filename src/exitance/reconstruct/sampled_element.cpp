@@ -1,6 +1,7 @@
 #include "exitance/reconstruct/sampled_element.hpp"
 
 #include "exitance/basis/element_fit.hpp"
+#include "exitance/basis/misfit_along.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/transport/distributed.hpp"
@@ -42,11 +43,14 @@ SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vec
         (k < polynomials.straight() ? straight : bent_noise) += noise[k];
         if (k >= polynomials.straight()) bent += mean_square(rho * c[k]);
     }
+    std::vector<Spectrum> rest(places.size());  // of rho E
     for (std::size_t i = 0; i < places.size(); ++i) {
-        Spectrum rest = gathered[i].irradiance;
-        for (std::size_t k = 0; k < polynomials.size(); ++k) rest -= phi[i][k] * c[k];
-        out.misfit_squared += places[i].weight * mean_square(rho * rest);
+        rest[i] = gathered[i].irradiance;
+        for (std::size_t k = 0; k < polynomials.size(); ++k) rest[i] -= phi[i][k] * c[k];
+        rest[i] = rho * rest[i];
+        out.misfit_squared += places[i].weight * mean_square(rest[i]);
     }
+    out.misfit_along = misfit_along(tree, e, places, rest, curved ? Degree::curved : Degree::straight);
     out.noise_in_misfit = std::max(0.0, whole_noise - straight - bent_noise);
     // What is drawn in loses light as much as noise; the rest keeps its noise.
     const double kept = bent > bent_noise ? 1 - bent_noise / bent : 0, lost = 1 - kept;
@@ -75,6 +79,7 @@ namespace {
 struct StraightFit {
     std::array<Spectrum, 4> corner;
     double rest_squared = 0;
+    std::array<double, 2> rest_along = {};  ///< The same along one direction, as `SampledElement::misfit_along`.
 };
 
 /// Nearest to `part` of an element that holds `sampled`.
@@ -93,8 +98,11 @@ StraightFit straighten(const ElementTree& tree, ElementId part, ElementId whole,
     for (const WeightedPlace& place : rule)
         values.push_back(polynomial.at(tree.patch(whole).coordinates(patch.at(place.uv))));
     const ElementFit fit(tree, part, rule, values);
-    for (std::size_t i = 0; i < rule.size(); ++i)
-        out.rest_squared += rule[i].weight * mean_square(rho * (values[i] - fit.at(rule[i].uv)));
+    for (std::size_t i = 0; i < rule.size(); ++i) {
+        values[i] = rho * (values[i] - fit.at(rule[i].uv));
+        out.rest_squared += rule[i].weight * mean_square(values[i]);
+    }
+    out.rest_along = misfit_along(tree, part, rule, values, Degree::straight);
     for (int i = 0; i < patch.corner_count(); ++i) out.corner[static_cast<std::size_t>(i)] = fit.corner(i);
     return out;
 }
@@ -124,7 +132,8 @@ std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const Ele
             const auto [part, whole] = parts[i];
             const double allowed = tolerance(whole);
             if (cuts < most_cuts && fit[i].rest_squared > allowed * allowed) {
-                for (ElementId child : refine_element(out.tree, part)) smaller.push_back({child, whole});
+                const Cut only = sufficient_cut(fit[i].rest_squared, fit[i].rest_along, allowed * allowed);
+                for (ElementId child : refine_element(out.tree, part, only)) smaller.push_back({child, whole});
                 continue;
             }
             out.first_value.resize(out.tree.size());

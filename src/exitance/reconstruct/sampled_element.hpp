@@ -11,11 +11,13 @@ namespace exitance {
 /// A polynomial fitted to irradiance gathered at the places of an element, and what the places say of it.
 struct SampledElement {
     std::array<std::array<float, bands>, ElementPolynomials::most> coefficient;  ///< Of ElementPolynomials, W/m^2.
-    bool curved = false;              ///< Are those of second degree among them?
-    double light = 0;                 ///< RMS of rho E over places and bands, W/m^2.
-    double noise_squared = 0;         ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
-    double misfit_squared = 0;        ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
-    double noise_in_misfit = 0;       ///< How much of that the rays' noise makes, on average.
+    bool curved = false;         ///< Are those of second degree among them?
+    double light = 0;            ///< RMS of rho E over places and bands, W/m^2.
+    double noise_squared = 0;    ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
+    double misfit_squared = 0;   ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
+    double noise_in_misfit = 0;  ///< How much of that the rays' noise makes, on average.
+    /// How much of `misfit_squared` is along one coordinate alone, see misfit_along().
+    std::array<double, 2> misfit_along = {};
     double quarters = 0, halves = 0;  ///< Means over the places of rho^2 `Gathered::quarters`, `halves`, (W/m^2)^2.
     unsigned rays = 0;                ///< Spent in all.
     unsigned place_rays = 0;          ///< Of one place; 0: not gathered yet.

@@ -39,9 +39,19 @@ void ConservingTransport::gather(std::span<const Spectrum> radiosity, std::span<
     parallel_for(irradiance.size(), 4096, [&](std::size_t i) { irradiance[i] = scale_ * irradiance[i]; });
 }
 
+namespace {
+
+/// sum_i A_i (b_i - rhs_i): power of what is reflected but for the first time.
+Spectrum power_of_returns(const RadiositySystem& system, std::span<const Spectrum> b) {
+    return parallel_sum<Spectrum>(b.size(), [&](std::size_t i) { return system.area[i] * (b[i] - system.rhs[i]); });
+}
+
+}  // namespace
+
 SolveReport solve_conserving(const RadiositySystem& system, ConservingTransport& F, bool closed, Relaxation method,
                              std::span<Spectrum> b, StopRule stop) {
     SolveReport report = solve_radiosity(system, method, b, stop);
+    const Spectrum unscaled = power_of_returns(system, b);
     constexpr int times = 2;
     for (int i = 0; closed && i < times && !(stop.request && stop.request->requested()); ++i) {
         if (!F.conserve(b)) break;
@@ -49,6 +59,9 @@ SolveReport solve_conserving(const RadiositySystem& system, ConservingTransport&
         report = solve_radiosity(system, method, b, stop);
         report.iterations += before;
     }
+    const Spectrum found = power_of_returns(system, b);
+    for (std::size_t band = 0; band < bands; ++band)
+        report.unscaled[band] = found[band] > 0 ? unscaled[band] / found[band] : 1;
     return report;
 }
 

@@ -43,7 +43,7 @@ class ConservingTransport final : public TransportOperator {
 };
 
 /// b = rhs + rho s F b, from the b given; `F` is system.F. Solves for the s that there is, and, in a closed scene, for
-/// that of the light found, twice: s hardly depends on b.
+/// that of the light found, twice: s hardly depends on b. What the first of these found, by the last, is reported.
 SolveReport solve_conserving(const RadiositySystem& system, ConservingTransport& F, bool closed, Relaxation method,
                              std::span<Spectrum> b, StopRule stop);
 

@@ -51,6 +51,17 @@ TEST(ConservingTransport, LosesNoneOfTheLightOfAClosedScene) {
     EXPECT_NEAR(absorbed(leaky, true), 1, 1e-9);  // the solver's residual
 }
 
+TEST(ConservingTransport, TellsWhatComesBackUnscaled) {
+    const LeakyTransport leaky(1e-3);
+    const std::vector<Spectrum> rho(4, Spectrum(0.9)), first = {Spectrum(1.0), Spectrum(), Spectrum(0.3), Spectrum()};
+    std::vector<Spectrum> b = first;
+    ConservingTransport F(leaky, leaky.area());
+    const SolveReport report =
+        solve_conserving({F, rho, first, leaky.area()}, F, true, Relaxation::gmres, b, {.residual = 1e-12});
+    // t / (1 - t) of what is sent, t = 0.9 but for what is lost
+    EXPECT_NEAR(report.unscaled[0], (0.8991 / 0.1009) / (0.9 / 0.1), 1e-9);
+}
+
 TEST(ConservingTransport, LeavesAloneWhatIsNoSmallLoss) {
     const LeakyTransport leaky(0.3);
     EXPECT_EQ(absorbed(leaky, true), absorbed(leaky, false));

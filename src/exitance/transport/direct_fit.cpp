@@ -1,6 +1,7 @@
 #include "exitance/transport/direct_fit.hpp"
 
 #include "exitance/basis/element_fit.hpp"
+#include "exitance/basis/misfit_along.hpp"
 #include "exitance/direct/crowd_by_light.hpp"
 
 namespace exitance {
@@ -22,9 +23,11 @@ DirectFit fit_at_places(const Stage& stage, const ElementTree& tree, ElementId e
     const ElementFit fit(tree, e, rule, value);
     for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] = fit.corner(i);
     const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-    for (std::size_t i = 0; i < rule.size(); ++i)
-        out.misfit_squared +=
-            rule[i].weight * squared(w * (value[i] - fit.at(rule[i].uv))) / static_cast<double>(bands);
+    for (std::size_t i = 0; i < rule.size(); ++i) {
+        value[i] = w * (value[i] - fit.at(rule[i].uv));
+        out.misfit_squared += rule[i].weight * squared(value[i]) / static_cast<double>(bands);
+    }
+    out.misfit_along = misfit_along(tree, e, rule, value, Degree::straight);
     return out;
 }
 
@@ -189,7 +192,7 @@ DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, 
     const auto& emitters = stage.direct.emitters();
     const bool all_outside = !emitters.empty() && stage.direct.is_distant(0);  // those of the sky come last
     const Spectrum parallel = all_outside ? of.weak : Spectrum();
-    return {{of.weak, of.weak, of.weak, of.weak}, of.weak, parallel, of.misfit_squared};
+    return {{of.weak, of.weak, of.weak, of.weak}, of.weak, parallel, of.misfit_squared, {}};
 }
 
 }  // namespace exitance

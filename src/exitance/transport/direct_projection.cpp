@@ -196,9 +196,12 @@ class Projector {
         const double least = is_crowd_ ? share_in_crowd(out_, noise_, share_ * stage_.area / mean_area_) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            if (error_of_shape(out_, noise_, e) <= std::max(least, allowed_on(e))) continue;
+            const double error = error_of_shape(out_, noise_, e), allowed = std::max(least, allowed_on(e));
+            if (error <= allowed) continue;
             if (options_.least_area && out_.tree.area(e) < 2 * *options_.least_area) continue;
-            for (ElementId child : refine_element(out_.tree, e)) fresh.push_back(child);
+            const double area = out_.tree.area(e);
+            const Cut only = sufficient_cut(error / area, out_.fit[e].misfit_along, allowed / area);
+            for (ElementId child : refine_element(out_.tree, e, only)) fresh.push_back(child);
         }
         return fresh;
     }

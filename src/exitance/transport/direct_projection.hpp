@@ -23,9 +23,10 @@ struct DirectProjectionOptions {
 /// Exact direct light on one element, and the polynomial nearest to it.
 struct DirectFit {
     std::array<Spectrum, 4> corners;
-    Spectrum mean;              ///< W/m^2
-    Spectrum parallel;          ///< What parallel light has in the mean, W/m^2.
-    double misfit_squared = 0;  ///< Mean of (w (E - polynomial))^2, see light_weight().
+    Spectrum mean;                            ///< W/m^2
+    Spectrum parallel;                        ///< What parallel light has in the mean, W/m^2.
+    double misfit_squared = 0;                ///< Mean of (w (E - polynomial))^2, see light_weight().
+    std::array<double, 2> misfit_along = {};  ///< How much of it is along one coordinate alone, noise and all.
 };
 
 /// Direct light projected onto elements, for readers that come in great numbers, such as rays.

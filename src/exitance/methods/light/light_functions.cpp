@@ -213,13 +213,14 @@ FluxSums flux_sums(const ElementFunction& E, const Scene& scene, const DirectPro
 
 }  // namespace
 
-void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
-               const Spectrum& c) {
+Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+                   const Spectrum& c) {
     const FluxSums power = flux_sums(E, scene, direct, light, c);
-    if (!is_kept(power.first + power.again, power.sent)) return;
+    if (!is_kept(power.first + power.again, power.sent)) return Spectrum(1.0);
     const Spectrum scale = conserving_scale(power.first, power.gathered - power.again);
     for (std::array<float, bands>& value : E.values)
         for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(scale[b] * value[b]);
+    return scale;
 }
 
 bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,

@@ -38,9 +38,9 @@ bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::ui
 /// k from the leaves that the method solved on, 1 where it does not say. In a closed scene this is the balance of what
 /// is emitted and absorbed. What rays and places of a local pass miss in the mean, a share of about 1e-3, is light
 /// dealt out otherwise than the method had it, among surfaces that reflect more and less of it. Nothing happens where
-/// much escapes (`is_kept`).
-void keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
-               const Spectrum& c);
+/// much escapes (`is_kept`). Returns the scale.
+Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+                   const Spectrum& c);
 
 /// Does E have that balance, as `keep_flux` left it, and does hardly anything escape?
 bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,

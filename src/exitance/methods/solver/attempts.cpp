@@ -68,6 +68,7 @@ void Solver::project_direct() {
         const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);
         progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
         direct_ = std::move(fresh);
+        unscaled_.direct = inverse(scale);
         share_on_node(direct_.fit.span());  // nobody writes to it any more
     }
     statistics().seconds["mesh"] += watch.seconds();
@@ -159,7 +160,8 @@ std::vector<ElementFunction> Solver::refine() const {
 bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunction& b, bool fresh) {
     gathered_ = {};
     ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
-    if (gathers() && keeps_flux()) keep_flux(indirect, stage_.scene, direct_, *light_, share_);
+    const Spectrum kept =
+        gathers() && keeps_flux() ? keep_flux(indirect, stage_.scene, direct_, *light_, share_) : Spectrum(1.0);
     share_on_node(std::span(indirect.values)), share_on_node(indirect.first_value.span());
     share_on_node(gathered_.leaves.span());
     if (stop_.requested()) {
@@ -167,6 +169,7 @@ bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunctio
         if (step_ != Step::refine) {
             if (has_light()) return false;
             solution_.indirect = constant_on_leaves(*light_);
+            unscaled_.indirect = unscaled_.direct * light_->report.unscaled;
             solution_.direct_in_elements = light_->holds_direct;
             record_method(stage_, *light_, has_links_, statistics());
         }
@@ -174,12 +177,23 @@ bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunctio
         return false;
     }
     solution_.indirect = std::move(indirect);
+    unscaled_.indirect = unscaled_indirect(kept);
+    progress_.note(
+        fmt::format("indirect light scaled by {:.5f} to what arrives; unscaled, the method would find {:.5f} of it",
+                    mean(kept), mean(light_->report.unscaled)));
     solution_.cells = light_->cells;
     solution_.cells.delivered = !gathers() && !solution_.cells.cells.empty();
     solution_.direct_share = share_;
     solution_.direct_in_elements = light_->holds_direct;
     record_method(stage_, *light_, has_links_, statistics());
     return true;
+}
+
+Spectrum Solver::unscaled_indirect(const Spectrum& kept) const {
+    if (!gathers()) return unscaled_.direct * light_->report.unscaled;
+    // What refining ends at hardly depends on where it began.
+    const Spectrum returned = step_ == Step::refine ? Spectrum(1.0) : light_->report.unscaled;
+    return unscaled_sent(stage_.scene, *light_, unscaled_.direct, returned, share_) * inverse(kept);
 }
 
 bool Solver::keeps_flux() const {

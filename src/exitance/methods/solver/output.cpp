@@ -64,6 +64,7 @@ void Solver::make_output_mesh() {
                                    solution_.interpolant.tree.leaves().size(), 100 * own));
     }
     const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_, stage_);
+    statistics().figures["energy_defect_before"] = energy_defect_before(energy, solution_, direct_, unscaled_);
     if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
         warn("no light reaches the front of any face: they may be turned inside out");
     statistics().seconds["reconstruct"] += watch.seconds() - mesh_seconds_;

@@ -79,7 +79,7 @@ void Solver::record_plan() {
 
 template <class Archive>
 void Solver::archive_state(Archive& a, std::string& phase) {
-    a(attempt_, step_, fresh_, share_, knobs_, direct_, light_, refined_, gathered_, certificate_, phase,
+    a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, refined_, gathered_, certificate_, phase,
       becomes_linear_);
     a(light_in_, allowed_in_, solution_.indirect, solution_.links, solution_.cells, solution_.direct_share,
       solution_.direct_in_elements, solution_.statistics);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exitance/methods/light/light_functions.hpp"
+#include "exitance/methods/light/unscaled_light.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
@@ -74,6 +75,8 @@ class Solver {
     bool refines() const { return gathers() && sums_ && knobs_.refined; }
     /// Is it known how much light is to arrive? As the method tells, or because the scene is closed.
     bool keeps_flux() const;
+    /// Of `solution_.indirect`, where it was scaled by `kept` after it was gathered.
+    Spectrum unscaled_indirect(const Spectrum& kept) const;
 
     // How wrong it is.
     /// The estimate by so many points is itself uncertain, by a fifth where they are as few as at first: it has to be
@@ -106,6 +109,7 @@ class Solver {
     Solution solution_;
     Stage stage_;
     DirectProjection direct_;
+    UnscaledShare unscaled_;  ///< Of the light that is delivered.
     std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
     std::optional<LocalPass> local_pass_;
     std::vector<ElementFunction> refined_;  ///< What is gathered in the end where light is summed, in parts.
