@@ -78,6 +78,15 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     EXPECT_EQ(kept, made);
 }
 
+TEST(ProgramSolve, PeakMemoryIsItsOwnNotThatOfWhoStartsIt) {
+    const TemporaryFolder folder;
+    const std::vector<char> held(std::size_t(400) << 20, 1);
+    const Finished run =
+        run_program({"solve", write_small_room(folder), "-o", folder / "s.h5", "--error", "0.5", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_LT(Json::parse(run.out)["peak_memory_bytes"], held.size());
+}
+
 TEST(ProgramSolve, TheLineOfTimesTellsEveryPhaseThatTookAny) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";

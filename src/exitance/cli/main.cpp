@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <new>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -43,7 +44,12 @@ int main(int argc, char** argv) {
     keep_large_arrays_apart();
     if (const Result<void> joined = join_processes(); !joined)
         return static_cast<int>(Terminal({}).fail(joined.error()));
-    const int status = run_program({argv + 1, argv + std::max(argc, 1)});
-    leave_processes();
-    return status;
+    try {
+        const int status = run_program({argv + 1, argv + std::max(argc, 1)});
+        leave_processes();
+        return status;
+    } catch (const std::bad_alloc&) {
+        return static_cast<int>(Terminal({}).fail({ErrorCode::limit, "the system has no more memory", "",
+                                                   "allow a larger --error, or see what `solve --dry-run` forecasts"}));
+    }
 }

@@ -7,6 +7,9 @@ namespace exitance {
 /// The most memory the process has held at once so far, bytes (its peak resident set).
 std::size_t peak_memory_bytes();
 
+/// The machine's memory, bytes.
+std::size_t machine_memory_bytes();
+
 /// From here on large arrays have pages of their own, which go back to the system as soon as they are freed. To be
 /// called once, first of all.
 void keep_large_arrays_apart();

@@ -34,15 +34,29 @@ std::vector<Point> square(double half, double z, double x0 = 0) {
     return {{x0 - half, -half, z}, {x0 + half, -half, z}, {x0 + half, half, z}, {x0 - half, half, z}};
 }
 
-/// Transmittance of diffuse light: 2 int T sin cos dtheta.
-double diffuse(const Pane& p, std::size_t band) {
+/// Share of diffuse light: 2 int share(cos) sin cos dtheta.
+template <class Share>
+double of_diffuse_light(const Share& share) {
     constexpr int steps = 4000;
     double sum = 0;
     for (int i = 0; i < steps; ++i) {
         const double theta = (i + 0.5) * 0.5 * pi / steps;
-        sum += p.transmission(std::cos(theta))[band] * std::sin(2 * theta);
+        sum += share(std::cos(theta)) * std::sin(2 * theta);
     }
     return sum * 0.5 * pi / steps;
+}
+
+double diffuse(const Pane& p, std::size_t band) {
+    return of_diffuse_light([&](double cosine) { return p.transmission(cosine)[band]; });
+}
+
+/// Of diffuse light from below.
+std::vector<Vec3> directions_up(std::uint32_t rays) {
+    const ScrambledSobol points(5);
+    const Frame frame(Normal{0, 0, 1});
+    std::vector<Vec3> out;
+    for (std::uint32_t i = 0; i < rays; ++i) out.push_back(cosine_direction(frame, points(i, 0), points(i, 1)));
+    return out;
 }
 
 const RegionId own(0);
@@ -69,10 +83,7 @@ TEST(GlazedLight, RaysPassInTheSameShare) {
     const Scene scene = ground_under({}, {wide});
     const Stage stage(scene);
     constexpr std::uint32_t rays = 1 << 14;
-    const ScrambledSobol points(5);
-    const Frame frame(Normal{0, 0, 1});
-    std::vector<Vec3> directions;
-    for (std::uint32_t i = 0; i < rays; ++i) directions.push_back(cosine_direction(frame, points(i, 0), points(i, 1)));
+    const std::vector<Vec3> directions = directions_up(rays);
     std::vector<RayHit> hits(rays), again(rays);
     stage.tracer.nearest(directions, {0.1, 0.2, 0}, own, hits);
     stage.tracer.nearest(directions, {0.1, 0.2, 0}, own, again);
@@ -85,6 +96,36 @@ TEST(GlazedLight, RaysPassInTheSameShare) {
         EXPECT_EQ(hits[i].surface, again[i].surface);
     }
     EXPECT_NEAR(passed / rays, diffuse(wide, 0), 4 * 0.5 / std::sqrt(rays));
+}
+
+TEST(GlazedLight, RaysAreMirroredInTheirShareAndArriveWhereMirrorsSay) {
+    // Ground below a low pane that is wider: what is mirrored comes back to the ground, whose frame is at x = y = +-1.
+    const Pane wide = pane(square(1000, 0.25), Spectrum(0.7));
+    const Scene scene = ground_under({}, {wide});
+    const Stage stage(scene);
+    constexpr std::uint32_t rays = 1 << 14;
+    const std::vector<Vec3> directions = directions_up(rays);
+    std::vector<RayHit> hits(rays);
+    const Point from{0.1, 0.2, 0};
+    stage.tracer.nearest(directions, from, own, hits, Mirrored::followed);
+    double mirrored = 0;
+    for (std::size_t i = 0; i < rays; ++i) {
+        if (hits[i].mirror < 0) continue;
+        mirrored += 1;
+        const Vec3 w = arriving(scene, hits[i], directions[i]);
+        EXPECT_EQ(w, (Vec3{directions[i].x, directions[i].y, -directions[i].z}));
+        const double way = 0.5 / directions[i].z;
+        const Point there = from + way * Vec3{directions[i].x, directions[i].y, 0};
+        const bool on_ground = std::max(std::abs(there.x), std::abs(there.y)) < 1;
+        if (std::abs(std::max(std::abs(there.x), std::abs(there.y)) - 1) > 1e-5) {
+            EXPECT_EQ(hits[i].front && !hits[i].surface.is_none(), on_ground);
+        }
+        if (hits[i].surface.is_none()) continue;
+        EXPECT_NEAR(hits[i].distance, way, 1e-5 * way);
+        EXPECT_LT(norm(place_of(scene, hits[i], from, directions[i]) - there), 1e-5 * way);
+    }
+    const double sum = of_diffuse_light([&](double cosine) { return wide.reflection(cosine)[0]; });
+    EXPECT_NEAR(mirrored / rays, sum, 4 * std::sqrt(sum / rays));
 }
 
 TEST(GlazedLight, TheSunThroughOnePaneOfTwo) {

@@ -98,12 +98,12 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
     met_directions(stage.scene, own, n, w.sorted[0], w.sorted[1], std::span(w.directions).first(places.size() * even));
     std::vector<double> counts(cells.empty() ? 0 : all);
     if (!cells.empty()) aim_others(places, cells, n, even, from, counts, w);
-    stage.tracer.nearest(w.origins, w.directions, own, w.hits);
+    stage.tracer.nearest(w.origins, w.directions, own, w.hits, Mirrored::followed);
     w.fronts.clear(), w.share.clear(), w.counts.clear();
     for (std::size_t k = 0; k < all; ++k) {
         const RayHit& hit = w.hits[k];
         if (hit.surface.is_none() || !hit.front || (!cells.empty() && counts[k] == 0)) continue;
-        w.fronts.push_back({hit.region, w.origins[k] + hit.distance * w.directions[k]});
+        w.fronts.push_back({hit.region, place_of(stage.scene, hit, w.origins[k], w.directions[k])});
         w.share.push_back(w.quarter[k]);
         if (!cells.empty()) w.counts.push_back(counts[k]);
     }

@@ -25,6 +25,10 @@ double through(double r, double t) {
     return t * (1 - r) * (1 - r) / (1 - r * r * t * t);
 }
 
+double back(double r, double t) {
+    return r < 1 ? r * (1 + t * through(r, t)) : 1;
+}
+
 }  // namespace
 
 Spectrum Pane::transmission(double cosine) const {
@@ -38,6 +42,16 @@ Spectrum Pane::transmission(double cosine) const {
         }
         const double t = std::pow(transmissivity[b], 1 / f.cos_inside);
         out[b] = 0.5 * (through(f.across, t) + through(f.along, t));
+    }
+    return out;
+}
+
+Spectrum Pane::reflection(double cosine) const {
+    const Fresnel f = fresnel(cosine, index);
+    Spectrum out;
+    for (std::size_t b = 0; b < bands; ++b) {
+        const double t = std::pow(transmissivity[b], 1 / f.cos_inside);
+        out[b] = 0.5 * (back(f.across, t) + back(f.along, t));
     }
     return out;
 }

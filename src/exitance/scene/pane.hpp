@@ -8,7 +8,7 @@
 namespace exitance {
 
 /// A pane of clear glass: light goes straight through it, from either side, less what its faces reflect (Fresnel) and
-/// what it absorbs on the way. It is no surface: it has no elements, and what it reflects is lost.
+/// what it absorbs on the way. It is no surface and has no elements; rays of reflected light are mirrored by it.
 struct Pane {
     std::vector<Point> corners;  ///< Of a planar, simple polygon, metres; in a Scene convex.
     Normal n;                    ///< Of length 1, to either side.
@@ -22,6 +22,8 @@ struct Pane {
     ///
     /// the mean of both, all reflections between the faces counted.
     Spectrum transmission(double cosine) const;
+    /// Share of the light that it mirrors: r + r (1 - r)^2 t^2 / (1 - r^2 t^2), the mean of both polarisations.
+    Spectrum reflection(double cosine) const;
     bool is_sane() const;
 };
 

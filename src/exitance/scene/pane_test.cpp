@@ -20,6 +20,20 @@ TEST(Pane, TransmitsAsFresnelSays) {
     EXPECT_EQ(clear.transmission(0)[0], 0);
 }
 
+TEST(Pane, WhatDoesNotPassClearGlassIsMirrored) {
+    Pane clear;
+    clear.transmissivity = Spectrum(1.0);
+    for (const double cosine : {1e-3, 0.1, 0.5, 0.9, 1.0})
+        EXPECT_NEAR(clear.transmission(cosine)[0] + clear.reflection(cosine)[0], 1, 1e-12) << cosine;
+    EXPECT_EQ(clear.reflection(0)[0], 1);
+    clear.index = 1;
+    EXPECT_EQ(clear.reflection(0.5)[0], 0);
+    // Of glass that lets nothing through the first face alone mirrors.
+    Pane dark;
+    dark.transmissivity = Spectrum(0.0);
+    EXPECT_NEAR(dark.reflection(1)[0], std::pow(0.52 / 2.52, 2), 1e-12);
+}
+
 TEST(Pane, RadiancesArgumentIsTheTransmissivity) {
     Pane pane;
     pane.transmissivity = Spectrum(0.96);

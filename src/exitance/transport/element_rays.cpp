@@ -24,12 +24,13 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
         origins_[k] = patch.at(tree_.uniform(e, coordinates_[2][k], coordinates_[3][k]));
     met_directions(stage_.scene, region, n, coordinates_[0], coordinates_[1], directions_);
     if (!counts.empty()) aim(tree_.region(e), n, patch.at(tree_.centre(e)), counts);
-    stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_);
+    stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_, Mirrored::followed);
     queries_.clear(), of_ray_.clear();
     std::fill(leaves.begin(), leaves.end(), missed);
     for (std::size_t k = 0; k < count; ++k) {
         if (hits_[k].surface.is_none() || !hits_[k].front) continue;
-        locator_.find_root(hits_[k].region, origins_[k] + hits_[k].distance * directions_[k], queries_.emplace_back());
+        const Point y = place_of(stage_.scene, hits_[k], origins_[k], directions_[k]);
+        locator_.find_root(hits_[k].region, y, queries_.emplace_back());
         of_ray_.push_back(k);
     }
     locator_.leaves().find(queries_);

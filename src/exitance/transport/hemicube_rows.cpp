@@ -55,12 +55,12 @@ class RowMaker {
             const Vec3& d = cube_.direction[k];
             directions_[k] = d.x * u + d.y * v + d.z * n;
         }
-        stage_.tracer.nearest(directions_, x, region, hits_);
+        stage_.tracer.nearest(directions_, x, region, hits_, Mirrored::followed);
         queries_.clear(), cell_.clear(), seen_.clear();
         for (std::size_t k = 0; k < hits_.size(); ++k) {
             if (hits_[k].surface.is_none() || !hits_[k].front) continue;
             const RegionId hit = hits_[k].region;
-            locator_.find_root(hit, x + hits_[k].distance * directions_[k], queries_.emplace_back());
+            locator_.find_root(hit, place_of(stage_.scene, hits_[k], x, directions_[k]), queries_.emplace_back());
             cell_.push_back(k);
         }
         locator_.leaves().find(queries_);

@@ -91,10 +91,10 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
                 directions[i] = met_direction(stage.scene, region[k], n, points(i, 0), points(i, 1));
             if (!counts_.empty())
                 aim(stage, place[k], n, region[k], points, directions, std::span(counts_).subspan(first, count));
-            stage.tracer.nearest(directions, place[k], region[k], found);
+            stage.tracer.nearest(directions, place[k], region[k], found, Mirrored::followed);
             for (std::size_t i = 0; i < count; ++i) {
                 if (found[i].surface.is_none() || !found[i].front) continue;
-                const Point y = place[k] + found[i].distance * directions[i];
+                const Point y = place_of(stage.scene, found[i], place[k], directions[i]);
                 const auto [element, uv] = locator.find(stage.scene.surfaces()[found[i].surface].region, y);
                 hits_[first + i] = {numbering.number[element], quantised(uv.x), quantised(uv.y)};
             }

@@ -68,25 +68,29 @@ void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& d
     rays.time[lane] = 0, rays.mask[lane] = 0xffffffffu, rays.id[lane] = 0, rays.flags[lane] = 0;
 }
 
-/// Panes of glass as rays meet them: one in so many is stopped, as the share of the light that does not pass asks for.
-/// Which one that is follows from the ray and the pane alone.
+/// Panes of glass as rays meet them: one in so many is stopped, as the share of the light that does not pass asks for,
+/// and of these so many are mirrored. Which ones these are follows from the ray and the pane alone.
 struct Glass {
     static constexpr std::size_t steps = 256;
-    std::vector<std::uint32_t> pane_of;                 ///< Of every triangle.
-    std::vector<Normal> normal;                         ///< Of every pane;
-    std::vector<std::array<float, steps + 1>> through;  ///< mean over bands, by the cosine.
+    using Table = std::array<float, steps + 1>;  ///< By the cosine, mean over bands.
+    enum class Fate { passes, is_mirrored, is_absorbed };
+    std::vector<std::uint32_t> pane_of;  ///< Of every triangle.
+    std::vector<Normal> normal;          ///< Of every pane.
+    std::vector<Table> through, back;
 
-    bool stops(const Float3& origin, const Float3& d, std::uint32_t triangle) const {
+    Fate fate(const Float3& origin, const Float3& d, std::uint32_t triangle) const {
         const std::uint32_t pane = pane_of[triangle];
         const Vec3 w = normalized(Vec3{d.x, d.y, d.z});
         const double at = std::min(1.0, std::abs(dot(normal[pane], w))) * steps;
         const auto k = std::min(static_cast<std::size_t>(at), steps - 1);
         const double share = at - static_cast<double>(k);
-        const double T = (1 - share) * through[pane][k] + share * through[pane][k + 1];
+        const auto look_up = [&](const Table& t) { return (1 - share) * t[k] + share * t[k + 1]; };
         std::uint64_t key = hash(0x676c617373u, pane);
         for (const float v : {origin.x, origin.y, origin.z, d.x, d.y, d.z})
             key = hash(key, std::bit_cast<std::uint32_t>(v));
-        return static_cast<double>(key >> 11) * 0x1p-53 >= T;
+        const double chance = static_cast<double>(key >> 11) * 0x1p-53, T = look_up(through[pane]);
+        if (chance < T) return Fate::passes;
+        return chance < T + look_up(back[pane]) ? Fate::is_mirrored : Fate::is_absorbed;
     }
 };
 
@@ -98,7 +102,7 @@ void filter_glass(const RTCFilterFunctionNArguments* arguments) {
         const unsigned n = arguments->N;
         const Float3 origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)};
         const Float3 d{RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)};
-        if (!glass.stops(origin, d, RTCHitN_primID(arguments->hit, n, i))) arguments->valid[i] = 0;
+        if (glass.fate(origin, d, RTCHitN_primID(arguments->hit, n, i)) == Glass::Fate::passes) arguments->valid[i] = 0;
     }
 }
 
@@ -183,9 +187,12 @@ struct RayTracer::Content {
                 glass.pane_of.push_back(static_cast<std::uint32_t>(glass.normal.size()));
             }
             glass.normal.push_back(pane.n);
-            auto& through = glass.through.emplace_back();
-            for (std::size_t k = 0; k < through.size(); ++k)
-                through[k] = static_cast<float>(mean(pane.transmission(static_cast<double>(k) / Glass::steps)));
+            auto &through = glass.through.emplace_back(), &back = glass.back.emplace_back();
+            for (std::size_t k = 0; k <= Glass::steps; ++k) {
+                const double cosine = static_cast<double>(k) / Glass::steps;
+                through[k] = static_cast<float>(mean(pane.transmission(cosine)));
+                back[k] = static_cast<float>(mean(pane.reflection(cosine)));
+            }
         }
         attach(all, &glass);
     }
@@ -225,6 +232,46 @@ struct RayTracer::Content {
         return true;
     }
 
+    bool is_mirrored(const RTCRayHit16& packet, std::size_t lane) const {
+        if (packet.hit.geomID[lane] != 1) return false;
+        const RTCRay16& ray = packet.ray;
+        return glass.fate({ray.org_x[lane], ray.org_y[lane], ray.org_z[lane]},
+                          {ray.dir_x[lane], ray.dir_y[lane], ray.dir_z[lane]},
+                          packet.hit.primID[lane]) == Glass::Fate::is_mirrored;
+    }
+
+    /// Goes on where panes have mirrored rays of a packet; what other panes stop then is stopped.
+    template <class Origin>
+    void follow_mirrored(const RTCRayHit16& packet, std::size_t count, const Origin& origin, const Vec3* directions,
+                         RayHit* hits) const {
+        alignas(64) RTCRayHit16 onward;
+        alignas(64) std::array<int, width> valid{};
+        std::array<Point, width> from;
+        std::array<Vec3, width> along;
+        std::array<double, width> way;
+        bool any = false;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!is_mirrored(packet, i)) continue;
+            const Pane& pane = scene->panes()[glass.pane_of[packet.hit.primID[i]]];
+            const double slope = dot(pane.n, directions[i]);
+            way[i] = dot(pane.n, pane.corners[0] - origin(i)) / slope;
+            from[i] = origin(i) + way[i] * directions[i], along[i] = directions[i] - 2 * slope * pane.n;
+            const Vec3 off = (slope < 0 ? lift_off : -lift_off) * pane.n;
+            set_ray(onward.ray, i, local(from[i] + off), local_direction(along[i]), 0, HUGE_VALF);
+            onward.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            valid[i] = -1, any = true;
+        }
+        if (!any) return;
+        RTCIntersectContext context = make_context();
+        rtcIntersect16(valid.data(), rtc, &context, &onward);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (valid[i] == 0) continue;
+            read(onward, i, from[i], along[i], RegionId(), hits[i]);
+            hits[i].distance += way[i];
+            hits[i].mirror = static_cast<std::int32_t>(glass.pane_of[packet.hit.primID[i]]);
+        }
+    }
+
     template <class Ends>
     std::size_t occluded(std::span<bool> blocked, const Ends& ends) const;
 
@@ -256,7 +303,7 @@ std::size_t RayTracer::triangle_count() const {
 }
 
 std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,
-                               std::span<RayHit> hits) const {
+                               std::span<RayHit> hits, Mirrored mirrored) const {
     EXI_CHECK(origins.size() == directions.size() || origins.size() == 1);
     EXI_CHECK(hits.size() == directions.size());
     const bool shared = origins.size() == 1;
@@ -298,13 +345,17 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
             if (!content_->read(packet, i, origin, direction, side, hits[first + i]))
                 content_->retry(origin, direction, side, packet.ray.tfar[i], hits[first + i]);
         }
+        if (mirrored == Mirrored::followed && !content_->glass.normal.empty())
+            content_->follow_mirrored(
+                packet, count, [&](std::size_t i) { return origins[shared ? 0 : first + i]; }, &directions[first],
+                &hits[first]);
     }
     return directions.size();
 }
 
 std::size_t RayTracer::nearest(std::span<const Vec3> directions, const Point& origin, RegionId own,
-                               std::span<RayHit> hits) const {
-    return nearest(std::span(&origin, 1), directions, own, hits);
+                               std::span<RayHit> hits, Mirrored mirrored) const {
+    return nearest(std::span(&origin, 1), directions, own, hits, mirrored);
 }
 
 /// ends(i): where ray i begins and ends, off its surfaces.

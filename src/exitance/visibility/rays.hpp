@@ -15,7 +15,28 @@ struct RayHit {
     RegionId region;                                            ///< That of the surface.
     double distance = std::numeric_limits<double>::infinity();  ///< In lengths of the ray's direction.
     bool front = false;                                         ///< Is it the surface's front that is met?
+    std::int32_t mirror = -1;  ///< The pane that has mirrored the ray on its way; none below 0.
 };
+
+/// What becomes of rays that a pane mirrors: they are lost, as all that panes stop, or go on and are met where they
+/// arrive, unless another pane stops them. Direct light knows no mirrors, so that light of emitters and of the sky that
+/// comes by one is to be left out by who follows them.
+enum class Mirrored { lost, followed };
+
+/// Where a ray has met something.
+inline Point place_of(const Scene& scene, const RayHit& hit, const Point& origin, const Vec3& direction) {
+    const Point straight = origin + hit.distance * direction;
+    if (hit.mirror < 0) return straight;
+    const Pane& pane = scene.panes()[static_cast<std::size_t>(hit.mirror)];
+    return straight - 2 * dot(pane.n, straight - pane.corners[0]) * pane.n;
+}
+
+/// The direction in which it arrives there, or leaves the scene.
+inline Vec3 arriving(const Scene& scene, const RayHit& hit, const Vec3& direction) {
+    if (hit.mirror < 0) return direction;
+    const Normal& n = scene.panes()[static_cast<std::size_t>(hit.mirror)].n;
+    return direction - 2 * dot(n, direction) * n;
+}
 
 /// A point of a region; of free space where that is none.
 struct SurfacePoint {
@@ -45,12 +66,12 @@ class RayTracer {
 
     /// The first surface along each ray from one point of region `own` (none: a point of free space). Directions need
     /// not have length 1. `hits` is as long as `directions`. Returns how many rays were traced.
-    std::size_t nearest(std::span<const Vec3> directions, const Point& origin, RegionId own,
-                        std::span<RayHit> hits) const;
+    std::size_t nearest(std::span<const Vec3> directions, const Point& origin, RegionId own, std::span<RayHit> hits,
+                        Mirrored mirrored = Mirrored::lost) const;
 
     /// The same from a point of `own` a ray; all three are of one length.
     std::size_t nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,
-                        std::span<RayHit> hits) const;
+                        std::span<RayHit> hits, Mirrored mirrored = Mirrored::lost) const;
 
     /// blocked[i]: does anything stand between from[i] on region `receiver` and to[i] on region `source` (either may be
     /// none)? Both regions must face each other there. All three spans are of one length. Returns how many rays were

@@ -138,7 +138,9 @@ void add_last(Table& table, const StudySolve& run, std::size_t number, const Pro
     const bool shoots = get(facts, "method") == "progressive" || get(facts, "method") == "substructuring";
     const double links = shoots ? 0 : table.number(row, "link_bytes");
     table.set("memory_bytes", field(links + table.number(row, "element_bytes")));
+    // What the system counts of a child begins with the memory of its parent.
     table.set("peak_bytes", std::to_string(program.peak_bytes));
+    if (facts.contains("peak_memory_bytes")) copy("peak_bytes", "peak_memory_bytes");
     table.set("wall_seconds", field(program.seconds));
     table.set("status", status_of(run, program)), table.set("is_last", "1"), table.set("command", command);
 }

@@ -76,7 +76,7 @@ std::string_view basis_name(Method method, const SolveOptions& options) {
     return name_in(basis_names, BasisKind::constant);
 }
 
-ClassicalLight find_light(Method method, const ClassicalInput& input) {
+Result<ClassicalLight> find_light(Method method, const ClassicalInput& input) {
     if (method == Method::matrix) return solve_classical_matrix(input);
     if (method == Method::progressive || method == Method::substructuring)
         return solve_classical_shooting(input, method == Method::substructuring);
@@ -224,8 +224,10 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     Solution solution{.scene = scene};
     SolveStatistics& statistics = solution.statistics;
     statistics.seconds["mesh"] = watch.restart();
-    ClassicalLight light = find_light(*method, input);
+    Result<ClassicalLight> found = find_light(*method, input);
     phases.close();
+    if (!found) return found.error();
+    ClassicalLight& light = *found;
     if (!snapshots.written()) return snapshots.written().error();
     statistics.seconds["link"] = phases.seconds({"link"});
     statistics.seconds["solve"] = std::max(0.0, watch.restart() - snapshots.writing() - statistics.seconds["link"]);

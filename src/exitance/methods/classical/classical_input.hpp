@@ -43,7 +43,8 @@ std::vector<Spectrum> exitances(const ClassicalInput& input, const ElementTree& 
 ElementFunction constant_function(const ElementTree& tree, std::span<const ElementId> leaves,
                                   std::span<const Spectrum> values);
 
-ClassicalLight solve_classical_matrix(const ClassicalInput& input);
+/// Fails where its entries do not fit into the memory that it may use.
+Result<ClassicalLight> solve_classical_matrix(const ClassicalInput& input);
 ClassicalLight solve_classical_shooting(const ClassicalInput& input, bool substructuring);
 ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis basis);
 

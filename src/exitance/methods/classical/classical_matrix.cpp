@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/classical/classical_input.hpp"
 #include "exitance/solve/dense_relaxation.hpp"
@@ -58,13 +62,41 @@ void solve_with(const ClassicalInput& input, const ElementTree& tree, const Leaf
     light.report = report;
 }
 
+unsigned hemicube_cells(const SolveOptions& options) {
+    const auto cells = std::min<std::size_t>(1024, options.hemicube_cells.value_or(default_hemicube_cells));
+    return static_cast<unsigned>(2 * ((cells + 1) / 2));
+}
+
+RayBudget ray_budget(const ClassicalInput& input) {
+    RayBudget budget = input.knobs.solve_rays;
+    if (input.options.visibility_samples) budget.average = static_cast<double>(*input.options.visibility_samples);
+    return budget;
+}
+
+/// Do the entries of n leaves fit into the memory asked for, or the machine's?
+Result<void> check_memory(const ClassicalInput& input, FormFactorKind kind, double n) {
+    const double c = hemicube_cells(input.options), cells = 3 * c * c;
+    const double bytes = kind == FormFactorKind::analytic   ? 4 * n * n
+                         : kind == FormFactorKind::hemicube ? 8 * n * std::min(n, cells)
+                                                            : 4 * n * ray_budget(input).average;
+    const auto used = static_cast<double>(peak_memory_bytes()),
+               limit = static_cast<double>(input.options.memory_limit_bytes.value_or(machine_memory_bytes()));
+    if (used + bytes <= limit) return {};
+    return Error{
+        ErrorCode::limit,
+        fmt::format("{:.0f} MiB are in use and the matrix of {:.0f} elements takes up to {:.0f} MiB more, over "
+                    "the {:.0f} MiB there are",
+                    used / 0x1p20, n, bytes / 0x1p20, limit / 0x1p20),
+        "--method matrix", "a larger --mesh-size, more --memory-limit, or a method with links"};
+}
+
 }  // namespace
 
 /// The matrix method as [Goral84], [Cohen85] and [Cohen86] had it: constant elements, and all N x N form factors at
 /// once. `analytic` (the default): from the receiver's middle to the whole source polygon, times the share of rays
 /// between the two that meet nothing, without a level of patches: the reference among the methods. `hemicube`,
 /// `ray-cast`: rows of those. O(N^2) entries.
-ClassicalLight solve_classical_matrix(const ClassicalInput& input) {
+Result<ClassicalLight> solve_classical_matrix(const ClassicalInput& input) {
     ClassicalLight light;
     const ElementTree tree = constant_mesh(input);
     const LeafNumbering numbering(tree);
@@ -73,6 +105,8 @@ ClassicalLight solve_classical_matrix(const ClassicalInput& input) {
     const Stage& stage = input.stage;
     const SolveOptions& o = input.options;
     const FormFactorKind kind = o.form_factors.value_or(FormFactorKind::analytic);
+    if (const Result<void> fits = check_memory(input, kind, static_cast<double>(numbering.leaves.size())); !fits)
+        return fits.error();
     if (kind == FormFactorKind::analytic) {
         const PatchLevel patches(tree, numbering, 0);
         const PatchTransfer transfer(
@@ -84,16 +118,12 @@ ClassicalLight solve_classical_matrix(const ClassicalInput& input) {
     }
     const ElementLocator locator(tree, stage.scene.regions().size());
     if (kind == FormFactorKind::hemicube) {
-        const auto cells =
-            static_cast<unsigned>(std::min<std::size_t>(1024, o.hemicube_cells.value_or(default_hemicube_cells)));
-        const HemicubeRows F(stage, tree, numbering, locator, 2 * ((cells + 1) / 2));
+        const HemicubeRows F(stage, tree, numbering, locator, hemicube_cells(o));
         solve_with(input, tree, numbering, F, light);
         light.rays = F.rays(), light.form_factors = light.links = F.entries();
         return light;
     }
-    RayBudget budget = input.knobs.solve_rays;
-    if (o.visibility_samples) budget.average = static_cast<double>(*o.visibility_samples);
-    const RayRows F(stage, tree, numbering, locator, budget, o.seed);
+    const RayRows F(stage, tree, numbering, locator, ray_budget(input), o.seed);
     solve_with(input, tree, numbering, F, light);
     light.rays = light.links = F.rays();
     return light;

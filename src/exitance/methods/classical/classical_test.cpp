@@ -253,6 +253,19 @@ TEST(Classical, EveryRelaxationFindsTheSameLightInItsNumberOfSweeps) {
     EXPECT_LT(sweeps(Relaxation::southwell, {}), jacobi);
 }
 
+TEST(Classical, AMatrixThatMemoryDoesNotHoldIsRefused) {
+    Progress progress;
+    const StopRequest stop;
+    ClassicalFacts facts;
+    const Scene scene = built_scene("blocker", {{"h", "0.7"}});
+    SolveOptions options{.method = Method::matrix, .mesh_size = 0.5};
+    EXPECT_TRUE(solve_classical(scene, options, raw, progress, stop, facts, {}));
+    options.memory_limit_bytes = 1 << 20;  // less than any process holds
+    const Result<Solution> none = solve_classical(scene, options, raw, progress, stop, facts, {});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, ErrorCode::limit);
+}
+
 TEST(Classical, WhatAMethodDoesNotObeyNamesThoseThatDo) {
     ClassicalOptions c = raw;
     c.ambient = true;

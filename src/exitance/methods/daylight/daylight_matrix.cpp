@@ -116,14 +116,16 @@ class MatrixMaker {
             ends.directions.push_back(met_direction(stage_.scene, sides, n, points(k, 0), points(k, 1)));
         }
         ends.hits.resize(rays);
-        stage_.tracer.nearest(ends.origins, ends.directions, own, ends.hits);
+        stage_.tracer.nearest(ends.origins, ends.directions, own, ends.hits, Mirrored::followed);
         for (std::size_t k = 0; k < rays; ++k) {
             const RayHit& hit = ends.hits[k];
             if (hit.surface.is_none())
-                ends.patches.push_back(static_cast<std::uint32_t>(patches_.of(normalized(ends.directions[k]))));
+                ends.patches.push_back(static_cast<std::uint32_t>(
+                    patches_.of(normalized(arriving(stage_.scene, hit, ends.directions[k])))));
             else if (hit.front)
                 ends.leaves.push_back(
-                    locator_.find_leaf(hit.region, ends.origins[k] + hit.distance * ends.directions[k]).leaf);
+                    locator_.find_leaf(hit.region, place_of(stage_.scene, hit, ends.origins[k], ends.directions[k]))
+                        .leaf);
         }
     }
 

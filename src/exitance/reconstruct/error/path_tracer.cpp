@@ -17,7 +17,7 @@ PathTracer::PathTracer(const Stage& stage) : stage_(stage) {
 Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream& random) const {
     Spectrum sum, throughput(1.0);
     const Vec3 first = met_direction(stage_.scene, probe.region, probe.n, a, b);
-    std::optional<Vertex> y = follow(probe, first);
+    std::optional<Vertex> y = follow(probe, first, nullptr, Mirrored::followed);
     while (y) {
         const Spectrum& rho = stage_.scene.material(y->region).reflectance;
         const double survival = max(rho);
@@ -34,9 +34,9 @@ Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream&
         const double u = random.uniform(), v = random.uniform();
         const Vec3 on = cosine_direction(Frame(y->n), u, v);
         bool lost = false;
-        const std::optional<Vertex> next = follow(*y, on, &lost);
+        const std::optional<Vertex> next = follow(*y, on, &lost, Mirrored::followed);
         if (lost && !outside.domes.empty()) sum += throughput * outside.radiosity(normalized(on), false);
-        if (next) {
+        if (next && !next->mirrored) {
             const Spectrum& exitance = stage_.scene.material(next->region).exitance;
             if (max(exitance) > 0)
                 sum += throughput * exitance *
@@ -49,13 +49,15 @@ Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream&
 }
 
 /// Where a ray arrives; nothing when it is lost or meets a back.
-std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const Vec3& direction, bool* lost) const {
+std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const Vec3& direction, bool* lost,
+                                                     Mirrored mirrored) const {
     RayHit hit;
-    stage_.tracer.nearest(std::span(&from.x, 1), std::span(&direction, 1), from.region, std::span(&hit, 1));
-    if (lost) *lost = hit.surface.is_none();
+    stage_.tracer.nearest(std::span(&from.x, 1), std::span(&direction, 1), from.region, std::span(&hit, 1), mirrored);
+    if (lost) *lost = hit.surface.is_none() && hit.mirror < 0;
     if (hit.surface.is_none() || !hit.front) return std::nullopt;
     const RegionId region = hit.region;
-    return Vertex{from.x + hit.distance * direction, stage_.scene.regions()[region].plane.n, region};
+    return Vertex{place_of(stage_.scene, hit, from.x, direction), stage_.scene.regions()[region].plane.n, region,
+                  hit.mirror >= 0};
 }
 
 /// Of each distant disc by one ray, uniform in its solid angle.

@@ -19,6 +19,7 @@ class PathTracer {
         Point x;
         Normal n;
         RegionId region;
+        bool mirrored = false;  ///< By a pane on the way: what emits there is left out, as direct light leaves it out.
     };
 
     explicit PathTracer(const Stage& stage);
@@ -38,8 +39,9 @@ class PathTracer {
         RelativeRadiance radiance;
     };
 
-    /// `lost`, if given, is set where a ray meets nothing.
-    std::optional<Vertex> follow(const Vertex& from, const Vec3& direction, bool* lost = nullptr) const;
+    /// `lost`, if given, is set where a ray meets nothing that no pane has mirrored.
+    std::optional<Vertex> follow(const Vertex& from, const Vec3& direction, bool* lost = nullptr,
+                                 Mirrored mirrored = Mirrored::lost) const;
     Spectrum light_of_discs(const Vertex& y, RandomStream& random) const;
     double chances(const Vertex& y, std::vector<double>& chance) const;
     double shadow_density(const Vertex& y, const Vertex& target) const;
