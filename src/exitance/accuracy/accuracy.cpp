@@ -139,6 +139,32 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     return out;
 }
 
+namespace {
+
+/// Tightens the local pass where its parts are more than is allowed for both.
+void tighten_local(Tightened& out, const ErrorParts& parts, double allowed) {
+    namespace c = calibrated;
+    if (std::hypot(parts.noise, parts.interpolation) <= allowed) return;
+    // Each part is given its share by itself: one that is small already is not made smaller for the other's sake.
+    const auto share_of = [&](double part, double share) {
+        return part > share * allowed ? std::clamp(share * allowed / part, c::least_tightening, c::least_step) : 1.0;
+    };
+    const double noise = share_of(parts.noise, c::part_aim),
+                 interpolation = share_of(parts.interpolation, c::interpolation_share);
+    out.knobs.gather_noise *= noise < 1 ? noise * std::min(1.0, parts.noise / out.knobs.gather_noise) : 1;
+    out.knobs.gather_rays.average *= std::pow(noise, -4.0 / 3);
+    out.knobs.gather_tolerance *= interpolation;
+    out.knobs.gather_element_share *= interpolation;
+    out.work = std::max(out.work, std::pow(std::min(noise, interpolation), -4.0 / 3));
+}
+
+/// What the local pass may err where the method errs so much: at least half of the target.
+double allowed_locally(double target, double method) {
+    return std::sqrt(std::max(0.5 * 0.5 * target * target, target * target - method * method));
+}
+
+}  // namespace
+
 Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options) {
     namespace c = calibrated;
     // The method may have half of the target, or all of it where nothing is gathered. Its light is smoothed by the
@@ -159,23 +185,20 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
         out.knobs.residual *= factor;
         out.knobs.link_error *= factor;
         method *= factor;
-        out.work = 1 / factor;
+        out.left = factor, out.work = 1 / factor;
     }
-    const double allowed = std::sqrt(std::max(0.5 * 0.5 * target * target, target * target - method * method));
-    if (local > allowed) {
-        // Each part is given its share by itself: one that is small already is not made smaller for the other's sake.
-        const auto share_of = [&](double part, double share) {
-            return part > share * allowed ? std::clamp(share * allowed / part, c::least_tightening, c::least_step)
-                                          : 1.0;
-        };
-        const double noise = share_of(parts.noise, c::part_aim),
-                     interpolation = share_of(parts.interpolation, c::interpolation_share);
-        out.knobs.gather_noise *= noise < 1 ? noise * std::min(1.0, parts.noise / knobs.gather_noise) : 1;
-        out.knobs.gather_rays.average *= std::pow(noise, -4.0 / 3);
-        out.knobs.gather_tolerance *= interpolation;
-        out.knobs.gather_element_share *= interpolation;
-        out.work = std::max(out.work, std::pow(std::min(noise, interpolation), -4.0 / 3));
-    }
+    tighten_local(out, parts, allowed_locally(target, method));
+    apply_user_knobs(out.knobs, options);
+    return out;
+}
+
+Tightened refined(const Knobs& knobs, const ErrorParts& parts, double left, double limit, double target,
+                  const SolveOptions& options) {
+    Tightened out{.knobs = knobs, .method = true, .left = left};
+    const double method = left * parts.method, local = std::hypot(parts.noise, parts.interpolation);
+    // Steps go on until the method has no more than its half.
+    if (std::hypot(method, local) > limit)
+        tighten_local(out, parts, allowed_locally(target, std::min(method, 0.5 * target)));
     apply_user_knobs(out.knobs, options);
     return out;
 }

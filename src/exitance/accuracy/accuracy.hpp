@@ -43,10 +43,17 @@ struct ErrorParts {
 struct Tightened {
     Knobs knobs;
     bool method = false;  ///< The method has to solve again; otherwise the light that it found is good enough.
+    double left = 1;      ///< The share of its part of the error that is left then.
     double work = 1;      ///< About how many times the last attempt's time the next one takes.
 };
 
 /// Knobs that bring the parts together below `target`: only those parts are tightened that are too large.
 Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options);
+
+/// Knobs for an attempt that leaves the method's knobs and light as they are but for a step of refinement, which leaves
+/// a share `left` of the method's part. What is gathered but for its change stays, too, if the error is within `limit`
+/// then; else the local pass is tightened as for `target`.
+Tightened refined(const Knobs& knobs, const ErrorParts& parts, double left, double limit, double target,
+                  const SolveOptions& options);
 
 }  // namespace exitance

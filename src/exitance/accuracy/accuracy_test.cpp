@@ -79,6 +79,19 @@ TEST(Tightened, AlwaysTightensSomething) {
     EXPECT_TRUE(tightened(knobs, {.method = 0.001, .noise = 0.001, .interpolation = 0.001}, 0.02, {}).method);
 }
 
+TEST(Refined, LeavesTheLocalPassAloneWhereAStepIsEnough) {
+    const ErrorParts parts{.method = 0.03, .noise = 0.01, .interpolation = 0.005};
+    const Tightened enough = refined(knobs, parts, 0.3, 0.02, 0.014, {});
+    EXPECT_EQ(enough.knobs.gather_noise, knobs.gather_noise);
+    EXPECT_EQ(enough.knobs.gather_tolerance, knobs.gather_tolerance);
+    EXPECT_EQ(enough.knobs.solve_mesh.edge, knobs.solve_mesh.edge);
+    EXPECT_EQ(enough.work, 1);
+    const Tightened too_little = refined(knobs, {.method = 0.03, .noise = 0.02}, 0.3, 0.02, 0.014, {});
+    EXPECT_LT(too_little.knobs.gather_noise, knobs.gather_noise);
+    EXPECT_EQ(too_little.knobs.gather_tolerance, knobs.gather_tolerance);
+    EXPECT_EQ(too_little.knobs.solve_rays.average, knobs.solve_rays.average);
+}
+
 TEST(Tightened, KeepsWhatTheUserSet) {
     const Tightened finer = tightened(knobs, {.method = 0.05}, 0.02, {.mesh_size = 0.5});
     EXPECT_EQ(finer.knobs.solve_mesh.edge, 0.5);

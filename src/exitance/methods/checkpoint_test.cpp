@@ -102,6 +102,22 @@ TEST(Checkpoint, WhatWasKeptBeforeAnInterruptLeadsToTheSameBits) {
     }
 }
 
+TEST(Checkpoint, AnyStateOfAnAttemptThatRefinesLeadsToTheSameBits) {
+    const Scene scene = built_scene("cornell");
+    SolveOptions options{.error = 0.03};
+    options.mesh_size = 3;  // elements as large as walls, so that the method is to blame
+    const Solution whole = solved(scene, options, nullptr);
+    ASSERT_EQ(whole.statistics.figures.at("refinement_steps"), 1);
+    AllStates on_the_way;
+    expect_same(solved(scene, options, &on_the_way), whole);
+    const std::size_t count = on_the_way.states.size();
+    for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, count / 16)) {
+        SCOPED_TRACE("state " + std::to_string(i) + " of " + std::to_string(count));
+        AllStates resumed(on_the_way.states[i]);
+        expect_same(solved(scene, options, &resumed), whole);
+    }
+}
+
 TEST(Checkpoint, ADiscontinuityMeshThatWasInterruptedGoesOnWithWhatItHad) {
     /// Asks for a stop once so many states have been kept.
     class StopsAfterStates final : public CheckpointStore {

@@ -126,6 +126,28 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     }
 }
 
+/// What is known of an element and what a change of the light adds to it: rays that say more of it than of all light
+/// are few. One that is too noisy in any case is left to be gathered anew.
+SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Workspace& w) const {
+    const SampledElement& before = sampled_[e];
+    if (noise_excess(e, before, demand) > calibrated::kept_noise) return before;
+    constexpr unsigned least_rays = 4, share = 8;  // of the rays of a place, 1 / share to begin with
+    const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(before.curved));
+    const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
+    w.growing.assign(places.size(), {});
+    for (unsigned rays = std::max(least_rays, before.place_rays / share);; rays *= 2) {
+        const unsigned cast = gather_at(e, places, *demand.change, rays, false, demand, w);
+        SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, before.curved, spread_.gain());
+        for (std::size_t k = 0; k < out.coefficient.size(); ++k)
+            for (std::size_t b = 0; b < bands; ++b) out.coefficient[k][b] += before.coefficient[k][b];
+        out.light = before.light, out.quarters = before.quarters, out.halves = before.halves;
+        out.noise_squared += before.noise_squared;
+        out.misfit_squared += before.misfit_squared, out.noise_in_misfit += before.noise_in_misfit;
+        out.rays = before.rays + cast, out.place_rays = before.place_rays;
+        if (noise_excess(e, out, demand) <= calibrated::kept_noise || 2 * rays > before.place_rays) return out;
+    }
+}
+
 /// Light in a slit between two boards changes within less than the distance of the rule's places. So that it does not
 /// go unseen, the polynomial is compared with what a few rays find at random places; where that is further off than
 /// their noise, it counts as misfit.
@@ -206,25 +228,38 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
     return out;
 }
 
+/// Of leaves that are known, those that are too noisy, and the pieces of others that are cut: of what is quiet enough,
+/// the pieces are all that has to be gathered.
+std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves, const LocalPassDemand& demand) {
+    const auto good = [&](ElementId e) {
+        return sampled_[e].place_rays > 0 && noise_excess(e, sampled_[e], demand) <= calibrated::kept_noise;
+    };
+    std::vector<ElementId> kept;
+    std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(kept), good);
+    std::erase_if(leaves, good);
+    if (is_crowd_) least_share_ = share_in_crowd(demand);
+    for (ElementId child : split_where_needed(kept, demand)) leaves.push_back(child);
+    return leaves;
+}
+
+std::size_t LocalPass::rays_of(std::span<const ElementId> elements) const {
+    std::size_t rays = 0;
+    for (ElementId e : elements) rays += sampled_[e].rays;
+    return rays;
+}
+
 ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand,
                                   LocalPassReport& report, Progress& progress, const StopRequest& stop,
                                   SafePoints safe_points) {
+    constexpr int change = -1;  // the round of a change comes before those that cut
     std::vector<ElementId> active = tree_.leaves();
-    int depth = 0;
-    std::size_t begun = 0;  // how many of `active` an earlier run has gathered
-    const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays); });
     const bool known = !fresh && sampled_.size() == tree_.size();
-    std::vector<ElementId> kept;
-    if (known && !resumed) {
-        const auto good = [&](ElementId e) {
-            return sampled_[e].place_rays > 0 && noise_excess(e, sampled_[e], demand) <= calibrated::kept_noise;
-        };
-        std::copy_if(active.begin(), active.end(), std::back_inserter(kept), good);
-        std::erase_if(active, good);
-        if (is_crowd_) least_share_ = share_in_crowd(demand);
-        // Of what is quiet enough and to be cut, the pieces are all that has to be gathered.
-        for (ElementId child : split_where_needed(kept, demand)) active.push_back(child);
-    }
+    int depth = known && demand.change ? change : 0;
+    std::size_t begun = 0;        // how many of `active` an earlier run has gathered
+    std::size_t rays_before = 0;  // of `active`, where they are changed
+    const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays, rays_before); });
+    if (!resumed && depth == change) rays_before = rays_of(active);
+    if (!resumed && known && depth == 0) active = to_gather_again(std::move(active), demand);
     // What those of a crowd may leave follows from what all of them have.
     const auto may_cut = [&](int at) { return at < demand.max_depth && !(is_crowd_ && at == 0); };
     for (; !active.empty(); ++depth) {
@@ -233,34 +268,36 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         // request to stop is heard at every element: what it leaves out is not used.
         const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
         for (std::size_t first = std::exchange(begun, 0); first < active.size() && !stop.requested(); first += slice) {
-            safe_points.pass([&](auto& a) { a(active, depth, first, report.rays); });
+            safe_points.pass([&](auto& a) { a(active, depth, first, report.rays, rays_before); });
             const auto slice_of = std::span(active).subspan(first, std::min(slice, active.size() - first));
             const auto [lowest, highest] = std::minmax_element(slice_of.begin(), slice_of.end());
             shared_ranges_of(
                 sampled_.span().subspan(lowest->value, highest->value - lowest->value + 1), slice_of.size(), 1,
                 [&](std::size_t begin, std::size_t end) {
                     Workspace workspace;
-                    for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
-                        sampled_[active[i]] = sample(active[i], b, demand, may_cut(depth), workspace),
-                        note_touched("rays", sampled_[active[i]].rays);
+                    for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
+                        const ElementId e = active[i];
+                        sampled_[e] = depth == change ? changed(e, demand, workspace)
+                                                      : sample(e, b, demand, may_cut(depth), workspace);
+                        note_touched("rays", sampled_[e].rays);
+                    }
                 },
                 [&](std::size_t i) -> SampledElement& { return sampled_[active[first + i]]; },
                 {"gather", [&](std::size_t i) { return tree_.region(active[first + i]).value; }});
-            for (std::size_t i = first; i < std::min(first + slice, active.size()); ++i) {
+            for (std::size_t i = first; depth != change && i < std::min(first + slice, active.size()); ++i) {
                 const SampledElement& s = sampled_[active[i]];
                 spread_.quarters += tree_.area(active[i]) * s.quarters;
                 spread_.halves += tree_.area(active[i]) * s.halves;
             }
             // The first round is about half of the work, every further one half of what is left.
             const double done = static_cast<double>(first) / static_cast<double>(active.size());
-            progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
+            if (depth != change) progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
         }
-        if (demand.elements.empty())
-            for (ElementId e : active) report.rays += sampled_[e].rays;
+        if (demand.elements.empty()) report.rays += rays_of(active) - std::exchange(rays_before, 0);
         report.interrupted = stop.requested();
         if (depth == demand.max_depth || report.interrupted) break;
-        if (is_crowd_) least_share_ = share_in_crowd(demand);
-        active = split_where_needed(active, demand);
+        if (depth != change && is_crowd_) least_share_ = share_in_crowd(demand);
+        active = depth == change ? to_gather_again(std::move(active), demand) : split_where_needed(active, demand);
     }
     tree_.shrink_to_fit(), sampled_.shrink_to_fit();
     share_on_node(tree_), share_on_node(sampled_.span());

@@ -25,6 +25,9 @@ struct LocalPassDemand {
     int max_depth = 8;  ///< Rounds of cutting.
     /// The light of every room by the mean light: errors are allowed in proportion. Empty where all is one room.
     std::span<const double> light_in = {};
+    /// b less what was gathered last, where that is small: it alone is gathered, by as few rays as its noise needs, and
+    /// added to what there is. Null: b is what was gathered last, or nothing like it.
+    const ReflectedLight* change = nullptr;
 };
 
 struct LocalPassReport {
@@ -56,8 +59,8 @@ struct LocalPassReport {
 /// each, which is why elements as large as light allows are what makes this cheap. What is delivered are straight
 /// elements for all that. O(elements x rays).
 ///
-/// Mesh and gathers stay: called again with a stricter demand, only what falls short of it is done again; with other
-/// light, everything is gathered anew, on the mesh found so far.
+/// Mesh and gathers stay: called again with a stricter demand, only what falls short of it is done again; with light
+/// that has changed by little, the change is gathered; with other light, everything anew, on the mesh found so far.
 class LocalPass {
   public:
     /// `mesh`: of the elements to begin with. The stage must outlive it.
@@ -100,6 +103,7 @@ class LocalPass {
 
     SampledElement sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
                           Workspace& workspace) const;
+    SampledElement changed(ElementId e, const LocalPassDemand& demand, Workspace& workspace) const;
     unsigned gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b, unsigned rays,
                        bool more, const LocalPassDemand& demand, Workspace& workspace) const;
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
@@ -111,6 +115,8 @@ class LocalPass {
     bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double share_in_crowd(const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);
+    std::vector<ElementId> to_gather_again(std::vector<ElementId> leaves, const LocalPassDemand& demand);
+    std::size_t rays_of(std::span<const ElementId> elements) const;
     ElementFunction finished(const LocalPassDemand& demand, LocalPassReport& report) const;
 
     const Stage& stage_;

@@ -96,6 +96,22 @@ TEST_F(OneBrightFace, IsNotGatheredAgainWhereItIsGoodEnough) {
     EXPECT_LT(anew.rays, 2 * (first.rays + finer.rays));
 }
 
+TEST_F(OneBrightFace, AChangeOfTheLightIsGatheredByFewRays) {
+    LocalPassReport first, second;
+    const ElementFunction dim = gather(fine, first);
+    const PointwiseLight change{
+        [this](RegionId region, const Point&) { return Spectrum(region == bright ? 0.05 : 0.0); }};
+    LocalPassDemand demand = fine;
+    demand.change = &change;
+    ElementFunction brighter = gather(demand, second);
+    EXPECT_LT(second.rays, first.rays / 4);
+    // As far off as before, but for noise of the change that rays for all of the light would have: what is allowed.
+    for (std::array<float, bands>& value : brighter.values)
+        for (float& v : value) v /= 1.05F;
+    EXPECT_LT(error(brighter), 1.2 * error(dim) + 0.2 * fine.noise);
+    EXPECT_GT(second.noise, 0.9 * first.noise);
+}
+
 TEST(LocalPass, GathersConstantLightExactly) {
     const Scene scene = box_scene(2, 1, 1.5, 0.5, 0);
     const Stage stage(scene);

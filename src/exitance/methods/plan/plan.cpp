@@ -61,9 +61,8 @@ Plan make_plan(const Stage& stage, const SolveOptions& asked, bool hurry) {
     plan.knobs = knobs_for_error(error, lit, plan.options);
     plan.sums = ElementGather::suits(stage);
     if (plan.sums) plan.knobs = knobs_for_sums(plan.knobs, error, lit, plan.options);
-    plan.may_become_linear = asked.method == Method::automatic && method == Method::matrix && !plan.options.basis &&
-                             plan.options.bounces < 0 && !plan.sums && !plan.options.form_factors &&
-                             plan.options.relaxation != Relaxation::cg;
+    plan.may_refine_delivered = asked.method == Method::automatic && method == Method::matrix && !plan.options.basis &&
+                                plan.options.bounces < 0 && !plan.sums && !plan.options.form_factors;
     return plan;
 }
 

@@ -16,7 +16,8 @@ struct Plan {
     Knobs knobs = {};                       ///< Of the first attempt.
     bool has_links = false;                 ///< Is the method one over links?
     bool sums = false;                      ///< Is light summed over elements rather than found by rays?
-    bool may_become_linear = false;         ///< May constants give way to linear functions in another attempt?
+    /// May another attempt refine what is delivered (`next_light`), where the method is to blame?
+    bool may_refine_delivered = false;
 };
 
 /// Looks for the sides of the stage that get no light and for its rooms; what a plan rests on.

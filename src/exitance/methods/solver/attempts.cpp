@@ -10,6 +10,7 @@
 #include "exitance/methods/light/refined_light.hpp"
 #include "exitance/methods/light/smoothing.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/plan/attempt_forecast.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/continuous.hpp"
@@ -19,13 +20,12 @@
 namespace exitance {
 
 void Solver::solve_indirect_light() {
-    constexpr int most_attempts = 9;
     const std::optional<double> demand = options_.error_demand();
     for (;; ++attempt_, step_ = Step::project) {
         const Stopwatch watch;
         attempt();
         if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-        if (!demand || certificate_.largest() <= margin(certificate_.points) * *demand) {
+        if (!demand || has_reached(*demand)) {
             if (statistics().stopped_by.empty() || demand)
                 statistics().converged = true, statistics().stopped_by.clear();
             return;
@@ -33,14 +33,16 @@ void Solver::solve_indirect_light() {
         if (light_->limited_by_memory) stop_early("memory limit");
         if (statistics().stopped_by == "memory limit") return;
         if (attempt_ == most_attempts) return stop_early("iterations");
-        const Tightened finer = tightened(knobs_, error_parts(), calibrated::attempt_aim * *demand, options_);
+        const Tightened finer = next_attempt(*demand);
         // One that cannot end in time would only be thrown away.
         if (as_first(seconds_left(stop_) < watch.seconds() * finer.work)) return stop_early("time limit");
-        progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, finer{}", 100 * certificate_.largest(),
-                                   100 * *demand, finer.method ? "" : ", on the light that the method found"));
-        const Knobs before = std::exchange(knobs_, finer.knobs);
-        if (finer.method) light_.reset();
-        if (finer.method && may_become_linear()) become_linear(before);
+        progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, {}", 100 * certificate_.largest(),
+                                   100 * *demand,
+                                   takes_step_    ? "refining what is delivered"
+                                   : finer.method ? "finer"
+                                                  : "finer, on the light that the method found"));
+        knobs_ = finer.knobs;
+        if (finer.method && !takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
         if (options_.memory_limit_bytes) {
             const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
             if (!fits || !*fits) return stop_early("memory limit");
@@ -48,10 +50,32 @@ void Solver::solve_indirect_light() {
     }
 }
 
-void Solver::become_linear(const Knobs& before) {
-    becomes_linear_ = true;
-    knobs_.solve_mesh = before.solve_mesh, knobs_.direct_tolerance = before.direct_tolerance;
-    knobs_.solve_rays = before.solve_rays;
+Tightened Solver::next_attempt(double demand) {
+    const double target = calibrated::attempt_aim * demand;
+    const ErrorParts parts = error_parts();
+    const Tightened finer = tightened(knobs_, parts, target, options_);
+    takes_step_ = false;
+    if (!finer.method || !plan_.may_refine_delivered || !gathers() || !light_->on_projection) return finer;
+    // A step leaves a third of what is rough, more where light is reflected often; the first one shows it.
+    const double left = steps_.not_local > 0 ? not_local(parts) / steps_.not_local : 0.5;
+    const AttemptForecast forecast = forecast_attempt({.row_rays = static_cast<double>(light_->rays),
+                                                       .gather_rays = static_cast<double>(steps_.gather_rays),
+                                                       .certificate_rays = static_cast<double>(certificate_.rays),
+                                                       .method = not_local(parts),
+                                                       .wanted = 0.5 * target,
+                                                       .left = left,
+                                                       .finer = finer.left});
+    takes_step_ = forecast.takes_steps();
+    progress_.note(
+        fmt::format("another attempt: about {:.3g} rays by refining what is delivered, {:.3g} by finer elements",
+                    forecast.step_rays, forecast.finer_rays));
+    if (!takes_step_) return finer;
+    return refined(knobs_, parts, left, margin(certificate_.points) * demand, target, options_);
+}
+
+double Solver::not_local(const ErrorParts& parts) const {
+    const double all = certificate_.largest(), local = std::hypot(parts.noise, parts.interpolation);
+    return std::max(parts.method, std::sqrt(std::max(0.0, all * all - local * local)));
 }
 
 void Solver::project_direct() {
@@ -84,9 +108,8 @@ void Solver::project_coarsely() {
 void Solver::attempt() {
     if (step_ == Step::project) {
         fresh_ = !light_;
-        const bool stays = fresh_ && becomes_linear_ && !options_.basis;  // the mesh, and direct light on it
-        if (becomes_linear_) options_.basis = BasisKind::linear, statistics().basis = "linear";
-        if (fresh_ && !stays) project_direct();
+        if (fresh_) project_direct();
+        if (takes_step_) take_step();
         if (stop_.requested()) return;  // where there is no light of another attempt, direct light is all there is
         reach(Step::solve);
     }
@@ -97,16 +120,19 @@ void Solver::attempt() {
     }
     if (step_ == Step::decide) return;
     Stopwatch watch;
-    ElementFunction light = gathered_light(stage_.scene, direct_, *light_, share_);
-    share_on_node(std::span(light.values));
-    const QuickFunction b(light, stage_.scene.regions().size());
-    if (b.stands_alone() && !sums_) light = {};
+    NextLight found;
+    if (next_.parts.empty()) found.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
+    for (const ElementFunction& f : found.parts) share_on_node(std::span(f.values));
+    const ReadNextLight b(next_.parts.empty() ? found : next_, stage_.scene.regions().size());
+    if (b.stands_alone() && !sums_) found = {};
     release_freed_memory();
     if (step_ == Step::gather) {
         refined_.clear();
-        const bool whole = deliver(parts_to_sum({&light, 1}), b, fresh_);
+        const bool whole = deliver(parts_to_sum(found.parts), b, fresh_);
         statistics().seconds["reconstruct"] += watch.restart();
         if (!whole) return;
+        next_.rest.clear();  // it is gathered
+        steps_.gather_rays = std::max(steps_.gather_rays, gathered_.rays);
         reach(Step::refine);
     }
     if (step_ == Step::refine && refines()) {
@@ -116,16 +142,29 @@ void Solver::attempt() {
         if (!whole) return;
     }
     reach(Step::certify);
-    const std::vector<ElementGather> elements = refines() ? parts_to_sum(refined_) : parts_to_sum({&light, 1});
+    const std::vector<ElementGather> elements = refines() ? parts_to_sum(refined_) : parts_to_sum(found.parts);
     progress_.phase("certify");
     CertificateOptions look{.error = options_.error_target(),
                             .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
     if (sums_) look.points /= 2;  // without noise
-    if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b;
-    look.coarse = &b.locator();
+    if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b.whole();
+    look.coarse = &b.method_mesh();
     certify_solution(look, options_.error_demand(), elements);
     statistics().seconds["certify"] += watch.restart();
     reach(Step::decide);
+}
+
+void Solver::take_step() {
+    const Stopwatch watch;
+    if (next_.parts.empty()) next_.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
+    next_ = next_light(stage_, *light_, solution_.indirect, direct_, share_, std::move(next_), knobs_.solve_rays,
+                       options_.seed);
+    for (const auto* const functions : {&next_.parts, &next_.rest})
+        for (const ElementFunction& f : *functions) share_on_node(std::span(f.values));
+    steps_.not_local = not_local(error_parts());
+    takes_step_ = false;
+    statistics().figures["refinement_steps"] += 1;
+    statistics().seconds["solve"] += watch.seconds();
 }
 
 void Solver::find_light() {
@@ -157,7 +196,7 @@ std::vector<ElementFunction> Solver::refine() const {
                          knobs_.gather_element_share, options_.seed);
 }
 
-bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunction& b, bool fresh) {
+bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLight& b, bool fresh) {
     gathered_ = {};
     ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
     const Spectrum kept =
@@ -192,7 +231,8 @@ bool Solver::deliver(std::span<const ElementGather> elements, const QuickFunctio
 Spectrum Solver::unscaled_indirect(const Spectrum& kept) const {
     if (!gathers()) return unscaled_.direct * light_->report.unscaled;
     // What refining ends at hardly depends on where it began.
-    const Spectrum returned = step_ == Step::refine ? Spectrum(1.0) : light_->report.unscaled;
+    const bool refined = step_ == Step::refine || !next_.parts.empty();
+    const Spectrum returned = refined ? Spectrum(1.0) : light_->report.unscaled;
     return unscaled_sent(stage_.scene, *light_, unscaled_.direct, returned, share_) * inverse(kept);
 }
 
@@ -215,11 +255,11 @@ Spectrum Solver::direct_share() const {
     return find_direct_share(stage_, *light_, locator, options_.seed);
 }
 
-ElementFunction Solver::gather(const ReflectedLight& b, std::span<const ElementGather> elements, bool fresh) {
+ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh) {
     progress_.phase("gather");
     const double scale = light_->mean_reflected(stage_.area);
     if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
-    ElementFunction out = local_pass_->gather(b, fresh,
+    ElementFunction out = local_pass_->gather(b.whole(), fresh,
                                               {.rays = knobs_.gather_rays,
                                                .noise = knobs_.gather_noise * scale,
                                                .tolerance = knobs_.gather_tolerance * scale,
@@ -227,7 +267,8 @@ ElementFunction Solver::gather(const ReflectedLight& b, std::span<const ElementG
                                                .relative_tolerance = knobs_.gather_relative_tolerance,
                                                .elements = elements,
                                                .element_share = knobs_.gather_element_share,
-                                               .light_in = allowed_in_},
+                                               .light_in = allowed_in_,
+                                               .change = b.change()},
                                               gathered_, progress_, stop_, safe_points());
     statistics().rays += gathered_.rays;
     return out;

@@ -8,6 +8,7 @@
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/error/clustering_error.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 
@@ -48,12 +49,17 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         if (estimate <= limit || estimate - 2 * certificate_.largest_uncertainty() > limit) break;
         certificate_ = certifier.look();
     }
-    certifier.tell_p99(certificate_);
     add_clustering_error();
+    if (!demand || may_be_last(*demand)) certifier.tell_p99(certificate_);
     record_certificate(certificate_, *light_, solution_.indirect, statistics());
     statistics().rooms = certifier.rooms(), statistics().surface_errors = certifier.surface_errors();
     if (certificate_.points == 0 && !stop_.requested()) tell_exact();
     progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
+}
+
+bool Solver::may_be_last(double demand) const {
+    return has_reached(demand) || attempt_ == most_attempts || options_.memory_limit_bytes ||
+           seconds_left(stop_) < HUGE_VAL;
 }
 
 void Solver::add_clustering_error() {

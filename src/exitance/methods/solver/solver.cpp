@@ -80,7 +80,8 @@ void Solver::record_plan() {
 template <class Archive>
 void Solver::archive_state(Archive& a, std::string& phase) {
     a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, refined_, gathered_, certificate_, phase,
-      becomes_linear_);
+      steps_);
+    next_.archive_state(a);
     a(light_in_, allowed_in_, solution_.indirect, solution_.links, solution_.cells, solution_.direct_share,
       solution_.direct_in_elements, solution_.statistics);
     bool has_local_pass = local_pass_.has_value();
@@ -97,7 +98,6 @@ void Solver::resume() {
     archive_state(reader, resumed_phase_);
     EXI_CHECK(reader.good() && reader.left() == 0);  // the store has checked every byte
     statistics().threads = own.threads, statistics().schedule = own.schedule;
-    if (becomes_linear_) options_.basis = BasisKind::linear;
 }
 
 void Solver::keep(std::string phase) {

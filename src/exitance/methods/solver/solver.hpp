@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/methods/light/light_functions.hpp"
+#include "exitance/methods/light/next_light.hpp"
 #include "exitance/methods/light/unscaled_light.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/methods/solve_scene.hpp"
@@ -41,6 +41,8 @@ class Solver {
     void tell_exact();
     void stop_early(const char* why);
 
+    static constexpr int most_attempts = 9;
+
     // Attempts: method, local pass, certificate, until the certificate is content.
     void solve_indirect_light();
     /// One attempt: what the last one found is kept as far as it is good enough.
@@ -49,21 +51,23 @@ class Solver {
     /// Plain elements for when no time is left for a mesh that follows shadows.
     void project_coarsely();
     void find_light();
-    /// Finer constants need a number of elements and rays that grows with the square of the precision; linear functions
-    /// on the elements there are have a third of their error for three times the rays. So constants are for one
-    /// attempt.
-    bool may_become_linear() const { return plan_.may_become_linear && !becomes_linear_; }
-    void become_linear(const Knobs& before);
+    /// Knobs of the next attempt, and how it is made. One step of refinement on from what is delivered (`next_light`)
+    /// takes neither finer elements nor rows of the method, and of the gather what changes: it is taken where the
+    /// method is to blame and a forecast says that less work leads there so.
+    Tightened next_attempt(double demand);
+    /// What of the error is not of the local pass.
+    double not_local(const ErrorParts& parts) const;
+    void take_step();
     /// Of an attempt, with its estimate.
     bool has_light() const { return certificate_.points > 0; }
     /// Once a stop is asked for, what another attempt has found stands.
     bool gives_up() const { return stop_.requested() && has_light(); }
 
     // The function that is delivered.
-    /// Light everywhere, from what the method found: `b`, as elements where those are summed. `fresh`: it is not what
-    /// was gathered last. False when a request to stop cut that short.
-    bool deliver(std::span<const ElementGather> elements, const QuickFunction& b, bool fresh);
-    ElementFunction gather(const ReflectedLight& b, std::span<const ElementGather> elements, bool fresh);
+    /// Light everywhere, from what there is to gather: `b`, as elements where those are summed. `fresh`: it is not what
+    /// was gathered last, nor changed by little from that. False when a request to stop cut that short.
+    bool deliver(std::span<const ElementGather> elements, const ReadNextLight& b, bool fresh);
+    ElementFunction gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh);
     ElementFunction on_leaves() const;
     /// Functions as elements to be summed over; none where light is found by rays.
     std::vector<ElementGather> parts_to_sum(std::span<const ElementFunction> functions) const;
@@ -84,6 +88,9 @@ class Solver {
     static double margin(std::size_t points);
     void certify_solution(CertificateOptions options, std::optional<double> demand = {},
                           std::span<const ElementGather> gathered = {});
+    bool has_reached(double demand) const { return certificate_.largest() <= margin(certificate_.points) * demand; }
+    /// Is this attempt surely the last, or may a limit make it the last?
+    bool may_be_last(double demand) const;
     /// Direct light at points is exact, or within this where emitters are many.
     void add_clustering_error();
     /// Where direct light is all there is.
@@ -113,12 +120,18 @@ class Solver {
     std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
     std::optional<LocalPass> local_pass_;
     std::vector<ElementFunction> refined_;  ///< What is gathered in the end where light is summed, in parts.
+    NextLight next_;           ///< What is gathered where that is a step on from what was delivered; else no parts.
+    bool takes_step_ = false;  ///< Does this attempt begin with such a step?
+    /// What forecasts of another step rest on.
+    struct {
+        double not_local = 0;         ///< What `not_local` was before the last one; 0: none was taken.
+        std::size_t gather_rays = 0;  ///< The most that one attempt has gathered by.
+    } steps_;
     LocalPassReport gathered_;
     Certificate certificate_;
     int attempt_ = 1;
     Step step_ = Step::project;
     bool fresh_ = true;               ///< Does the method find new light in this attempt?
-    bool becomes_linear_ = false;     ///< What the method `matrix` takes for granted.
     Spectrum share_;                  ///< c of that light, see find_direct_share.
     std::vector<double> light_in_;    ///< Of every room by the mean light; empty where all is one room.
     std::vector<double> allowed_in_;  ///< What errors rooms may have, in proportion (`allowed_by_room`).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/solution.hpp"
@@ -48,8 +49,9 @@ struct Certificate {
     double estimate = 0;     ///< Relative RMS error of B, the defect propagated by a coarse solve,
     double uncertainty = 0;  ///< and its standard error: large where few points hold most of it.
     double bound = 0;        ///< The same, as an upper bound at 95% confidence.
-    double p99 = 0;          ///< What the error is below on 99% of the area, relative likewise; see `tell_p99`.
-    double residual = 0;     ///< Relative RMS of the residual r.
+    /// What the error is below on 99% of the area, relative likewise, once `tell_p99` has told it.
+    std::optional<double> p99 = {};
+    double residual = 0;  ///< Relative RMS of the residual r.
     /// Parts of the residual, relative RMS, when it is known what was gathered: how far the delivered light is from the
     /// gather of that (rays' noise and interpolation), and how far what was gathered is from what should have been (the
     /// method's elements). r = local + method.

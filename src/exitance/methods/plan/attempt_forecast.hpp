@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+namespace exitance {
+
+/// What a forecast of another attempt rests on: what the last one took and found, where the method is to blame.
+struct AttemptFacts {
+    double row_rays = 0;          ///< Of the method,
+    double gather_rays = 0;       ///< of all elements that light is gathered on, together,
+    double certificate_rays = 0;  ///< and of the estimate.
+    double method = 0;            ///< What of the error is not of the local pass,
+    double wanted = 0;            ///< and what is wanted of it.
+    double left = 0;              ///< Share of that part that one step of refinement leaves, as far as is known.
+    double finer = 1;             ///< Share of it that finer elements of the method leave.
+};
+
+/// Rays of the two ways to the same error: steps of refinement on from what is delivered (`next_light`), each of which
+/// gathers what changes, by an eighth of the rays, and is estimated; or finer elements, as many more of them as they
+/// err less, with as many more rays each, and everything gathered anew.
+struct AttemptForecast {
+    double steps = 1;  ///< How many steps are to be taken; infinite where they do not lead there.
+    double step_rays = 0, finer_rays = 0;
+    bool takes_steps() const { return step_rays <= finer_rays; }
+};
+
+AttemptForecast forecast_attempt(const AttemptFacts& facts);
+
+}  // namespace exitance
