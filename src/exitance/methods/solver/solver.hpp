@@ -116,7 +116,7 @@ class Solver {
     Solution solution_;
     Stage stage_;
     DirectProjection direct_;
-    UnscaledShare unscaled_;  ///< Of the light that is delivered.
+    UnscaledShare unscaled_;            ///< Of the light that is delivered.
     std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
     std::optional<LocalPass> local_pass_;
     std::vector<ElementFunction> refined_;  ///< What is gathered in the end where light is summed, in parts.
