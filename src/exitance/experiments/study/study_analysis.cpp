@@ -20,7 +20,7 @@ struct Curve {
 /// y over x of the chosen rows, by x; what is no number is left out.
 Curve curve_of(const Table& table, const std::string& x, const std::string& y, const RowFilter& where) {
     std::vector<std::pair<double, double>> points;
-    for (const std::size_t row : chosen_rows(table, where, true)) {
+    for (const std::size_t row : measured_rows(table, where, true)) {
         const double at = x.empty() ? 0 : table.number(row, x), value = table.number(row, y);
         if (std::isfinite(at) && std::isfinite(value)) points.emplace_back(at, value);
     }
@@ -46,9 +46,9 @@ double crossing(const Curve& a, const Curve& b) {
 /// The geometric mean of y over that of the other rows, of the same scene and parameter; at the largest x alone where
 /// `last`.
 double mean_ratio(const Table& table, const StudyConclusion& c, bool last) {
-    const std::vector<std::size_t> others = chosen_rows(table, c.against, true);
+    const std::vector<std::size_t> others = measured_rows(table, c.against, true);
     std::vector<std::pair<double, double>> ratios;  // by x
-    for (const std::size_t row : chosen_rows(table, c.where, true))
+    for (const std::size_t row : measured_rows(table, c.where, true))
         for (const std::size_t other : others) {
             const bool same_x = c.x.empty() || table.text(row, c.x) == table.text(other, c.x);
             if (table.text(row, "scene") != table.text(other, "scene") ||
@@ -134,6 +134,17 @@ std::vector<std::size_t> chosen_rows(const Table& table, const RowFilter& where,
         });
         if (fits) rows.push_back(row);
     }
+    return rows;
+}
+
+std::vector<std::size_t> measured_rows(const Table& table, const RowFilter& where, bool last_only) {
+    std::vector<std::size_t> rows = chosen_rows(table, where, last_only);
+    if (!table.has("status")) return rows;
+    std::erase_if(rows, [&](std::size_t row) {
+        const std::string& status = table.text(row, "status");
+        return status.starts_with("time limit") || status.starts_with("memory limit") ||
+               status.starts_with("not run") || status.starts_with("failed");
+    });
     return rows;
 }
 

@@ -7,6 +7,9 @@ namespace exitance {
 /// The rows that a filter lets through; `last_only`: of those with the column `is_last`, the last solutions alone.
 std::vector<std::size_t> chosen_rows(const Table& table, const RowFilter& where, bool last_only);
 
+/// The same without runs that met a limit, failed or did not run: what they took says nothing of what they would take.
+std::vector<std::size_t> measured_rows(const Table& table, const RowFilter& where, bool last_only);
+
 /// What a conclusion came to.
 struct Verdict {
     const StudyConclusion* conclusion = nullptr;

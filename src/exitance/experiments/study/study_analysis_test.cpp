@@ -46,6 +46,15 @@ TEST(StudyAnalysis, FitsFindWhatTheyWereMadeOf) {
     EXPECT_TRUE(std::isnan(fit_power({2, 2}, {1, 3})));
 }
 
+TEST(StudyAnalysis, RunsThatMetALimitAreNotMeasured) {
+    Table table = two_methods();
+    table.set("status", "memory limit");  // of the last row of b, at x = 8
+    EXPECT_EQ(chosen_rows(table, {{"row", {"b"}}}, true).size(), 4u);
+    const std::vector<std::size_t> rows = measured_rows(table, {{"row", {"b"}}}, true);
+    ASSERT_EQ(rows.size(), 3u);
+    for (const std::size_t row : rows) EXPECT_LT(table.number(row, "parameter"), 8);
+}
+
 TEST(StudyAnalysis, MeasuresTakeLastSolutionsAlone) {
     const RowFilter a{{"row", {"a"}}}, b{{"row", {"b"}}};
     EXPECT_NEAR(measured(Measure::slope, "relative_rms_error", a), -1, 1e-6);

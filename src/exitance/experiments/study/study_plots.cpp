@@ -71,7 +71,7 @@ bool is_log(const StudyPlot& plot, char axis) {
 /// where solutions on the way are among them.
 std::vector<PlotCurve> curves_of(const Table& table, const StudyPlot& plot, const std::string& panel) {
     std::vector<PlotCurve> curves;
-    for (const std::size_t row : chosen_rows(table, plot.where, !plot.checkpoints)) {
+    for (const std::size_t row : measured_rows(table, plot.where, !plot.checkpoints)) {
         if (!plot.panel.empty() && table.text(row, plot.panel) != panel) continue;
         const double x = table.number(row, plot.x), y = table.number(row, plot.y);
         const bool drawn =
@@ -91,7 +91,7 @@ std::vector<PlotCurve> curves_of(const Table& table, const StudyPlot& plot, cons
 std::vector<PlotLabel> labels_of(const Table& table, const StudyPlot& plot, const std::string& panel) {
     std::vector<PlotLabel> labels;
     if (plot.labels.empty()) return labels;
-    for (const std::size_t row : chosen_rows(table, plot.where, !plot.checkpoints)) {
+    for (const std::size_t row : measured_rows(table, plot.where, !plot.checkpoints)) {
         const double x = table.number(row, plot.x), y = table.number(row, plot.y);
         const double value = table.number(row, plot.labels);
         if ((!plot.panel.empty() && table.text(row, plot.panel) != panel) || !(std::isfinite(x) && std::isfinite(y)))
@@ -107,7 +107,7 @@ std::vector<PlotLabel> labels_of(const Table& table, const StudyPlot& plot, cons
 std::vector<std::string> panels_of(const Table& table, const StudyPlot& plot) {
     if (plot.panel.empty()) return {""};
     std::vector<std::string> panels;
-    for (const std::size_t row : chosen_rows(table, plot.where, !plot.checkpoints))
+    for (const std::size_t row : measured_rows(table, plot.where, !plot.checkpoints))
         if (const std::string& text = table.text(row, plot.panel);
             std::find(panels.begin(), panels.end(), text) == panels.end())
             panels.push_back(text);
