@@ -30,8 +30,8 @@ struct SolveReport {
     double residual = 0;         ///< Relative, see StopRule.
     bool converged = false;
     bool interrupted = false;
-    /// Power that comes back by reflection after the first one, sum_i A_i (b_i - rhs_i), had F not been scaled to lose no
-    /// light, by what it is; a value a band. 1 where it was not (`solve_conserving`).
+    /// Power that comes back by reflection after the first one, sum_i A_i (b_i - rhs_i), had F not been scaled to lose
+    /// no light, by what it is; a value a band. 1 where it was not (`solve_conserving`).
     Spectrum unscaled{1.0};
 };
 
