@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <vector>
 
 #include "exitance/core/check.hpp"
 #include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/scene/other_side.hpp"
+#include "exitance/visibility/glass/ray_fates.hpp"
 #include "exitance/visibility/rays.hpp"
 
 namespace exitance {
@@ -68,29 +67,13 @@ void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& d
     rays.time[lane] = 0, rays.mask[lane] = 0xffffffffu, rays.id[lane] = 0, rays.flags[lane] = 0;
 }
 
-/// Panes of glass as rays meet them: one in so many is stopped, as the share of the light that does not pass asks for,
-/// and of these so many are mirrored. Which ones these are follows from the ray and the pane alone.
+/// Glass as Embree asks about it, triangle by triangle.
 struct Glass {
-    static constexpr std::size_t steps = 256;
-    using Table = std::array<float, steps + 1>;  ///< By the cosine, mean over bands.
-    enum class Fate { passes, is_mirrored, is_absorbed };
-    std::vector<std::uint32_t> pane_of;  ///< Of every triangle.
-    std::vector<Normal> normal;          ///< Of every pane.
-    std::vector<Table> through, back;
+    RayFates fates;
+    std::vector<std::uint32_t> pane_of = {};  ///< Of every triangle.
 
-    Fate fate(const Float3& origin, const Float3& d, std::uint32_t triangle) const {
-        const std::uint32_t pane = pane_of[triangle];
-        const Vec3 w = normalized(Vec3{d.x, d.y, d.z});
-        const double at = std::min(1.0, std::abs(dot(normal[pane], w))) * steps;
-        const auto k = std::min(static_cast<std::size_t>(at), steps - 1);
-        const double share = at - static_cast<double>(k);
-        const auto look_up = [&](const Table& t) { return (1 - share) * t[k] + share * t[k + 1]; };
-        std::uint64_t key = hash(0x676c617373u, pane);
-        for (const float v : {origin.x, origin.y, origin.z, d.x, d.y, d.z})
-            key = hash(key, std::bit_cast<std::uint32_t>(v));
-        const double chance = static_cast<double>(key >> 11) * 0x1p-53, T = look_up(through[pane]);
-        if (chance < T) return Fate::passes;
-        return chance < T + look_up(back[pane]) ? Fate::is_mirrored : Fate::is_absorbed;
+    RayFate fate(const Float3& o, const Float3& d, std::uint32_t triangle) const {
+        return fates({o.x, o.y, o.z}, {d.x, d.y, d.z}, pane_of[triangle]);
     }
 };
 
@@ -102,7 +85,7 @@ void filter_glass(const RTCFilterFunctionNArguments* arguments) {
         const unsigned n = arguments->N;
         const Float3 origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)};
         const Float3 d{RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)};
-        if (glass.fate(origin, d, RTCHitN_primID(arguments->hit, n, i)) == Glass::Fate::passes) arguments->valid[i] = 0;
+        if (glass.fate(origin, d, RTCHitN_primID(arguments->hit, n, i)) == RayFate::passes) arguments->valid[i] = 0;
     }
 }
 
@@ -134,7 +117,8 @@ struct RayTracer::Content {
           device(rtcNewDevice(nullptr)),
           rtc(rtcNewScene(device)),
           faces(s.surfaces().size()),
-          other_side(other_sides_of_surfaces(s)) {
+          other_side(other_sides_of_surfaces(s)),
+          glass{RayFates(s.panes())} {
         Triangles all;
         auto& [corners, triangles] = all;
         for (SurfaceId id : s.surfaces().ids()) {
@@ -179,20 +163,15 @@ struct RayTracer::Content {
     void add_glass() {
         if (scene->panes().empty()) return;
         Triangles all;
+        std::uint32_t number = 0;
         for (const Pane& pane : scene->panes()) {
             const auto first = static_cast<std::uint32_t>(all.corners.size());
             for (const Point& p : pane.corners) all.corners.push_back(local(p));
             for (std::uint32_t i = 2; i < pane.corners.size(); ++i) {
                 all.triangles.push_back({first, first + i - 1, first + i});
-                glass.pane_of.push_back(static_cast<std::uint32_t>(glass.normal.size()));
+                glass.pane_of.push_back(number);
             }
-            glass.normal.push_back(pane.n);
-            auto &through = glass.through.emplace_back(), &back = glass.back.emplace_back();
-            for (std::size_t k = 0; k <= Glass::steps; ++k) {
-                const double cosine = static_cast<double>(k) / Glass::steps;
-                through[k] = static_cast<float>(mean(pane.transmission(cosine)));
-                back[k] = static_cast<float>(mean(pane.reflection(cosine)));
-            }
+            ++number;
         }
         attach(all, &glass);
     }
@@ -237,7 +216,7 @@ struct RayTracer::Content {
         const RTCRay16& ray = packet.ray;
         return glass.fate({ray.org_x[lane], ray.org_y[lane], ray.org_z[lane]},
                           {ray.dir_x[lane], ray.dir_y[lane], ray.dir_z[lane]},
-                          packet.hit.primID[lane]) == Glass::Fate::is_mirrored;
+                          packet.hit.primID[lane]) == RayFate::is_mirrored;
     }
 
     /// Goes on where panes have mirrored rays of a packet; what other panes stop then is stopped.
@@ -345,7 +324,7 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
             if (!content_->read(packet, i, origin, direction, side, hits[first + i]))
                 content_->retry(origin, direction, side, packet.ray.tfar[i], hits[first + i]);
         }
-        if (mirrored == Mirrored::followed && !content_->glass.normal.empty())
+        if (mirrored == Mirrored::followed && !content_->glass.pane_of.empty())
             content_->follow_mirrored(
                 packet, count, [&](std::size_t i) { return origins[shared ? 0 : first + i]; }, &directions[first],
                 &hits[first]);
