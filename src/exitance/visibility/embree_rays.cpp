@@ -71,21 +71,17 @@ void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& d
 struct Glass {
     RayFates fates;
     std::vector<std::uint32_t> pane_of = {};  ///< Of every triangle.
-
-    RayFate fate(const Float3& o, const Float3& d, std::uint32_t triangle) const {
-        return fates({o.x, o.y, o.z}, {d.x, d.y, d.z}, pane_of[triangle]);
-    }
 };
 
 void filter_glass(const RTCFilterFunctionNArguments* arguments) {
     const auto& glass = *static_cast<const Glass*>(arguments->geometryUserPtr);
-    for (unsigned i = 0; i < arguments->N; ++i) {
+    RTCRayN* ray = arguments->ray;
+    for (unsigned i = 0, n = arguments->N; i < n; ++i) {
         if (arguments->valid[i] != -1) continue;
-        RTCRayN* ray = arguments->ray;
-        const unsigned n = arguments->N;
-        const Float3 origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)};
-        const Float3 d{RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)};
-        if (glass.fate(origin, d, RTCHitN_primID(arguments->hit, n, i)) == RayFate::passes) arguments->valid[i] = 0;
+        const std::array origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)};
+        const std::array d{RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)};
+        if (glass.fates(origin, d, glass.pane_of[RTCHitN_primID(arguments->hit, n, i)]) == RayFate::passes)
+            arguments->valid[i] = 0;
     }
 }
 
@@ -163,8 +159,7 @@ struct RayTracer::Content {
     void add_glass() {
         if (scene->panes().empty()) return;
         Triangles all;
-        std::uint32_t number = 0;
-        for (const Pane& pane : scene->panes()) {
+        for (std::uint32_t number = 0; const Pane& pane : scene->panes()) {
             const auto first = static_cast<std::uint32_t>(all.corners.size());
             for (const Point& p : pane.corners) all.corners.push_back(local(p));
             for (std::uint32_t i = 2; i < pane.corners.size(); ++i) {
@@ -213,10 +208,10 @@ struct RayTracer::Content {
 
     bool is_mirrored(const RTCRayHit16& packet, std::size_t lane) const {
         if (packet.hit.geomID[lane] != 1) return false;
-        const RTCRay16& ray = packet.ray;
-        return glass.fate({ray.org_x[lane], ray.org_y[lane], ray.org_z[lane]},
-                          {ray.dir_x[lane], ray.dir_y[lane], ray.dir_z[lane]},
-                          packet.hit.primID[lane]) == RayFate::is_mirrored;
+        const auto& [ray, hit] = packet;
+        return glass.fates({ray.org_x[lane], ray.org_y[lane], ray.org_z[lane]},
+                           {ray.dir_x[lane], ray.dir_y[lane], ray.dir_z[lane]},
+                           glass.pane_of[hit.primID[lane]]) == RayFate::is_mirrored;
     }
 
     /// Goes on where panes have mirrored rays of a packet; what other panes stop then is stopped.
