@@ -77,13 +77,12 @@ std::string summary(const SolveStatistics& s) {
     line("solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
     if (s.standard_error > 0)
         line("noise", fmt::format("standard error {} of the light that the method found", percent(s.standard_error)));
-    const auto defect_before = s.figures.find("energy_defect_before");
+    const std::string apart = percent(s.energy.defect);
+    const auto found = s.figures.find("energy_defect_before");
+    const std::string before = found != s.figures.end() ? percent(found->second) : apart;
     line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {}{} apart{}", s.energy.emitted, s.energy.absorbed,
-                               s.energy.escaped > 0 ? fmt::format("{:.4g} escaped, ", s.energy.escaped) : "",
-                               percent(s.energy.defect),
-                               defect_before != s.figures.end()
-                                   ? fmt::format(" ({} before light was scaled)", percent(defect_before->second))
-                                   : std::string()));
+                               s.energy.escaped > 0 ? fmt::format("{:.4g} escaped, ", s.energy.escaped) : "", apart,
+                               before != apart ? fmt::format(" ({} before light was scaled)", before) : ""));
     const auto processes = s.figures.find("processes");
     line("time", fmt::format("{} on {} thread{}{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s",
                              processes != s.figures.end() ? fmt::format(" of {} processes each", processes->second)
