@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 #include "cli/small_scene.hpp"
+#include "exitance/core/archive.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 
 namespace exitance::test {
@@ -19,6 +22,15 @@ std::string light_in(const TemporaryFolder& folder, const std::string& name) {
     const std::string plain = folder / (name + ".plain");
     EXPECT_TRUE(write_solution(plain, *solution));
     return read_text(plain);
+}
+
+/// The process that `parent` has started last.
+pid_t last_child(pid_t parent) {
+    const std::string number = std::to_string(parent);
+    std::istringstream children(read_text("/proc/" + number + "/task/" + number + "/children"));
+    pid_t last = 0;
+    for (pid_t child; children >> child;) last = child;
+    return last > 0 ? last : parent;
 }
 
 class ProgramOfProcesses : public ::testing::Test {
@@ -43,21 +55,36 @@ class ProgramOfProcesses : public ::testing::Test {
         return all;
     }
     static Finished run_on(int processes, const std::vector<std::string>& words) {
+        if (processes == 1) return run_program(words);
         return RunningProgram(launched(processes, words), {}, mpirun).finish();
+    }
+    /// What is kept of `several.h5`: the checkpoint, then the parts of processes 1, 2, ...
+    std::vector<std::string> kept_files() const {
+        std::vector<std::string> files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / "."))
+            if (entry.path().filename().string().starts_with("several.h5.checkpoint"))
+                files.push_back(folder / entry.path().filename().string());
+        std::sort(files.begin(), files.end());
+        return files;
+    }
+    /// A solve of `several.h5` that is asked to stop while it gathers.
+    void stop_in_the_gather(int processes, const std::string& error) const {
+        const std::vector<std::string> words =
+            solve("several", {"--error", error, "--checkpoint-every", "1e-9", "--resume", "--progress", "json"});
+        RunningProgram run =
+            processes == 1 ? RunningProgram(words) : RunningProgram(launched(processes, words), {}, mpirun);
+        while (!std::filesystem::exists(folder / "several.h5.checkpoint")) ASSERT_TRUE(run.wait_for("phase"));
+        ASSERT_TRUE(run.wait_for("\"gather\""));
+        if (processes == 1)
+            run.send(SIGTERM);
+        else
+            ASSERT_EQ(kill(last_child(run.process()), SIGTERM), 0);
+        EXPECT_EQ(run.finish().status, 143);
     }
 
     TemporaryFolder folder;
     std::string scene;
 };
-
-/// The process that `parent` has started last.
-pid_t last_child(pid_t parent) {
-    const std::string number = std::to_string(parent);
-    std::istringstream children(read_text("/proc/" + number + "/task/" + number + "/children"));
-    pid_t last = 0;
-    for (pid_t child; children >> child;) last = child;
-    return last > 0 ? last : parent;
-}
 
 /// How often `text` stands in `all`.
 std::size_t times(const std::string& all, const std::string& text) {
@@ -174,8 +201,65 @@ TEST_F(ProgramOfProcesses, GoOnFromACheckpointInAnotherNumber) {
     const Finished resumed = run_on(4, solve("several", {"--error", error, "--resume"}));
     EXPECT_EQ(resumed.status, 0) << resumed.err;
     EXPECT_EQ(times(resumed.err, "going on from"), 1u) << resumed.err;
-    EXPECT_FALSE(std::filesystem::exists(kept));
+    EXPECT_TRUE(kept_files().empty());
     EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one"));
+}
+
+TEST_F(ProgramOfProcesses, KeepAPartEachThatAnyNumberGoesOnFrom) {
+    const std::string error = "0.02";
+    ASSERT_EQ(run_program(solve("one", {"--error", error})).status, 0);
+    for (const auto& [before, after] : {std::pair{1, 2}, {2, 1}, {3, 2}, {4, 3}}) {
+        SCOPED_TRACE(std::to_string(before) + " processes, then " + std::to_string(after));
+        stop_in_the_gather(before, error);
+        const std::vector<std::string> files = kept_files();
+        ASSERT_EQ(files.size(), static_cast<std::size_t>(before)) << "and none of those kept before";
+        std::uintmax_t least = ~std::uintmax_t(0), most = 0;
+        for (const std::string& file : files) {
+            const std::uintmax_t size = std::filesystem::file_size(file);
+            least = std::min(least, size), most = std::max(most, size);
+        }
+        EXPECT_LE(most - least, 2 * DealtBytes::block) << "dealt out by blocks; the first one says what it is of";
+        const Finished resumed = run_on(after, solve("several", {"--error", error, "--resume"}));
+        EXPECT_EQ(resumed.status, 0) << resumed.err;
+        EXPECT_EQ(times(resumed.err, "going on from"), 1u) << resumed.err;
+        EXPECT_TRUE(kept_files().empty());
+        std::filesystem::remove(folder / "one.plain"), std::filesystem::remove(folder / "several.plain");
+        EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one"));
+        std::filesystem::remove(folder / "several.h5");
+    }
+}
+
+TEST_F(ProgramOfProcesses, RefuseACheckpointWithoutThePartsThatItWasWrittenWith) {
+    const std::string error = "0.02";
+    stop_in_the_gather(3, error);
+    ASSERT_EQ(kept_files().size(), 3u);
+    const std::string older = read_text(kept_files()[1]);
+    stop_in_the_gather(3, error);
+    const std::vector<std::string> files = kept_files();
+    ASSERT_EQ(files.size(), 3u);
+    const std::string whole = read_text(files[0]), first = read_text(files[1]), second = read_text(files[2]);
+    const auto expect_refused = [&](int processes, const std::string& file, const std::string& why) {
+        const Finished run = run_on(processes, solve("several", {"--error", error, "--resume"}));
+        EXPECT_EQ(run.status, 3) << run.err;
+        EXPECT_EQ(times(run.err, "error: " + file + ": "), 1u) << run.err;
+        EXPECT_NE(run.err.find(why), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find("without --resume"), std::string::npos) << run.err;
+    };
+    write_text(files[1], first.substr(0, first.size() - 1));
+    expect_refused(1, files[1], std::to_string(first.size() - 1) + " bytes");
+    std::string other = first;
+    other[first.size() / 2] ^= 1;
+    write_text(files[1], other);
+    expect_refused(2, files[1], "a part of another checkpoint");
+    std::filesystem::remove(files[1]);
+    expect_refused(4, files[1], "is missing");
+    write_text(files[1], first), write_text(files[2], first + second);
+    expect_refused(2, files[2], std::to_string(first.size() + second.size()) + " bytes");
+    write_text(files[2], second), write_text(files[0], whole.substr(0, whole.size() / 2));
+    expect_refused(2, files[0], "is damaged");
+    write_text(files[0], whole);
+    EXPECT_EQ(run_on(2, solve("several", {"--error", error, "--resume"})).status, 0);
+    EXPECT_TRUE(kept_files().empty());
 }
 
 }  // namespace exitance::test

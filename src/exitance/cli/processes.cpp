@@ -54,13 +54,6 @@ CheckedScene load_for_all(const SceneArguments& scene) {
     return checked;
 }
 
-SharedCheckpoints::SharedCheckpoints(CheckpointStore* file)
-    : file_(file), state_(as_first(file ? file->resumed() : std::string(), "checkpoint")) {}
-
-bool SharedCheckpoints::is_due() const {
-    return as_first(file_ && file_->is_due()) && file_;
-}
-
 std::optional<ExitCode> signal_of_any(std::optional<ExitCode> own) {
     const double any = largest_of_all(own ? static_cast<double>(*own) : 0);
     return any > 0 ? std::optional(static_cast<ExitCode>(static_cast<int>(any))) : std::nullopt;

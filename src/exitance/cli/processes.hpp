@@ -5,7 +5,6 @@
 
 #include "exitance/cli/arguments.hpp"
 #include "exitance/cli/exit_code.hpp"
-#include "exitance/core/checkpoint.hpp"
 #include "exitance/reconstruct/solution.hpp"
 
 namespace exitance {
@@ -15,22 +14,6 @@ Result<void> check_processes(const SolveArguments& arguments);
 
 /// The scene, which the first process reads and checks, for all.
 CheckedScene load_for_all(const SceneArguments& scene);
-
-/// The first process's checkpoints, for all: they go on from one state, and keep it at the same places.
-class SharedCheckpoints final : public CheckpointStore {
-  public:
-    /// `file`: of the first process; null for the others.
-    explicit SharedCheckpoints(CheckpointStore* file);
-
-    /// True for the first process alone, which then keeps the state that all have.
-    bool is_due() const override;
-    void keep(std::string state) override { file_->keep(std::move(state)); }
-    std::string resumed() const override { return state_; }
-
-  private:
-    CheckpointStore* file_;
-    std::string state_;
-};
 
 /// The exit status for a signal that any of the processes has received.
 std::optional<ExitCode> signal_of_any(std::optional<ExitCode> own);

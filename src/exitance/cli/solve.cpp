@@ -164,13 +164,11 @@ Result<void> check_scene(const SolveArguments& arguments, const Scene& scene) {
     return {};
 }
 
-/// The light that is asked for. `checkpoint`: the first process's file, where it keeps one.
+/// The light that is asked for.
 Result<Solution> find_light(const SolveArguments& arguments, Scene scene, std::optional<CheckpointFile>& checkpoint,
                             Progress& progress, const StopRequest& stop) {
-    std::optional<SharedCheckpoints> checkpoints;
-    if (arguments.checkpoint_every || arguments.resume) checkpoints.emplace(checkpoint ? &*checkpoint : nullptr);
     if (arguments.classical.any()) return run_classical(arguments, scene, progress, stop);
-    return solve_scene(std::move(scene), arguments.options, progress, stop, checkpoints ? &*checkpoints : nullptr);
+    return solve_scene(std::move(scene), arguments.options, progress, stop, checkpoint ? &*checkpoint : nullptr);
 }
 
 /// What the solution says of the run so far.
@@ -239,10 +237,8 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const StopRequest& stop = processes() > 1 ? agreed : asked;
     if (arguments.time_limit)
         asked.set_deadline(after(time_to_solve(*arguments.time_limit, run_time.seconds(), read_seconds)));
-    std::optional<CheckpointFile> checkpoint;  // of the first process
-    if (const Result<void> opened =
-            by_first([&] { return open_checkpoint(arguments, *checked.scene, terminal, checkpoint); });
-        !opened)
+    std::optional<CheckpointFile> checkpoint;
+    if (const Result<void> opened = open_checkpoint(arguments, *checked.scene, terminal, checkpoint); !opened)
         return terminal.fail(opened.error());
     Result<Solution> solution = find_light(arguments, std::move(*checked.scene), checkpoint, tracing.progress(), stop);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +16,29 @@
 
 namespace exitance {
 
+/// Bytes that are dealt out among `of` writers in blocks, like cards: block b is that of writer b % of.
+struct DealtBytes {
+    static constexpr std::size_t block = std::size_t(1) << 14;
+
+    std::size_t own = 0, of = 1;  ///< Which writer this is, and how many there are.
+};
+
+/// All bytes, from what each writer has of them; empty where these are not as they were dealt.
+inline std::string put_together(std::span<const std::string> dealt) {
+    std::string all;
+    std::size_t size = 0;
+    for (const std::string& part : dealt) size += part.size();
+    all.reserve(size);
+    for (std::size_t b = 0; all.size() < size; ++b) {
+        const std::string& part = dealt[b % dealt.size()];
+        const std::size_t first = b / dealt.size() * DealtBytes::block,
+                          count = std::min(DealtBytes::block, size - all.size());
+        if (first > part.size() || part.size() - first < count) return {};
+        all.append(part, first, count);
+    }
+    return all;
+}
+
 /// Values as bytes, for the same program on the same machine to read again. What is written and what is read is said
 /// once, for both directions:
 ///
@@ -22,14 +47,27 @@ class ArchiveWriter {
   public:
     static constexpr bool reads = false;
 
+    /// Keeps what of all that is written is dealt to this writer; the others write the same.
+    explicit ArchiveWriter(DealtBytes dealt = {}) : dealt_(dealt) {}
+
     template <class... T>
     void operator()(T&... values) {
         (archive(*this, values), ...);
     }
-    void raw(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+    void raw(const void* data, std::size_t size) {
+        const char* from = static_cast<const char*>(data);
+        for (std::size_t count = 0; size > 0; from += count, size -= count, written_ += count) {
+            count = std::min(size, DealtBytes::block - written_ % DealtBytes::block);
+            if (written_ / DealtBytes::block % dealt_.of == dealt_.own) bytes_.append(from, count);
+        }
+    }
+    /// How many bytes all writers have together.
+    std::size_t size() const { return written_; }
     std::string take() { return std::move(bytes_); }
 
   private:
+    DealtBytes dealt_;
+    std::size_t written_ = 0;
     std::string bytes_;
 };
 

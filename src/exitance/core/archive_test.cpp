@@ -47,6 +47,29 @@ TEST(Archive, GivesBackWhatWasPutIn) {
     EXPECT_EQ(out.field.size(), 3u);
 }
 
+TEST(Archive, WhatIsDealtOutComesTogetherAgain) {
+    std::vector<int> in(3 * DealtBytes::block / sizeof(int) + 5);
+    for (std::size_t i = 0; i < in.size(); ++i) in[i] = static_cast<int>(i);
+    std::string name = "room";
+    ArchiveWriter whole;
+    whole(name, in);
+    const std::size_t size = whole.size();
+    const std::string bytes = whole.take();
+    EXPECT_EQ(size, bytes.size());
+    for (std::size_t of : {1, 2, 3, 7}) {
+        std::vector<std::string> dealt;
+        for (std::size_t own = 0; own < of; ++own) {
+            ArchiveWriter writer({own, of});
+            writer(name, in);
+            EXPECT_EQ(writer.size(), size);
+            dealt.push_back(writer.take());
+        }
+        EXPECT_TRUE(put_together(dealt) == bytes) << of;
+        dealt[0] += dealt[0];
+        EXPECT_TRUE(of == 1 || put_together(dealt).empty()) << of;
+    }
+}
+
 TEST(Archive, WhatIsCutShortIsNoticedAndTakesNoMemory) {
     Thing in = sample();
     ArchiveWriter writer;

@@ -8,17 +8,18 @@
 
 namespace exitance {
 
-/// Where a long run keeps its state from time to time, so that another run can go on from there.
+/// Where a long run keeps its state from time to time, so that another run can go on from there. Where several
+/// processes make the run, all of them call it at the same places.
 class CheckpointStore {
   public:
     virtual ~CheckpointStore() = default;
 
     /// Is it time to keep the state again?
     virtual bool is_due() const = 0;
-    /// Keeps a state in place of the one before.
-    virtual void keep(std::string state) = 0;
-    /// The state to go on from; empty: begin at the beginning.
-    virtual std::string resumed() const = 0;
+    /// Keeps a state in place of the one before; of several processes, each gives what of it is dealt to it.
+    virtual void keep(std::string dealt) = 0;
+    /// Hands over the whole state to go on from; empty: begin at the beginning.
+    virtual std::string resumed() = 0;
 };
 
 /// What a long phase is given, so that its own state can be kept between its rounds. The state of everything around the

@@ -12,7 +12,7 @@ class AllStates final : public CheckpointStore {
     explicit AllStates(std::string begin = {}) : begin_(std::move(begin)) {}
     bool is_due() const override { return true; }
     void keep(std::string state) override { states.push_back(std::move(state)); }
-    std::string resumed() const override { return begin_; }
+    std::string resumed() override { return begin_; }
 
     std::vector<std::string> states;
 
@@ -128,7 +128,7 @@ TEST(Checkpoint, ADiscontinuityMeshThatWasInterruptedGoesOnWithWhatItHad) {
             last = std::move(state);
             if (--left_ == 0) stop_.interrupt();
         }
-        std::string resumed() const override { return {}; }
+        std::string resumed() override { return {}; }
         std::string last;
 
       private:

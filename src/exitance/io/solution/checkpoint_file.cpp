@@ -5,25 +5,17 @@
 #include <algorithm>
 #include <bit>
 #include <filesystem>
+#include <limits>
 
 #include "exitance/core/random.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr std::string_view first_line = "exitance checkpoint 1\n";
-
-std::uint64_t checksum(std::string_view bytes) {
-    std::uint64_t sum = bytes.size();
-    for (; !bytes.empty(); bytes.remove_prefix(std::min<std::size_t>(8, bytes.size()))) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, bytes.data(), std::min<std::size_t>(8, bytes.size()));
-        sum = hash(sum ^ word);
-    }
-    return sum;
-}
+constexpr std::string_view first_line = "exitance checkpoint 2\n";
 
 /// Numbers drawn into one hash.
 class Fingerprint {
@@ -114,6 +106,20 @@ CheckpointFile::CheckpointFile(std::string path, CheckpointFacts facts, double e
 }
 
 Result<bool> CheckpointFile::load() {
+    bool is_there = false;
+    const Result<void> done = by_first([&]() -> Result<void> {
+        const Result<bool> found = read();
+        if (!found) return found.error();
+        is_there = *found;
+        return {};
+    });
+    if (!done) return done.error();
+    state_ = as_first(std::move(state_), "checkpoint");
+    return as_first(is_there);
+}
+
+/// By the first process.
+Result<bool> CheckpointFile::read() {
     std::error_code ignored;
     if (!std::filesystem::exists(path_, ignored)) return false;
     Result<std::string> content = read_whole_file(path_);
@@ -125,40 +131,84 @@ Result<bool> CheckpointFile::load() {
     std::uint64_t sum = 0;
     reader(sum);
     if (!reader.good() || sum != checksum(bytes.substr(sizeof sum))) return damaged(path_);
-    std::vector<std::string> names, values;
-    reader(names, values, state_);
+    std::vector<std::string> names, values, dealt(1);
+    std::vector<CheckpointPart> parts;
+    reader(names, values, generation_, parts, dealt[0]);
     if (!reader.good() || reader.left() != 0 || names.size() != values.size()) return damaged(path_);
     CheckpointFacts kept;
     for (std::size_t i = 0; i < names.size(); ++i) kept.emplace_back(names[i], values[i]);
     if (const std::string differs = difference(kept, facts_); !differs.empty())
         return Error{ErrorCode::bad_input, "is of another solve: " + differs, path_,
                      "run as before, or without --resume to begin anew"};
+    *content = {};
+    for (std::size_t p = 1; p <= parts.size(); ++p) {
+        Result<std::string> part = read_checkpoint_part(path_, generation_, p, parts[p - 1]);
+        if (!part) return part.error();
+        dealt.push_back(std::move(*part));
+    }
+    state_ = put_together(dealt);
+    if (state_.empty()) return damaged(path_);
     return true;
 }
 
-void CheckpointFile::keep(std::string state) {
+bool CheckpointFile::is_due() const {
+    return as_first(watch_.seconds() >= every_);
+}
+
+void CheckpointFile::keep(std::string dealt) {
+    struct Written {
+        CheckpointPart part;
+        bool is_whole = true;
+    };
+    if (is_first_process()) generation_ = std::max(generation_, last_checkpoint_generation(path_)) + 1;
+    generation_ = as_first(generation_);
+    std::vector<Written> all(processes());
+    Written& own = all[own_process()];
+    if (!is_first_process()) {
+        own.part = {dealt.size(), checksum(dealt)};
+        own.is_whole = static_cast<bool>(write_file(checkpoint_part_path(path_, generation_, own_process()), dealt));
+    }
+    exchange_values(
+        all.size(), 1, [&](std::size_t p) -> Written& { return all[p]; }, "checkpoint");
+    written_ = by_first([&]() -> Result<void> {
+        std::vector<CheckpointPart> parts;
+        for (std::size_t p = 1; p < all.size(); ++p) {
+            if (!all[p].is_whole)
+                return Error{ErrorCode::cannot_write, fmt::format("cannot be written by process {}", p),
+                             checkpoint_part_path(path_, generation_, p), ""};
+            parts.push_back(all[p].part);
+        }
+        return write(std::move(parts), std::move(dealt));
+    });
+    // What was kept before goes when this stands; where this does not, its parts go.
+    if (is_first_process())
+        remove_checkpoint_parts(path_, written_ ? 0 : generation_, written_ ? generation_ : generation_ + 1);
+    watch_.restart();
+}
+
+/// What is written last: of the first process, `dealt` its part.
+Result<void> CheckpointFile::write(std::vector<CheckpointPart> parts, std::string dealt) const {
     std::vector<std::string> names, values;
     for (const auto& [name, value] : facts_) names.push_back(name), values.push_back(value);
+    std::uint64_t generation = generation_;
     ArchiveWriter writer;
-    writer(names, values, state);
-    state.clear();
+    writer(names, values, generation, parts, dealt);
+    dealt.clear();
     const std::string body = writer.take();
     std::uint64_t sum = checksum(body);
     ArchiveWriter head;
     head(sum);
-    written_ = {};
-    if (Result<AtomicFile> file = AtomicFile::create(path_)) {
-        file->write(first_line), file->write(head.take()), file->write(body);
-        written_ = file->commit();
-    } else {
-        written_ = file.error();
-    }
-    watch_.restart();
+    Result<AtomicFile> file = AtomicFile::create(path_);
+    if (!file) return file.error();
+    file->write(first_line), file->write(head.take()), file->write(body);
+    return file->commit();
 }
 
 void CheckpointFile::remove() const {
+    if (!is_first_process()) return;
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);
+    remove_checkpoint_parts(path_, 0, std::numeric_limits<std::uint64_t>::max());
 }
 
 }  // namespace exitance

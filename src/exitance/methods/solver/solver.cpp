@@ -101,8 +101,15 @@ void Solver::resume() {
 }
 
 void Solver::keep(std::string phase) {
-    ArchiveWriter writer;
+    // All processes hold the same state but for what they tell of themselves.
+    ArchiveWriter told;
+    told(statistics());
+    const std::string of_first = as_first(told.take(), "checkpoint");
+    ArchiveReader reader(of_first);
+    reader(statistics());
+    ArchiveWriter writer({own_process(), processes()});
     archive_state(writer, phase);
+    EXI_CHECK(as_first(writer.size()) == writer.size());
     checkpoints_->keep(writer.take());
 }
 
