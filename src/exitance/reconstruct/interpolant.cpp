@@ -125,8 +125,10 @@ class Interpolation {
         // Nodes of a large mesh take their time: what is cut short is delivered with its steps.
         ElementFunction out =
             stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts, &stop);
-        for (auto& value : out.values)  // all light together is nowhere below zero
-            for (float& of_band : value) of_band = std::max(of_band, 0.0f);
+        // All light together is nowhere below zero. Only what changes is written: pages stand once a node until then.
+        for (auto& value : out.values)
+            for (float& of_band : value)
+                if (of_band < 0) of_band = 0;
         share_on_node(std::span(out.values));
         shared_ranges_of(
             fitted_.span(), apart.tree.size(), 64,
