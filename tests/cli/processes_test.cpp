@@ -118,6 +118,8 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
                          messages = written->statistics.figures["messages_solve"], p = processes;
             if (processes == 2) bytes_of_two = bytes, messages_of_two = messages;
             EXPECT_GT(bytes, 0);
+            for (const char* part : {"dealt", "repeated"})
+                EXPECT_GT(written->statistics.figures[part + std::string("_processor_seconds")], 0);
             if (is_linear) continue;
             EXPECT_EQ(bytes, (p - 1) * bytes_of_two);
             EXPECT_EQ(messages, p * (p - 1) / 2 * messages_of_two);

@@ -79,6 +79,13 @@ void record_processes(SolveStatistics& statistics) {
         bytes += figures["message_bytes_" + name] = sum_of_all(static_cast<double>(t.bytes));
     }
     figures["messages"] = messages, figures["message_bytes"] = bytes;
+    record_processor_time(statistics);
+}
+
+void record_processor_time(SolveStatistics& statistics) {
+    const double dealt = result_sharing().dealt_seconds;
+    statistics.figures["dealt_processor_seconds"] = sum_of_all(dealt);
+    statistics.figures["repeated_processor_seconds"] = as_first(processor_seconds() - dealt);
 }
 
 }  // namespace exitance

@@ -21,4 +21,8 @@ std::optional<ExitCode> signal_of_any(std::optional<ExitCode> own);
 /// How many processes there were, what they sent, and what memory they took: all of them, and the one with the most.
 void record_processes(SolveStatistics& statistics);
 
+/// Processor time so far: of all processes on what was dealt out, and of the first one on everything else, which all
+/// repeat or wait for.
+void record_processor_time(SolveStatistics& statistics);
+
 }  // namespace exitance

@@ -196,6 +196,7 @@ Result<void> save(const SolveArguments& arguments, Solution& solution, const Lig
         return written;
     SolveStatistics& statistics = solution.statistics;
     statistics.seconds["write"] = writing.seconds();
+    if (processes() > 1) record_processor_time(statistics);
     statistics.seconds["total"] = run_time.seconds();
     statistics.peak_memory_bytes = std::max(statistics.peak_memory_bytes, peak_memory_bytes());
     return {};

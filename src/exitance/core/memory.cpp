@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <ctime>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -31,6 +32,12 @@ std::size_t peak_memory_bytes() {
 
 std::size_t proportional_memory_bytes() {
     return told("/proc/self/smaps_rollup", "Pss:");
+}
+
+double processor_seconds() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 std::size_t machine_memory_bytes() {

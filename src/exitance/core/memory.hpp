@@ -11,6 +11,9 @@ std::size_t peak_memory_bytes();
 /// (proportional set size). 0 where the system does not tell.
 std::size_t proportional_memory_bytes();
 
+/// Processor time that the process has taken so far, on all of its threads, seconds.
+double processor_seconds();
+
 /// The machine's memory, bytes.
 std::size_t machine_memory_bytes();
 

@@ -21,4 +21,12 @@ TEST(ProportionalMemory, OfAProcessAloneIsWhatItHolds) {
     EXPECT_LE(proportional_memory_bytes(), peak_memory_bytes());
 }
 
+TEST(ProcessorTime, GoesOnWhileThereIsWork) {
+    const double before = processor_seconds();
+    EXPECT_GT(before, 0);
+    std::vector<std::size_t> values(1);
+    while (processor_seconds() == before && values.size() < 1u << 24) values.push_back(values.size());
+    EXPECT_GT(processor_seconds(), before);
+}
+
 }  // namespace exitance

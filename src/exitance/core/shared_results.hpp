@@ -7,6 +7,7 @@
 
 #include "exitance/core/archive.hpp"
 #include "exitance/core/check.hpp"
+#include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 
 namespace exitance {
@@ -19,6 +20,7 @@ struct ResultSharing {
     void (*exchange)(std::span<std::string> blocks, const char* what) = nullptr;
     /// Whole pages of a finished array, which all processes hold alike, stand once a node from here on. All call it.
     void (*share)(char* begin, std::size_t size) = nullptr;
+    double dealt_seconds = 0;  ///< Processor time of this process so far on what was dealt to it.
 };
 inline ResultSharing& result_sharing() {
     static ResultSharing sharing;
@@ -59,11 +61,13 @@ void find_together(std::vector<T>& out, std::size_t grain, const Find& find, con
     constexpr std::size_t rounds = 16;
     const std::size_t together = blocks / rounds + 1;
     const auto is_own = [&](std::size_t b) { return b % together % sharing.processes == sharing.own; };
+    const double before = processor_seconds();
     parallel_for(blocks, 1,
                  [&](std::size_t b) {
                      if (is_own(b)) for_block(b, [&](std::size_t i) { out[i] = find(i); });
                  },
                  {what});
+    result_sharing().dealt_seconds += processor_seconds() - before;
     if (sharing.processes == 1) return;
     for (std::size_t first = 0; first < blocks; first += together) {
         std::vector<std::string> bytes(std::min(together, blocks - first));

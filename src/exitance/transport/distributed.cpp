@@ -13,6 +13,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "exitance/core/memory.hpp"
+
 namespace exitance {
 namespace {
 
@@ -197,6 +199,7 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
     if (team.size == 1) return parallel_ranges(count, grain, body, work);
     const std::size_t blocks = (count + grain - 1) / grain;
     const std::size_t own = blocks > team.own ? (blocks - team.own + team.size - 1) / team.size : 0;
+    const double before = processor_seconds();
     const auto first_of = [&](std::size_t k) { return (k * team.size + team.own) * grain; };
     Work of_own{work.name, {}, work.by_polygon};
     if (work.polygon_of) of_own.polygon_of = [&](std::size_t k) { return work.polygon_of(first_of(k)); };
@@ -209,6 +212,7 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
             }
         },
         of_own);
+    result_sharing().dealt_seconds += processor_seconds() - before;
 }
 
 namespace {
