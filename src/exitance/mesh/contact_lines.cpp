@@ -94,6 +94,42 @@ void gap_over_border(const Scene& scene, const Bvh& faces, const Point& p, const
     if (is_covered) strips_into_gap(p, q, inwards, height, out);
 }
 
+/// How far a flat outline reaches at right angles to a line of its plane, on either side of it; metres.
+struct Reach {
+    double left = 0, right = 0;
+
+    Reach(std::span<const Point> outline, const Segment& line, const Normal& n) {
+        const Vec3 d = line.b - line.a, across = (1 / norm(d)) * cross(n, d);
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        for (const Point& corner : outline) {
+            const double at = dot(across, corner - line.a);
+            least = std::min(least, at), most = std::max(most, at);
+        }
+        left = most, right = -least;
+    }
+    double whole() const { return left + right; }
+};
+
+/// Leaves of the lines beside what hovers over an element those that are worth it. Light there changes within the
+/// height: to a slat no wider than a few heights that is no jump, however long the slat is; what is cut off along a
+/// border is to be no mere trace of the element; and strips, which stand from `first_strip` on, are to be a noticeable
+/// part of it, all together. `before_cuts`: how many times longer the element was before contacts cut it.
+void leave_worthy(std::vector<Segment>& lines, std::size_t first_strip, std::span<const Point> outline,
+                  double before_cuts, const Normal& n, double tolerance) {
+    constexpr double trace = 0.01, noticeable = 0.1;  // of its width across the line
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const double height = lines[i].height;
+        const Reach reach(outline, lines[i], n);
+        const double width = before_cuts * reach.whole();
+        const bool is_jump = height <= ContactLines::height_of_jump(width * width);
+        const bool is_part = std::min(reach.left, reach.right) > trace * width;
+        const bool is_noticed = i < first_strip || deepest_strip * height >= noticeable * width;
+        if (height <= 10 * tolerance || (is_jump && is_part && is_noticed)) lines[kept++] = lines[i];
+    }
+    lines.resize(kept);
+}
+
 /// The line in which a face crosses a plane; its edges that hover over the plane are left out.
 void crossing_of_face(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
                       std::vector<Segment>& out) {
@@ -169,7 +205,7 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
 std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, ElementId e, double area) const {
     const RegionId own = tree.region(e);
     const Plane& plane = scene_->regions()[own].plane;
-    const double width = std::sqrt(area), gap = std::max(tolerance_, height_of_jump(area));
+    const double gap = std::max(tolerance_, height_of_jump(area));
     Box box;
     for (const Point& corner : tree.outline(e)) {
         box.add(corner - tolerance_ * plane.n);
@@ -182,9 +218,8 @@ std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, El
         if (edges_[i].region != own) contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, out);
     });
     // Strips lie beside the edge that they begin at, over parts that others have cut off from it, too.
-    // They are worth their number where all together they are a noticeable part of an element.
-    constexpr double noticeable = 0.1;  // of its width
-    const GapHeights heights{std::max(10 * tolerance_, noticeable / deepest_strip * width), gap};
+    const std::size_t first_strip = out.size();
+    const GapHeights heights{10 * tolerance_, gap};
     const Vec3 within_plane = {std::sqrt(std::max(0.0, 1 - plane.n.x * plane.n.x)),
                                std::sqrt(std::max(0.0, 1 - plane.n.y * plane.n.y)),
                                std::sqrt(std::max(0.0, 1 - plane.n.z * plane.n.z))};
@@ -199,6 +234,7 @@ std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, El
         else
             gap_under_face(a, b, scene_->regions()[region].plane.n, plane, heights, out);
     });
+    leave_worthy(out, first_strip, tree.outline(e), std::sqrt(area / tree.area(e)), plane.n, tolerance_);
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
         if (scene_->surfaces()[s].region != own) crossing_of_face(scene_->outline(s), plane, tolerance_, gap, out);

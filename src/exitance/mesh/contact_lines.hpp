@@ -25,8 +25,8 @@ class ContactLines {
     };
     /// Lines that may run through an element's domain, from faces of other regions: edges that lie in its plane or
     /// hover over it by little, with a line on either side of the latter; the lines in which faces cross it; and in
-    /// gaps, along whose mouths light falls off, three lines inwards. What is little is a share of the root of
-    /// `area` (m^2), the element's before contacts cut it, so that its parts share its lines.
+    /// gaps, along whose mouths light falls off, three lines inwards. Little is a share of its width across the
+    /// line and of the root of `area` (m^2), the element's before contacts cut it, so that its parts share its lines.
     std::vector<Line> around(const ElementTree& tree, ElementId e, double area) const;
     /// Leaves of the lines those that meet an element's domain; returns what of them runs through its inside, as pairs
     /// of points in the element's own coordinates.

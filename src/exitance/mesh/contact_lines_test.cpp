@@ -139,12 +139,13 @@ TEST(ContactLines, AGapHasStripsThatWidenFromItsMouthInwards) {
     floor.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
     cut_along_contacts(floor, {ElementId(0)}, contacts);
     EXPECT_EQ(ends_under_board(floor, 0, 0.06), (std::vector<double>{0, 1, 3, 7}));
-    // The board itself, from its own border on; beyond it there is nothing.
+    // The board itself, from its own border on; beyond it there is nothing. It is a quarter as wide as the floor.
+    const Scene nearer = floor_under_board(0.045);
     ElementTree board;
-    board.add_root(RegionId(1), {{1, 1, 0.06}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
-    cut_along_contacts(board, {ElementId(0)}, contacts);
+    board.add_root(RegionId(1), {{1, 1, 0.045}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(board, {ElementId(0)}, ContactLines(nearer));
     for (double height : {1.0, 3.0, 7.0}) {
-        const double at = height * 0.06;
+        const double at = height * 0.045;
         EXPECT_NE(board.leaf_at(ElementId(0), {0.5, at - 1e-6}).element,
                   board.leaf_at(ElementId(0), {0.5, at + 1e-6}).element)
             << height;
@@ -157,6 +158,24 @@ TEST(ContactLines, ABoardFarAboveHasNone) {
     board.add_root(RegionId(1), {{1, 1, 0.5}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
     cut_along_contacts(board, {ElementId(0)}, ContactLines(scene));
     EXPECT_EQ(board.leaves().size(), 1u);
+}
+
+/// Where 2 m long slats 25 mm wide stand in parallel, what is 5 mm above one is near to its length, but a fifth of its
+/// width: light across it turns no faster than polynomials follow, and none of them is cut. What is 1 mm above is.
+TEST(ContactLines, ASlatIsCutForWhatIsNearToItsWidthAndNotToItsLength) {
+    for (const double gap : {0.005, 0.001}) {
+        SceneDescription d;
+        d.points = {{0, 0, 0},      {2, 0, 0},       {2, 0.025, 0},   {0, 0.025, 0},
+                    {0, 0.01, gap}, {0, 0.035, gap}, {2, 0.035, gap}, {2, 0.01, gap}};
+        d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+        d.groups = {"all"};
+        d.faces = {{{0, 1, 2, 3}, 0, 0, 1}, {{4, 5, 6, 7}, 0, 0, 2}};
+        const Scene scene = std::move(*make_scene(std::move(d)).scene);
+        ElementTree tree;
+        tree.add_root(RegionId(0), {{0, 0, 0}, {2, 0, 0}, {0, 0.025, 0}, Patch::Shape::parallelogram});
+        cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+        EXPECT_EQ(tree.leaves().size() > 1, gap < 0.002) << gap;
+    }
 }
 
 TEST(ContactLines, AnEdgeFarAboveAndABorderCutNothing) {
