@@ -48,6 +48,13 @@ Field<SurfaceId, SurfaceId> other_sides_of_surfaces(const Scene& scene) {
         [&](SurfaceId s) { return scene.surfaces()[s].normal; });
 }
 
+bool is_second_side(const Scene& scene, const Field<SurfaceId, SurfaceId>& other_side, SurfaceId side) {
+    if (other_side.size() == 0 || other_side[side].is_none()) return false;
+    const SurfaceId first = other_side[side];
+    const auto lies_on = [&](SurfaceId s) { return scene.regions()[scene.surfaces()[s].region].level > 0; };
+    return first.value < side.value && other_side[first] == side && !lies_on(first) && !lies_on(side);
+}
+
 Field<RegionId, RegionId> other_sides_of_regions(const Scene& scene) {
     const Point centre = scene.box().centre();
     return pair_up<RegionId>(

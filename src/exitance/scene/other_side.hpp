@@ -10,4 +10,8 @@ namespace exitance {
 Field<SurfaceId, SurfaceId> other_sides_of_surfaces(const Scene& scene);
 Field<RegionId, RegionId> other_sides_of_regions(const Scene& scene);
 
+/// Is this the second of the two sides of a sheet, so that the first stands where it does? Not where one of them lies
+/// on something. `other_side`: of surfaces.
+bool is_second_side(const Scene& scene, const Field<SurfaceId, SurfaceId>& other_side, SurfaceId side);
+
 }  // namespace exitance

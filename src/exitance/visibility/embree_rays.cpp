@@ -120,6 +120,7 @@ struct RayTracer::Content {
         for (SurfaceId id : s.surfaces().ids()) {
             const std::span<const Point> outline = s.outline(id);
             faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
+            if (is_second_side(s, other_side, id)) continue;  // `read` tells them apart
             const auto first = static_cast<std::uint32_t>(corners.size());
             // What lies on others in its plane is met before them.
             const Vec3 lifted = (stack_step * s.size() * s.regions()[faces[id].region].level) * faces[id].normal;
@@ -340,9 +341,8 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
     alignas(64) std::array<int, width> valid;
     for (std::size_t first = 0; first < blocked.size(); first += width) {
         const std::size_t count = std::min(width, blocked.size() - first);
-        for (std::size_t i = 0; i < width; ++i) {
-            valid[i] = i < count ? -1 : 0;
-            if (i >= count) continue;
+        valid.fill(0), std::fill_n(valid.begin(), count, -1);
+        for (std::size_t i = 0; i < count; ++i) {
             const auto [a, b] = ends(first + i);
             set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
         }

@@ -148,6 +148,7 @@ TEST(RayTracer, MeetsTheSideOfASheetThatFacesTheRay) {
     const Scene scene = test::make(
         {{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {0, 1, 0.2}}}, {{{1, 1, 0.2}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0.2}}}});
     const RayTracer tracer(scene);
+    EXPECT_EQ(tracer.triangle_count(), 2u) << "once for both sides";
     RandomStream random(1, Stream::visibility);
     for (int i = 0; i < 200; ++i) {
         const Point target{0.05 + 0.9 * random.uniform(), 0.05 + 0.9 * random.uniform(), 0.1};
