@@ -7,6 +7,7 @@
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/joining/weld.hpp"
 #include "exitance/mesh/found_leaves.hpp"
+#include "exitance/mesh/on_jump.hpp"
 #include "exitance/mesh/planes.hpp"
 
 namespace exitance {
@@ -54,6 +55,7 @@ class PlaneNodes {
     std::vector<Side> sorted_sides() const;
     std::vector<Side> unmatched_sides() const;
     struct Hanging;
+    std::vector<Side> inner_sides(std::span<const Side> open, std::span<const Hanging> found) const;
     void find_hanging(std::span<const Side> sides, std::vector<std::uint32_t> ends, std::vector<Hanging>& out) const;
     Leaf with_own_nodes(const Polygon& polygon);
     Leaf as_fan(const Polygon& polygon, const std::vector<std::uint32_t>& node_of_slot);
@@ -162,6 +164,26 @@ void PlaneNodes::find_hanging(std::span<const Side> sides, std::vector<std::uint
     }
 }
 
+/// All sides but those on the border of the surface, beyond which light has nothing to jump to: no side matches them,
+/// no corner stands on them, and they stand on none. The other side of a sheet has an edge along each.
+std::vector<Side> PlaneNodes::inner_sides(std::span<const Side> open, std::span<const Hanging> found) const {
+    std::vector<std::uint32_t> hanging;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> stood_on, border;
+    for (const Hanging& h : found) hanging.push_back(h.vertex), stood_on.emplace_back(h.polygon, h.slot);
+    std::sort(hanging.begin(), hanging.end()), std::sort(stood_on.begin(), stood_on.end());
+    const auto hangs = [&](std::uint32_t v) { return std::binary_search(hanging.begin(), hanging.end(), v); };
+    for (const Side& side : open)
+        if (!hangs(side.from) && !hangs(side.to) &&
+            !std::binary_search(stood_on.begin(), stood_on.end(), std::pair(side.polygon, side.slot)))
+            border.emplace_back(side.polygon, side.slot);
+    std::sort(border.begin(), border.end());
+    std::vector<Side> out = sorted_sides();
+    std::erase_if(out, [&](const Side& side) {
+        return std::binary_search(border.begin(), border.end(), std::pair(side.polygon, side.slot));
+    });
+    return out;
+}
+
 /// Corners of other leaves, which are ends of sides that match no other, and ends and middles of lines at which light
 /// jumps.
 void PlaneNodes::insert_hanging_vertices() {
@@ -170,7 +192,7 @@ void PlaneNodes::insert_hanging_vertices() {
     for (const Side& side : open) ends.insert(ends.end(), {side.from, side.to});
     std::vector<Hanging> found;
     find_hanging(open, std::move(ends), found);
-    find_hanging(sorted_sides(), on_jumps_, found);
+    find_hanging(inner_sides(open, found), on_jumps_, found);
     // The last first, so that what is inserted moves nothing that is still to come.
     std::sort(found.begin(), found.end(), [](const Hanging& a, const Hanging& b) {
         return std::tuple(a.polygon, a.slot, a.at, a.vertex) > std::tuple(b.polygon, b.slot, b.at, b.vertex);
@@ -190,45 +212,6 @@ void PlaneNodes::insert_hanging_vertices() {
         p.is_own.insert(p.is_own.begin() + after, false);
     }
 }
-
-/// Does a stretch of a line lie on one at which light jumps?
-class OnJump {
-  public:
-    OnJump(std::span<const ContactLines::Line> jumps, const Normal& n, const Point& in_plane, double tolerance)
-        : tolerance_(tolerance) {
-        std::vector<Box> boxes;
-        const auto foot = [&](const Point& p) { return p - dot(p - in_plane, n) * n; };
-        for (const ContactLines::Line& line : jumps) {
-            lines_.push_back({foot(line.a), foot(line.b), line.height});
-            boxes.emplace_back().add(lines_.back().a);
-            boxes.back().add(lines_.back().b);
-        }
-        tree_ = Bvh(boxes);
-    }
-
-    /// `area`: of the smaller of the two elements that meet there, m^2.
-    bool operator()(const Point& a, const Point& b, double area) const {
-        if (lines_.empty()) return false;
-        constexpr double parallel = 1e-3;
-        const Point middle = 0.5 * (a + b);
-        const Vec3 around{tolerance_, tolerance_, tolerance_};
-        Box box;
-        box.add(middle - around), box.add(middle + around);
-        return tree_.visit_box(box, [&](std::uint32_t i) {
-            const auto& [p, q, height] = lines_[i];
-            const Vec3 d = q - p, side = b - a;
-            if (height > std::max(tolerance_, ContactLines::height_of_jump(area))) return false;
-            if (norm(cross(d, side)) > parallel * norm(d) * norm(side)) return false;
-            const double at = std::clamp(dot(middle - p, d) / squared_norm(d), 0.0, 1.0);
-            return norm(middle - p - at * d) <= tolerance_;
-        });
-    }
-
-  private:
-    std::vector<ContactLines::Line> lines_;
-    Bvh tree_;
-    double tolerance_;
-};
 
 void PlaneNodes::join_corners(std::span<const ContactLines::Line> jumps) {
     for (Polygon& p : polygons_) p.first_slot = slot_count_, slot_count_ += static_cast<std::uint32_t>(p.vertex.size());

@@ -54,6 +54,21 @@ double value_at(const ElementTree& tree, const SharedNodes& nodes, const std::ve
     return NAN;
 }
 
+TEST(Conforming, TheOtherSideOfASheetCutsNoFans) {
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {1, 0, 0.2}, {0, 1, 0.4}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2}, 0, 0, 1}, {{2, 1, 0}, 0, 0, 2}};
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    ElementTree tree;
+    for (const Piece& piece : cut_into_pieces(scene)) tree.add_root(piece.region, piece.patch);
+    ASSERT_EQ(tree.leaves().size(), 2u);
+    const SharedNodes nodes = make_conforming(tree, plane_of_regions(scene), ContactLines(scene));
+    EXPECT_EQ(tree.leaves().size(), 2u);
+    EXPECT_EQ(nodes.first_node.back(), 6u) << "three corners of each side";
+}
+
 TEST(Conforming, NodesMakeFunctionsContinuousButAcrossContacts) {
     const Scene scene = floor_and_plate();
     const ContactLines contacts(scene);

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "exitance/geometry/bvh.hpp"
+#include "exitance/mesh/contact_lines.hpp"
+
+namespace exitance {
+
+/// Does a stretch of a line lie on one at which light jumps?
+class OnJump {
+  public:
+    OnJump(std::span<const ContactLines::Line> jumps, const Normal& n, const Point& in_plane, double tolerance)
+        : tolerance_(tolerance) {
+        std::vector<Box> boxes;
+        const auto foot = [&](const Point& p) { return p - dot(p - in_plane, n) * n; };
+        for (const ContactLines::Line& line : jumps) {
+            lines_.push_back({foot(line.a), foot(line.b), line.height});
+            boxes.emplace_back().add(lines_.back().a);
+            boxes.back().add(lines_.back().b);
+        }
+        tree_ = Bvh(boxes);
+    }
+
+    /// `area`: of the smaller of the two elements that meet there, m^2.
+    bool operator()(const Point& a, const Point& b, double area) const {
+        if (lines_.empty()) return false;
+        constexpr double parallel = 1e-3;
+        const Point middle = 0.5 * (a + b);
+        const Vec3 around{tolerance_, tolerance_, tolerance_};
+        Box box;
+        box.add(middle - around), box.add(middle + around);
+        return tree_.visit_box(box, [&](std::uint32_t i) {
+            const auto& [p, q, height] = lines_[i];
+            const Vec3 d = q - p, side = b - a;
+            if (height > std::max(tolerance_, ContactLines::height_of_jump(area))) return false;
+            if (norm(cross(d, side)) > parallel * norm(d) * norm(side)) return false;
+            const double at = std::clamp(dot(middle - p, d) / squared_norm(d), 0.0, 1.0);
+            return norm(middle - p - at * d) <= tolerance_;
+        });
+    }
+
+  private:
+    std::vector<ContactLines::Line> lines_;
+    Bvh tree_;
+    double tolerance_;
+};
+
+}  // namespace exitance
