@@ -1,5 +1,6 @@
 #include "exitance/transport/stage.hpp"
 
+#include "exitance/core/error_share.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -41,6 +42,11 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
     ElementTree tree = make_mesh(pieces, concave, size, unlit, finer);
     std::vector<ElementId> leaves = tree.leaves();
     std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
+    // Of thousands of leaves that stand in each other's way none matters by itself: it is no more than one element.
+    if (ErrorShare::is_crowd(leaves.size(), pieces.size())) {
+        const double mean_area = area / static_cast<double>(leaves.size());
+        std::erase_if(leaves, [&](ElementId e) { return tree.area(e) < mean_area; });
+    }
     cut_along_contacts(tree, leaves, contacts, stop);
     if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);
     return tree;
