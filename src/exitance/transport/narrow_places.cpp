@@ -3,15 +3,17 @@
 #include <array>
 
 #include "exitance/core/random.hpp"
+#include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::uint32_t looks = 4;  ///< Of a leaf.
+constexpr double coplanar = 1e-6;   ///< Of the scene's size, as Occluders::is_covered has it.
 
-/// Is something in front of the leaf at one of its places, nearer than the leaf is wide?
-bool is_narrow(const Stage& stage, const ElementTree& tree, ElementId e, double touching) {
+/// Is something in front of the leaf at one of its places, nearer than so many times its width?
+bool is_narrow(const Stage& stage, const ElementTree& tree, ElementId e, double touching, double widths) {
     const RegionId region = tree.region(e);
     const Normal& n = stage.scene.regions()[region].plane.n;
     const ScrambledSobol places(hash(static_cast<std::uint64_t>(Stream::mesh), e.value));
@@ -23,15 +25,14 @@ bool is_narrow(const Stage& stage, const ElementTree& tree, ElementId e, double 
         up[k] = n;
     }
     stage.tracer.nearest(x, up, region, hits);
-    const double width = std::sqrt(tree.area(e));
+    const double near = widths * std::sqrt(tree.area(e));
     return std::any_of(hits.begin(), hits.end(),
-                       [&](const RayHit& hit) { return hit.front && hit.distance > touching && hit.distance < width; });
+                       [&](const RayHit& hit) { return hit.front && hit.distance > touching && hit.distance < near; });
 }
 
 }  // namespace
 
 Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const ElementTree& tree) {
-    constexpr double coplanar = 1e-6;  // of the scene's size, as Occluders::is_covered has it
     const double touching = coplanar * stage.scene.size();
     Field<ElementId, std::uint8_t> out(tree.size());
     const std::vector<ElementId> leaves = tree.leaves();
@@ -40,10 +41,34 @@ Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const Elem
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 if (!stage.is_left_out(tree.region(leaves[i])))
-                    out[leaves[i]] = is_narrow(stage, tree, leaves[i], touching) ? 1 : 0;
+                    out[leaves[i]] = is_narrow(stage, tree, leaves[i], touching, 1) ? 1 : 0;
         },
         [&](std::size_t i) -> std::uint8_t& { return out[leaves[i]]; }, {"narrow places"});
     return out;
+}
+
+double share_of_light_in_gaps(const Stage& stage, const DirectProjection& direct) {
+    constexpr std::size_t enough = 4096;
+    constexpr double half = 0.5;  // else elements as large as walls had the room for a gap
+    const double touching = coplanar * stage.scene.size();
+    const std::vector<ElementId> leaves = direct.tree.leaves();
+    const std::size_t step = leaves.size() / enough + 1;
+    std::vector<std::uint8_t> narrow((leaves.size() + step - 1) / step);
+    shared_ranges(
+        narrow.size(), 256,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                narrow[i] = is_narrow(stage, direct.tree, leaves[i * step], touching, half) ? 1 : 0;
+        },
+        [&](std::size_t i) -> std::uint8_t& { return narrow[i]; }, {"narrow places"});
+    double in_gaps = 0, all = 0;
+    for (std::size_t i = 0; i < narrow.size(); ++i) {
+        const ElementId e = leaves[i * step];
+        const Spectrum& rho = stage.scene.material(direct.tree.region(e)).reflectance;
+        const double light = stage.counted_area(direct.tree, e) * mean(rho * direct.fit[e].mean);
+        all += light, in_gaps += narrow[i] ? light : 0;
+    }
+    return all > 0 ? in_gaps / all : 0;
 }
 
 }  // namespace exitance

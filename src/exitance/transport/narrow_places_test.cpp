@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/core/random.hpp"
+#include "exitance/transport/direct_projection.hpp"
 #include "support/built_scene.hpp"
 
 namespace exitance {
@@ -30,6 +32,42 @@ TEST(NarrowPlaces, AreNoneWhereElementsAreSmallerThanTheRoom) {
     EXPECT_EQ(narrow_area(box_scene(2, 1, 1.5, 0.5, 1), 0.5), 0);
     // What stands on the floor touches it: no gap.
     EXPECT_EQ(narrow_area(built_scene("bright"), 0.2), 0);
+}
+
+double light_in_gaps(const Scene& scene) {
+    const Stage stage(scene);
+    return share_of_light_in_gaps(stage, project_direct_light(stage, {.mesh = {0.5, 0}, .tolerance = 0.1}, {}));
+}
+
+/// What of the direct light that surfaces reflect leaves things of this group, by exact light at places of its pieces.
+double exact_share(const Scene& scene, const std::string& material) {
+    const Stage stage(scene);
+    DirectLight::Workspace scratch;
+    double of_group = 0, all = 0;
+    for (const auto& [region, patch] : stage.pieces) {
+        constexpr std::uint32_t count = 16;
+        const ScrambledSobol places(hash(static_cast<std::uint64_t>(Stream::mesh), region.value));
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const Point x = patch.at(uniform_in_shape(patch.shape, places(k, 0), places(k, 1)));
+            const Normal& n = scene.regions()[region].plane.n;
+            const double light =
+                mean(scene.material(region).reflectance * stage.direct.irradiance(x, n, region, scratch)) *
+                patch.area() / count;
+            all += light, of_group += scene.material(region).name == material ? light : 0;
+        }
+    }
+    return of_group / all;
+}
+
+TEST(NarrowPlaces, HoldMuchOfTheLightOfABlindAndNoneOfARooms) {
+    // Slats have the ceiling's material, and are nearer to one another than most of their elements are wide; not the
+    // smallest of these, at their edges, where most of the light is.
+    const Scene scene = built_scene("blinds");
+    const double blinds = light_in_gaps(scene), slats = exact_share(scene, "ceiling");
+    EXPECT_GT(blinds, 0.25 * slats);
+    EXPECT_LT(blinds, 1.05 * slats);
+    EXPECT_GT(blinds, 0.2);
+    EXPECT_EQ(light_in_gaps(box_scene(2, 1, 1.5, 0.5, 1)), 0);
 }
 
 }  // namespace

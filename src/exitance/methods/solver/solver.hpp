@@ -51,6 +51,7 @@ class Solver {
     /// Plain elements for when no time is left for a mesh that follows shadows.
     void project_coarsely();
     void find_light();
+    void choose_basis();
     /// Knobs of the next attempt, and how it is made. One step of refinement on from what is delivered (`next_light`)
     /// takes neither finer elements nor rows of the method, and of the gather what changes: it is taken where the
     /// method is to blame and a forecast says that less work leads there so.
