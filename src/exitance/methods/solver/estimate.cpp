@@ -91,9 +91,12 @@ ErrorParts Solver::error_parts() const {
 ErrorParts Solver::mean_error_parts() const {
     const double noise = gathered_.noise / certificate_.mean_reflected;
     const double misfit = std::sqrt(std::max(0.0, certificate_.local * certificate_.local - noise * noise));
+    const double seen = gathered_.interpolation / certificate_.mean_reflected;
+    // Elements are not cut for what their rays' noise hides: a smaller tolerance would cut none of them.
+    constexpr double hidden = 3;  // times what the elements see of it
     return {.method = certificate_.method,
-            .noise = noise,
-            .interpolation = std::max(misfit, gathered_.interpolation / certificate_.mean_reflected)};
+            .noise = misfit > hidden * seen ? std::max(noise, misfit) : noise,
+            .interpolation = std::max(misfit, seen)};
 }
 
 }  // namespace exitance

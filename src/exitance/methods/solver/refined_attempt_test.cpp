@@ -38,5 +38,15 @@ TEST(RefinedAttempt, IsAsFarOffAsItTellsAndKeepsTheMethodsElements) {
     }
 }
 
+/// What light between slats errs by stayed below the noise that elements may have: eight attempts more at 5%, each with
+/// a smaller tolerance, cut and cast nothing.
+TEST(RefinedAttempt, FindsWhatNoiseHidesBetweenSlats) {
+    const Scene scene = built_scene("blinds");
+    const Solution solution = solved(scene, {.error = 0.05});
+    EXPECT_TRUE(solution.statistics.converged);
+    EXPECT_LT(*solution.statistics.relative_error_estimate, 0.05);
+    EXPECT_EQ(solution.statistics.basis, "linear") << "by the light in gaps";
+}
+
 }  // namespace
 }  // namespace exitance
