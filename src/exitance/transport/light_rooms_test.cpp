@@ -51,6 +51,24 @@ TEST(LightRooms, RoomsThatADoorJoinsAreTwo) {
     EXPECT_NEAR(rooms.area(0), rooms.area(1), 0.05 * rooms.area(0));
 }
 
+TEST(LightRooms, WhatSeesNothingGoesWithWhatIsBesideIt) {
+    // In the smaller one of two rooms, a board that lies 1 mm above the floor: below it no ray gets out.
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
+    add_box(d, {0, 0, 0}, {4, 4, 4}, 0);
+    add_box(d, {10, 0, 0}, {12, 2, 2}, 0);
+    for (const Point& p : {Point{10.5, 0.5, 0.001}, {11.5, 0.5, 0.001}, {11.5, 1.5, 0.001}, {10.5, 1.5, 0.001}})
+        d.points.push_back(p);
+    d.faces.push_back({{16, 17, 18, 19}, 0, 0, 0});
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    const LightRooms rooms = rooms_of(scene);
+    ASSERT_EQ(rooms.count(), 2u);
+    const RegionId floor = scene.surfaces()[SurfaceId(6)].region;
+    EXPECT_EQ(rooms.at(floor, {10.2, 0.2, 0}), 1u);
+    EXPECT_EQ(rooms.at(floor, {11, 1, 0}), 1u);
+}
+
 TEST(LightRooms, WhatStoppedBeforeItsRaysTellsOfNoRoomsAndNoLoss) {
     const Scene scene = boxes({{{0, 0, 0}, {4, 4, 4}}, {{10, 0, 0}, {12, 2, 2}}});
     StopRequest stop;

@@ -99,7 +99,7 @@ TEST(RayRows, FindAHoleByAimedRays) {
         const std::vector<double> kept = F.kept();
         for (std::size_t i = 0; i < b.size(); ++i) EXPECT_NEAR(E[i][0], kept[i], 0.2);
     }
-    EXPECT_NEAR(received, hole * hole, 0.05 * hole * hole);  // walls of the hole are of either room by whole elements
+    EXPECT_NEAR(received, hole * hole, 0.08 * hole * hole);  // walls of the hole are of either room by whole elements
     // Without aim one ray in ten thousand meets it: 64 of every element tell its light to a half.
     EXPECT_LT(std::sqrt(square - received * received), 0.1 * hole * hole);
 }
