@@ -9,6 +9,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/error/batch_mean.hpp"
 #include "exitance/reconstruct/error/error_tail.hpp"
+#include "exitance/reconstruct/error/mean_residuals.hpp"
 #include "exitance/reconstruct/error/residual_samples.hpp"
 #include "exitance/reconstruct/error/surface_errors.hpp"
 #include "exitance/transport/distributed.hpp"
@@ -36,12 +37,13 @@ double constant_residual() {
     return 0.5 * calibrated::refined_residual;
 }
 
-/// Irradiance w = 1 + H rho w of unit light that arrives everywhere, by way of rho w = rho + rho H (rho w).
-std::vector<Spectrum> even_irradiance(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area) {
-    const std::vector<Spectrum> rho_w = respond({H, rho, rho, area}, constant_residual());
-    std::vector<Spectrum> w(rho.size());
-    H.gather(rho_w, w);
-    for (Spectrum& v : w) v += Spectrum(1.0);
+/// Irradiance w = first + H rho w of light that arrives first, by way of rho w = rho first + rho H (rho w).
+std::vector<Spectrum> irradiance_of(std::span<const Spectrum> first, const RayRows& H, std::span<const Spectrum> rho,
+                                    std::span<const double> area) {
+    std::vector<Spectrum> reflected, w(rho.size());
+    for (std::size_t i = 0; i < rho.size(); ++i) reflected.push_back(rho[i] * first[i]);
+    H.gather(respond({H, rho, reflected, area}, constant_residual()), w);
+    for (std::size_t i = 0; i < w.size(); ++i) w[i] += first[i];
     return w;
 }
 
@@ -66,8 +68,9 @@ struct Certifier::Content {
     const ElementLocator& coarse;
     std::vector<Spectrum> rho;
     std::vector<double> area;
-    RayRows H;                   ///< Between the leaves of `light`.
-    std::vector<Spectrum> even;  ///< Irradiance of unit light that arrives everywhere.
+    RayRows H;                       ///< Between the leaves of `light`;
+    std::optional<RayRows> other_H;  ///< by other rays, where there are several rooms.
+    std::vector<Spectrum> even;      ///< Irradiance of light that arrives everywhere, in every room as much as its own.
     std::size_t looks = 0;
     std::vector<ResidualSample> samples;  ///< Of all looks.
     std::vector<Spectrum>
@@ -85,25 +88,39 @@ struct Certifier::Content {
           coarse(options.coarse ? *options.coarse : own_coarse.emplace(light.tree, stage.scene.regions().size())),
           rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
           area(leaf_areas(light.tree, light.numbering)),
-          H(stage, light.tree, light.numbering, coarse, {.average = 16, .least = 8, .most = 64}, options.seed + 1,
-            Dealing::by_element, RowsHeld::by_owner) {
+          H(rows(options.seed + 1)) {
+        if (stage.rooms.count() > 0) other_H.emplace(rows(hash(options.seed + 1)));
         share_on_node(std::span(rho)), share_on_node(std::span(area));
         if (mean_reflected <= 0) return;
-        even = even_irradiance(H, rho, area);
+        const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
+        even = irradiance_of(ones, H, rho, area);
         constant = error_constant(H, rho, area, even);
+        if (!options.light_in.empty()) even = irradiance_of(light_of_rooms(), H, rho, area);
         if (options.places.empty()) narrow = find_narrow_leaves(stage, indirect.tree);
     }
 
+    RayRows rows(std::uint64_t seed) const {
+        return {stage, light.tree,          light.numbering,   coarse, {.average = 16, .least = 8, .most = 64},
+                seed,  Dealing::by_element, RowsHeld::by_owner};
+    }
+    std::vector<Spectrum> light_of_rooms() const;
     void measure_residuals();
     void tell_p99(Certificate& out);
     std::vector<Spectrum> mean_residuals(double first) const;
-    std::vector<Spectrum> response_to(double first) const;
+    std::vector<Spectrum> response_to(double first, const RayRows& rows) const;
     std::vector<Spectrum> late_response() const;
     void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
     Certificate judge();
     void judge_rooms(Certificate& out);
     std::vector<RoomError> rooms;
 };
+
+/// Of every leaf of the coarse mesh, the light of its room by the mean light.
+std::vector<Spectrum> Certifier::Content::light_of_rooms() const {
+    std::vector<Spectrum> out;
+    for (ElementId e : light.numbering.leaves) out.emplace_back(options.light_in[stage.rooms.of(light.tree, e)]);
+    return out;
+}
 
 /// One more look: the residual at stratified points, twice each.
 void Certifier::Content::measure_residuals() {
@@ -118,59 +135,26 @@ void Certifier::Content::measure_residuals() {
     ++looks;
 }
 
-/// The mean residual of each leaf of the coarse mesh. What regions have in common is told by all of their samples; what
-/// a leaf has beyond it by its own few, as far as samples of one leaf agree: beside a concave edge they do, and there
-/// two faces reflect to each other what a mean over the whole face does not show.
+/// The mean residual of each leaf of the coarse mesh; `first`: the share of the first of the two gathers of every
+/// sample.
 std::vector<Spectrum> Certifier::Content::mean_residuals(double first) const {
     // A region in several rooms is one in each.
-    const std::size_t regions = stage.scene.regions().size();
-    std::vector<Spectrum> of_place(regions * std::max<std::size_t>(1, stage.rooms.count()));
-    std::vector<double> count(of_place.size());
-    const auto place_of = [&](const ResidualSample& s) { return s.room * regions + s.region.value; };
-    const auto residual = [&](const ResidualSample& s) { return first * s.r1 + (1 - first) * s.r2; };
-    for (const ResidualSample& s : samples) {
-        const double n = s.weight * static_cast<double>(options.points);
-        of_place[place_of(s)] += n * residual(s);
-        count[place_of(s)] += n;
-    }
-    // A mean of few samples is mostly noise: it is drawn towards zero.
-    for (std::size_t p = 0; p < of_place.size(); ++p) of_place[p] = of_place[p] / (count[p] + 4);
-
-    struct Leaf {
-        Spectrum sum, square;  ///< Of what samples have beyond their region's mean, and of the squares of that.
-        double weight = 0;
-        std::size_t count = 0;
-    };
-    std::vector<Leaf> of_leaf(rho.size());
-    for (const ResidualSample& s : samples) {
-        const Spectrum beyond = residual(s) - of_place[place_of(s)];
-        Leaf& leaf = of_leaf[s.leaf];
-        leaf.sum += s.weight * beyond, leaf.square += s.weight * s.weight * beyond * beyond;
-        leaf.weight += s.weight, ++leaf.count;
-    }
-    // How much of a sample another one of its leaf has too: products of different samples by squares of single ones.
-    double common = 0, all = 0;
-    for (const Leaf& leaf : of_leaf) {
-        if (leaf.count < 2) continue;
-        const double others = static_cast<double>(leaf.count - 1);
-        common += mean(leaf.sum * leaf.sum - leaf.square) / others, all += mean(leaf.square);
-    }
-    const double agreement = all > 0 ? std::clamp(common / all, 0.0, 1.0) : 0;
-    std::vector<Spectrum> out(rho.size());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const ElementId e = light.numbering.leaves[i];
-        out[i] = of_place[stage.rooms.of(light.tree, e) * regions + light.tree.region(e).value];
-        const Leaf& leaf = of_leaf[i];
-        const double n = static_cast<double>(leaf.count);
-        if (leaf.weight > 0) out[i] += agreement * n / (1 + agreement * (n - 1)) / leaf.weight * leaf.sum;
-    }
-    return out;
+    const std::size_t regions = stage.scene.regions().size(), rooms = std::max<std::size_t>(1, stage.rooms.count());
+    std::vector<LeafResidual> known;
+    for (const ResidualSample& s : samples)
+        known.push_back({s.leaf, static_cast<std::uint32_t>(s.room * regions + s.region.value),
+                         s.weight * static_cast<double>(options.points), first * s.r1 + (1 - first) * s.r2});
+    std::vector<std::uint32_t> group_of_leaf;
+    for (ElementId e : light.numbering.leaves)
+        group_of_leaf.push_back(
+            static_cast<std::uint32_t>(stage.rooms.of(light.tree, e) * regions + light.tree.region(e).value));
+    return exitance::mean_residuals(light.tree, light.numbering, group_of_leaf, regions * rooms, known);
 }
 
 /// Corrects errors of B by what is certain of them: where all that is emitted is absorbed, and of the delivered light
 /// as much, the error dE of irradiance has int (1 - rho) dE dA = 0. Samples tell a mean residual with noise that a
 /// bright room's many reflections make larger than the error; so as much residual is added everywhere alike as makes it
-/// right.
+/// right; in rooms of different light by this, as the noise is.
 void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const {
     std::vector<Spectrum> arriving(rho.size());
     H.gather(errors, arriving);
@@ -190,9 +174,9 @@ void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<
 
 /// The coarse response to the mean residuals, less those themselves; `first`: the share of the first of the two gathers
 /// of every sample, 0.5 of both alike.
-std::vector<Spectrum> Certifier::Content::response_to(double first) const {
+std::vector<Spectrum> Certifier::Content::response_to(double first, const RayRows& rows) const {
     const std::vector<Spectrum> rhs = mean_residuals(first);
-    std::vector<Spectrum> response = respond({H, rho, rhs, area}, calibrated::refined_residual);
+    std::vector<Spectrum> response = respond({rows, rho, rhs, area}, calibrated::refined_residual);
     if (options.keeps_flux && !options.summed) balance(rhs, response);  // sums have no noise to correct
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
@@ -203,9 +187,9 @@ std::vector<Spectrum> Certifier::Content::response_to(double first) const {
 /// square.
 std::vector<Spectrum> Certifier::Content::late_response() const {
     // Light of a lighter room has to be told from noise in a darker one; where all is one room, means say enough.
-    if (options.summed || stage.rooms.count() == 0) return response_to(0.5);
-    std::vector<Spectrum> one = response_to(1);
-    const std::vector<Spectrum> other = response_to(0);
+    if (options.summed || stage.rooms.count() == 0) return response_to(0.5, H);
+    std::vector<Spectrum> one = response_to(1, H);
+    const std::vector<Spectrum> other = response_to(0, *other_H);
     const std::size_t count = stage.rooms.count();
     std::vector<double> agreed(count), all(count);
     std::vector<std::size_t> room(one.size());
@@ -263,7 +247,10 @@ void Certifier::Content::judge_rooms(Certificate& out) {
 }
 
 Certificate Certifier::Content::judge() {
-    Certificate out{.constant = constant, .mean_reflected = mean_reflected, .points = samples.size(), .rays = H.rays()};
+    Certificate out{.constant = constant,
+                    .mean_reflected = mean_reflected,
+                    .points = samples.size(),
+                    .rays = H.rays() + (other_H ? other_H->rays() : 0)};
     late = late_response();
     std::array<double, batches> residual_squared{}, error_squared{};
     double local_squared = 0, method_squared = 0, told = 0;

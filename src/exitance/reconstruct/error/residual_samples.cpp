@@ -67,12 +67,11 @@ void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, W
     sample.place = at.place, sample.weight = at.weight;
     const RegionId region = sample.region = indirect_.tree.region(at.place.element);
     const Point x = point(sample);
-    sample.delivered = indirect_.at(at.place);
-    if (options_.direct_in_elements)
-        sample.delivered -=
-            stage_.clustered
-                .at(x, stage_.scene.regions()[region].plane.n, region, point_accuracy(options_.error), w.clustered)
-                .irradiance;
+    const Normal& n = stage_.scene.regions()[region].plane.n;
+    sample.is_covered = stage_.occluders.is_covered(x, n, region);
+    if (!sample.is_covered) sample.delivered = indirect_.at(at.place);
+    if (!sample.is_covered && options_.direct_in_elements)
+        sample.delivered -= stage_.clustered.at(x, n, region, point_accuracy(options_.error), w.clustered).irradiance;
     sample.surface = surface_at(stage_.scene, region, x);
     if (stage_.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage_.rooms.at(region, x));
     sample.leaf = numbering_.number[coarse_.find(region, x).element];
@@ -83,11 +82,10 @@ void ResidualSampler::sum_elements(bool tells_local, ResidualSample& sample, Wor
     const Point x = point(sample);
     const Normal& n = stage_.scene.regions()[sample.region].plane.n;
     const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;
-    const bool is_covered = stage_.occluders.is_covered(x, n, sample.region);
     const auto residual = [&](std::span<const ElementGather> parts) {
         Spectrum arriving;
         for (const ElementGather& part : parts)
-            if (!is_covered) arriving += part(x, n, sample.region, options_.summed->share, w.sums);
+            if (!sample.is_covered) arriving += part(x, n, sample.region, options_.summed->share, w.sums);
         return reflectance * (arriving - sample.delivered);
     };
     sample.r1 = sample.r2 = residual(options_.summed->delivered);
@@ -100,6 +98,8 @@ void ResidualSampler::sum_elements(bool tells_local, ResidualSample& sample, Wor
 void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, ResidualSample& sample, Workspace& w) const {
     const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;
     const unsigned rays = rays_at(sample.place.element);
+    sample.tells_local = options_.gathered != nullptr;
+    if (sample.is_covered) return;
     for (std::uint64_t which = 1; which <= 2; ++which) {
         const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
         (which == 1 ? sample.r1 : sample.r2) = by_rays(sample, rays, key, w.rays);
@@ -107,7 +107,6 @@ void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, ResidualSampl
             (which == 1 ? sample.local1 : sample.local2) =
                 reflectance * (read_gather(*options_.gathered, w.rays).irradiance - sample.delivered);
     }
-    sample.tells_local = options_.gathered != nullptr;
     sample.rays = 2 * rays;
 }
 
@@ -130,6 +129,7 @@ void ResidualSampler::measure(std::span<const WeightedSample> places, std::uint6
 
 Spectrum ResidualSampler::by_rays(const ResidualSample& sample, unsigned rays, std::uint64_t key,
                                   GatherWorkspace& workspace) const {
+    if (sample.is_covered) return {};
     const Region& region = stage_.scene.regions()[sample.region];
     cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, workspace);
     return stage_.scene.material(sample.region).reflectance *

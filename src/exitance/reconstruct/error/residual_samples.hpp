@@ -11,6 +11,7 @@ struct ResidualSample {
     RegionId region;
     SurfaceId surface;
     std::uint32_t room = 0;
+    bool is_covered = false;  ///< By another surface: it is dark there, and told to be, whatever is delivered.
     double weight = 0;
     Spectrum r1, r2;          ///< The residual.
     double squared = 0;       ///< Of the error there, mean over the bands, (W/m^2)^2.
