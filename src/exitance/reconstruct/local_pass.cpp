@@ -34,12 +34,18 @@ double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
 /// How much noisier than allowed. All elements of the first mesh may be alike if the error falls with the root of the
 /// rays; small ones count less. Where many rays are needed, the next one takes away less: there more noise may stay,
 /// and less where few do. (The least rays for an error in the mean square leave noise in proportion to the root of the
-/// rays; half of that exponent, since both are estimates.)
+/// rays; half of that exponent, since both are estimates.) What is far lighter than its room is noisier by as much, and
+/// for the same reason more of it may stay, by the root of that: beside the opening of a dark room some square
+/// centimetres would take most rays. It is so on a quarter of a room's light at most, and adds a quarter to the square
+/// of its noise.
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
+    constexpr double far_lighter = 4;  // given by the quarter
     const double usual = 4 * demand.rays.average;
     // Exponents are given by the least rays for a mean square, halved.
     const double dear = std::clamp(std::pow(sampled.place_rays / usual, 0.25), 0.5, 2.0);
-    const double allowed = demand.noise * light_near(e, demand) * dear *
+    const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
+    const double bright = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
+    const double allowed = demand.noise * near * dear * bright *
                            std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
@@ -242,6 +248,35 @@ std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves,
     return leaves;
 }
 
+/// Of an element that was cut, what its polynomial is on a part.
+SampledElement LocalPass::part_of(ElementId whole, ElementId part) const {
+    const SampledElement& known = sampled_[whole];
+    const SampledFunction polynomial(tree_, whole, known);
+    const std::vector<WeightedPlace> places = element_rule(tree_, part, rule_order(known.curved));
+    std::vector<Gathered> values(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        values[i].irradiance = polynomial.at(tree_.patch(whole).coordinates(tree_.patch(part).at(places[i].uv)));
+    const Spectrum& rho = stage_.scene.material(tree_.region(part)).reflectance;
+    SampledElement out = fit_gathered(tree_, part, places, values, rho, known.curved, 1);
+    out.noise_squared = known.noise_squared;
+    out.misfit_squared = known.misfit_squared, out.noise_in_misfit = known.noise_in_misfit;
+    return out;
+}
+
+/// Gives elements that there was no time for what is known of those that they were cut from. False where nothing is.
+bool LocalPass::inherit() {
+    bool is_whole = true;
+    for (ElementId e : tree_.leaves()) {
+        ElementId whole = e;
+        while (!whole.is_none() && sampled_[whole].place_rays == 0) whole = tree_.parent(whole);
+        if (whole.is_none())
+            is_whole = false;
+        else if (whole != e)
+            sampled_[e] = part_of(whole, e);
+    }
+    return is_whole;
+}
+
 std::size_t LocalPass::rays_of(std::span<const ElementId> elements) const {
     std::size_t rays = 0;
     for (ElementId e : elements) rays += sampled_[e].rays;
@@ -294,8 +329,8 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
             if (depth != change) progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
         }
         if (demand.elements.empty()) report.rays += rays_of(active) - std::exchange(rays_before, 0);
-        report.interrupted = stop.requested();
-        if (depth == demand.max_depth || report.interrupted) break;
+        if (stop.requested()) report.interrupted = !inherit();
+        if (depth == demand.max_depth || stop.requested()) break;
         if (depth != change && is_crowd_) least_share_ = share_in_crowd(demand);
         active = depth == change ? to_gather_again(std::move(active), demand) : split_where_needed(active, demand);
     }

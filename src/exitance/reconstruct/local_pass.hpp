@@ -12,8 +12,9 @@ namespace exitance {
 
 /// How finely indirect light is gathered.
 struct LocalPassDemand {
-    RayBudget rays;        ///< Of one place, to begin with; more where they turn out too noisy.
-    double noise = 0;      ///< RMS error of rho E_ind that the rays may leave, W/m^2.
+    RayBudget rays;    ///< Of one place, to begin with; more where they turn out too noisy.
+    double light = 0;  ///< Mean reflected light of the scene, W/m^2: places far lighter may be noisier. 0: none may.
+    double noise = 0;  ///< RMS error of rho E_ind that the rays may leave, W/m^2.
     double tolerance = 0;  ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
     bool curved = false;   ///< Fit polynomials of second degree, where they are larger than their noise.
     /// As much of the light there as interpolation may leave on an element that elements are summed for; 0: any.
@@ -46,7 +47,7 @@ struct LocalPassReport {
     static const Leaf& known(const Field<ElementId, Leaf>& leaves, const ElementTree& tree, ElementId e) {
         return leaves[e.value < leaves.size() ? e : tree.parent(e)];
     }
-    bool interrupted = false;
+    bool interrupted = false;  ///< By a request to stop, before anything at all was known of some elements.
 };
 
 /// Indirect irradiance everywhere, by one gather over the light that a method found: E_ind = H b at the places of a
@@ -117,6 +118,8 @@ class LocalPass {
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);
     std::vector<ElementId> to_gather_again(std::vector<ElementId> leaves, const LocalPassDemand& demand);
     std::size_t rays_of(std::span<const ElementId> elements) const;
+    SampledElement part_of(ElementId whole, ElementId part) const;
+    bool inherit();
     ElementFunction finished(const LocalPassDemand& demand, LocalPassReport& report) const;
 
     const Stage& stage_;

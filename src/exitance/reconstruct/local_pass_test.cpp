@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "support/built_scene.hpp"
@@ -110,6 +112,41 @@ TEST_F(OneBrightFace, AChangeOfTheLightIsGatheredByFewRays) {
         for (float& v : value) v /= 1.05F;
     EXPECT_LT(error(brighter), 1.2 * error(dim) + 0.2 * fine.noise);
     EXPECT_GT(second.noise, 0.9 * first.noise);
+}
+
+TEST_F(OneBrightFace, StoppedEarlyIsWhatLargerElementsAre) {
+    LocalPassReport whole;
+    const double least = error(gather(fine, whole));
+    for (const double share : {0.7, 0.0}) {
+        std::atomic<std::size_t> read = 0;
+        StopRequest stop;
+        const PointwiseLight until_stopped{[&](RegionId region, const Point&) {
+            if (static_cast<double>(++read) > share * static_cast<double>(whole.rays)) stop.interrupt();
+            return Spectrum(region == bright ? 1.0 : 0.0);
+        }};
+        LocalPass stopped(stage, {.edge = 0.8, .grading_levels = 0}, 1);
+        Progress progress;
+        LocalPassReport report;
+        const ElementFunction E = stopped.gather(until_stopped, true, fine, report, progress, stop);
+        EXPECT_EQ(report.interrupted, share == 0);  // before every element of the first mesh was gathered for
+        if (report.interrupted) continue;
+        EXPECT_LT(report.rays, whole.rays);
+        EXPECT_LT(error(E), 3 * least);
+        EXPECT_LT(error(E), 1.5 * std::hypot(report.noise, report.interpolation));
+    }
+}
+
+TEST_F(OneBrightFace, WhatIsFarLighterMayBeNoisier) {
+    LocalPassReport usual, dim;
+    LocalPassDemand demand = fine;
+    demand.noise = 1e-4;
+    gather(demand, usual);
+    LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // which has not gathered before
+    Progress progress;
+    demand.light = 0.002;  // of a room that is dark but for this face's light, which is up to 0.1 elsewhere
+    const double truth = error(other.gather(b, true, demand, dim, progress, StopRequest()));
+    EXPECT_LT(dim.rays, usual.rays / 2);
+    EXPECT_LT(truth, 1.5 * std::hypot(dim.noise, dim.interpolation));
 }
 
 TEST(LocalPass, GathersConstantLightExactly) {

@@ -118,6 +118,7 @@ ElementFunction gathered(const ClassicalInput& input, const ElementFunction& E, 
     LocalPassReport report;
     ElementFunction out = pass.gather(b, true,
                                       {.rays = knobs.gather_rays,
+                                       .light = scale,
                                        .noise = knobs.gather_noise * scale,
                                        .tolerance = knobs.gather_tolerance * scale,
                                        .curved = knobs.gather_curved,

@@ -174,8 +174,9 @@ void Solver::choose_basis() {
     if (!plan_.may_refine_delivered) return;
     const double in_gaps = share_of_light_in_gaps(stage_, direct_);
     progress_.note(fmt::format("{:.1f}% of the light is in gaps", 100 * in_gaps));
-    constexpr double many = 0.15;  // legs of chairs have 0.09, blinds of 60 slats 0.28
-    if (in_gaps < many) return;
+    constexpr int much =
+        7;  // one part of so many; under chairs there is a twelfth, between 60 slats more than a quarter
+    if (in_gaps * much < 1) return;
     options_.basis = BasisKind::linear;
     statistics().basis = name_in(basis_names, BasisKind::linear);
 }
@@ -218,28 +219,40 @@ bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLigh
     share_on_node(std::span(indirect.values)), share_on_node(indirect.first_value.span());
     share_on_node(gathered_.leaves.span());
     if (stop_.requested()) {
-        // Half a local pass is worth less than the last whole one, or than what the method has found.
+        // Half a local pass is worth less than the last whole one; where there is none, more than what the method
+        // found.
+        if (step_ != Step::refine && has_light()) return false;
         if (step_ != Step::refine) {
-            if (has_light()) return false;
-            solution_.indirect = constant_on_leaves(*light_);
-            unscaled_.indirect = unscaled_.direct * light_->report.unscaled;
-            solution_.direct_in_elements = light_->holds_direct;
-            record_method(stage_, *light_, has_links_, statistics());
+            if (gathers() && !gathered_.interrupted)
+                adopt(std::move(indirect), kept);
+            else
+                adopt_method_light();
         }
         certify_solution({.error = calibrated::interrupted_error});
         return false;
     }
-    solution_.indirect = std::move(indirect);
-    unscaled_.indirect = unscaled_indirect(kept);
+    adopt(std::move(indirect), kept);
     progress_.note(
         fmt::format("indirect light scaled by {:.5f} to what arrives; unscaled, the method would find {:.5f} of it",
                     mean(kept), mean(light_->report.unscaled)));
+    return true;
+}
+
+void Solver::adopt(ElementFunction indirect, const Spectrum& kept) {
+    solution_.indirect = std::move(indirect);
+    unscaled_.indirect = unscaled_indirect(kept);
     solution_.cells = light_->cells;
     solution_.cells.delivered = !gathers() && !solution_.cells.cells.empty();
     solution_.direct_share = share_;
     solution_.direct_in_elements = light_->holds_direct;
     record_method(stage_, *light_, has_links_, statistics());
-    return true;
+}
+
+void Solver::adopt_method_light() {
+    solution_.indirect = constant_on_leaves(*light_);
+    unscaled_.indirect = unscaled_.direct * light_->report.unscaled;
+    solution_.direct_in_elements = light_->holds_direct;
+    record_method(stage_, *light_, has_links_, statistics());
 }
 
 Spectrum Solver::unscaled_indirect(const Spectrum& kept) const {
@@ -275,6 +288,7 @@ ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGa
     if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
     ElementFunction out = local_pass_->gather(b.whole(), fresh,
                                               {.rays = knobs_.gather_rays,
+                                               .light = scale,
                                                .noise = knobs_.gather_noise * scale,
                                                .tolerance = knobs_.gather_tolerance * scale,
                                                .curved = knobs_.gather_curved,

@@ -68,6 +68,10 @@ class Solver {
     /// Light everywhere, from what there is to gather: `b`, as elements where those are summed. `fresh`: it is not what
     /// was gathered last, nor changed by little from that. False when a request to stop cut that short.
     bool deliver(std::span<const ElementGather> elements, const ReadNextLight& b, bool fresh);
+    /// A function becomes what is delivered; `kept`: what it was scaled by.
+    void adopt(ElementFunction indirect, const Spectrum& kept);
+    /// The same of what the method found, on its own elements.
+    void adopt_method_light();
     ElementFunction gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh);
     ElementFunction on_leaves() const;
     /// Functions as elements to be summed over; none where light is found by rays.
