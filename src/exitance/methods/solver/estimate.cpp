@@ -88,13 +88,16 @@ ErrorParts Solver::error_parts() const {
     return {worse * parts.method, worse * parts.noise, worse * parts.interpolation};
 }
 
+/// Parts that are together larger than the whole cancel in part, as where light was refined a few times: they are made
+/// as large as that. Elements are not cut for what their rays' noise hides: a smaller tolerance would cut none of them.
 ErrorParts Solver::mean_error_parts() const {
-    const double noise = gathered_.noise / certificate_.mean_reflected;
-    const double misfit = std::sqrt(std::max(0.0, certificate_.local * certificate_.local - noise * noise));
+    const double parts = std::hypot(certificate_.local, certificate_.method);
+    const double cancels = parts > certificate_.of_rooms ? certificate_.of_rooms / parts : 1;
+    const double local = cancels * certificate_.local, noise = gathered_.noise / certificate_.mean_reflected;
+    const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
     const double seen = gathered_.interpolation / certificate_.mean_reflected;
-    // Elements are not cut for what their rays' noise hides: a smaller tolerance would cut none of them.
     constexpr double hidden = 3;  // times what the elements see of it
-    return {.method = certificate_.method,
+    return {.method = cancels * certificate_.method,
             .noise = misfit > hidden * seen ? std::max(noise, misfit) : noise,
             .interpolation = std::max(misfit, seen)};
 }
