@@ -69,14 +69,13 @@ struct Part {
 /// Splits a scene into parts.
 class RoomFinder {
   public:
-    /// `blind` are the leaves that see nothing.
-    RoomFinder(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
-               const std::vector<std::uint8_t>& blind, std::uint64_t seed, bool has_sky)
+    RoomFinder(const Stage& stage, const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
+               std::uint64_t seed, bool has_sky)
         : flow_{rows, leaf_areas(tree, numbering), starting_light(tree, numbering, seed),
                 std::vector<std::uint16_t>(numbering.leaves.size()), has_sky},
+          stage_(stage),
           tree_(tree),
-          numbering_(numbering),
-          blind_(blind) {}
+          numbering_(numbering) {}
 
     /// The rooms, the largest first; each leaf in one of them.
     std::vector<Part> find(const StopRequest& stop) {
@@ -192,18 +191,42 @@ class RoomFinder {
         return true;
     }
 
+    std::vector<std::uint8_t> blind_leaves() const;
     void place_blind_leaves();
     void join_smallest();
 
     Flow flow_;
+    const Stage& stage_;
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
-    const std::vector<std::uint8_t>& blind_;  ///< By leaf number.
     std::vector<Part> parts_;
     Box inner_, whole_;  ///< Around all rooms but the largest, and around everything.
     double total_ = 0;
     std::uint16_t fresh_ = 1;  ///< Number of the next part.
 };
+
+/// Of every leaf: do all of its rays meet backs? Those that meet nothing see the sky, where there is one, which rows do
+/// not tell apart: a few rays more do.
+std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
+    constexpr std::size_t looks = 8;
+    const ScrambledSobol points(looks);
+    std::vector<std::uint8_t> out(numbering_.leaves.size());
+    parallel_for(out.size(), 256, [&](std::size_t i) {
+        const std::span<const std::uint32_t> seen = flow_.rows.hits(i);
+        if (!std::all_of(seen.begin(), seen.end(), [](std::uint32_t j) { return j == RayRows::missed; })) return;
+        out[i] = 1;
+        if (!flow_.has_sky) return;
+        const ElementId e = numbering_.leaves[i];
+        const RegionId region = tree_.region(e);
+        const Frame frame(stage_.scene.regions()[region].plane.n);
+        std::array<Vec3, looks> directions;
+        std::array<RayHit, looks> hits;
+        for (std::uint32_t k = 0; k < looks; ++k) directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+        stage_.tracer.nearest(directions, tree_.patch(e).at(tree_.centre(e)), region, hits);
+        out[i] = std::none_of(hits.begin(), hits.end(), [](const RayHit& hit) { return hit.surface.is_none(); });
+    });
+    return out;
+}
 
 /// Under a lamp that lies on a shelf no ray says which room this is, but light of the room gets in at the edges. Leaves
 /// that see nothing go with the largest one beside them that does: of the smallest element that has both, or of their
@@ -217,16 +240,17 @@ void RoomFinder::place_blind_leaves() {
             if (other.area > area) *this = other;
         }
     };
+    const std::vector<std::uint8_t> blind = blind_leaves();
     Field<ElementId, Largest> below(tree_.size());
     std::unordered_map<std::uint32_t, Largest> of_region;
     for (std::size_t i = 0; i < numbering_.leaves.size(); ++i)
-        if (!blind_[i]) below[numbering_.leaves[i]] = {flow_.area[i], flow_.part[i]};
+        if (!blind[i]) below[numbering_.leaves[i]] = {flow_.area[i], flow_.part[i]};
     for (std::size_t k = tree_.size(); k-- > 0;) {  // children before parents
         const ElementId e(k), parent = tree_.parent(e);
         (parent.is_none() ? of_region[tree_.region(e).value] : below[parent]).add(below[e]);
     }
     for (std::size_t i = 0; i < numbering_.leaves.size(); ++i) {
-        if (!blind_[i]) continue;
+        if (!blind[i]) continue;
         ElementId e = numbering_.leaves[i];
         while (!e.is_none() && below[e].area == 0) e = tree_.parent(e);
         const Largest& found = e.is_none() ? of_region[tree_.region(numbering_.leaves[i]).value] : below[e];
@@ -258,34 +282,11 @@ void RoomFinder::join_smallest() {
     sort();
 }
 
-/// Of every leaf: do all of its rays meet backs? Those that meet nothing see the sky, where there is one, which rows do
-/// not tell apart: a few rays more do.
-std::vector<std::uint8_t> find_blind_leaves(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                                            const RayRows& rows, bool has_sky) {
-    constexpr std::size_t looks = 8;
-    const ScrambledSobol points(looks);
-    std::vector<std::uint8_t> out(numbering.leaves.size());
-    std::array<Vec3, looks> directions;
-    std::array<RayHit, looks> hits;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const std::span<const std::uint32_t> seen = rows.hits(i);
-        if (!std::all_of(seen.begin(), seen.end(), [](std::uint32_t j) { return j == RayRows::missed; })) continue;
-        out[i] = 1;
-        if (!has_sky) continue;
-        const ElementId e = numbering.leaves[i];
-        const Frame frame(stage.scene.regions()[tree.region(e)].plane.n);
-        for (std::uint32_t k = 0; k < looks; ++k) directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
-        stage.tracer.nearest(directions, tree.patch(e).at(tree.centre(e)), tree.region(e), hits);
-        out[i] = std::none_of(hits.begin(), hits.end(), [](const RayHit& hit) { return hit.surface.is_none(); });
-    }
-    return out;
-}
-
 /// Parts follow from one another: the first process finds them, for all.
-std::vector<Part> find_parts(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
-                             const std::vector<std::uint8_t>& blind, std::uint64_t seed, bool has_sky,
+std::vector<Part> find_parts(const Stage& stage, const RayRows& rows, const ElementTree& tree,
+                             const LeafNumbering& numbering, std::uint64_t seed, bool has_sky,
                              const StopRequest& stop) {
-    const auto find = [&] { return RoomFinder(rows, tree, numbering, blind, seed, has_sky).find(stop); };
+    const auto find = [&] { return RoomFinder(stage, rows, tree, numbering, seed, has_sky).find(stop); };
     if (processes() == 1) return find();
     std::vector<Part> parts;
     ArchiveWriter writer;
@@ -352,8 +353,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     if (has_sky)
         while (rays.least < most_rays && 2 * rays.least * numbering.leaves.size() <= rays_outdoors) rays.least *= 2;
     const RayRows rows(stage, tree, numbering, *locator, rays, seed, Dealing::by_element, RowsHeld::everywhere, &stop);
-    const std::vector<std::uint8_t> blind = find_blind_leaves(stage, tree, numbering, rows, has_sky);
-    const std::vector<Part> parts = find_parts(rows, tree, numbering, blind, seed, has_sky, stop);
+    const std::vector<Part> parts = find_parts(stage, rows, tree, numbering, seed, has_sky, stop);
     LightRooms out;
     if (stop.requested()) return out;  // rows that were not cast tell nothing
     const std::vector<double> kept = rows.kept();

@@ -174,8 +174,8 @@ void Solver::choose_basis() {
     if (!plan_.may_refine_delivered) return;
     const double in_gaps = share_of_light_in_gaps(stage_, direct_);
     progress_.note(fmt::format("{:.1f}% of the light is in gaps", 100 * in_gaps));
-    constexpr int much =
-        7;  // one part of so many; under chairs there is a twelfth, between 60 slats more than a quarter
+    // One part of so many: under chairs there is a twelfth, between 60 slats more than a quarter.
+    constexpr int much = 7;
     if (in_gaps * much < 1) return;
     options_.basis = BasisKind::linear;
     statistics().basis = name_in(basis_names, BasisKind::linear);
