@@ -230,7 +230,7 @@ std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
 
 /// Under a lamp that lies on a shelf no ray says which room this is, but light of the room gets in at the edges. Leaves
 /// that see nothing go with the largest one beside them that does: of the smallest element that has both, or of their
-/// region. Where there is none, no light comes, and they stay.
+/// region. Where there is none, no light comes, and they make no room of their own: they go with the largest.
 void RoomFinder::place_blind_leaves() {
     struct Largest {
         double area = 0;
@@ -241,6 +241,7 @@ void RoomFinder::place_blind_leaves() {
         }
     };
     const std::vector<std::uint8_t> blind = blind_leaves();
+    const std::uint16_t largest_part = flow_.part[parts_.front().leaves.front()];
     Field<ElementId, Largest> below(tree_.size());
     std::unordered_map<std::uint32_t, Largest> of_region;
     for (std::size_t i = 0; i < numbering_.leaves.size(); ++i)
@@ -254,7 +255,7 @@ void RoomFinder::place_blind_leaves() {
         ElementId e = numbering_.leaves[i];
         while (!e.is_none() && below[e].area == 0) e = tree_.parent(e);
         const Largest& found = e.is_none() ? of_region[tree_.region(numbering_.leaves[i]).value] : below[e];
-        if (found.area > 0) flow_.part[i] = found.part;
+        flow_.part[i] = found.area > 0 ? found.part : largest_part;
     }
     std::vector<LeafNumbers> leaves(fresh_);
     for (std::uint32_t i = 0; i < flow_.part.size(); ++i) leaves[flow_.part[i]].push_back(i);

@@ -69,6 +69,18 @@ TEST(LightRooms, WhatSeesNothingGoesWithWhatIsBesideIt) {
     EXPECT_EQ(rooms.at(floor, {11, 1, 0}), 1u);
 }
 
+TEST(LightRooms, WhatTwoThingsCoverOfEachOtherIsNoRoom) {
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
+    add_box(d, {0, 0, 0}, {2, 2, 1}, 0);
+    const std::size_t walls = d.faces.size();
+    add_box(d, {0.5, 0.5, 0}, {1.5, 1.5, 0.4}, 0);
+    for (std::size_t i = walls; i < d.faces.size(); ++i)  // seen from outside
+        std::reverse(d.faces[i].corners.begin(), d.faces[i].corners.end());
+    EXPECT_EQ(rooms_of(*make_scene(std::move(d)).scene).count(), 0u);
+}
+
 TEST(LightRooms, WhatStoppedBeforeItsRaysTellsOfNoRoomsAndNoLoss) {
     const Scene scene = boxes({{{0, 0, 0}, {4, 4, 4}}, {{10, 0, 0}, {12, 2, 2}}});
     StopRequest stop;
