@@ -7,6 +7,7 @@
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/scene/locator.hpp"
+#include "support/places.hpp"
 #include "support/run.hpp"
 
 namespace exitance {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 class CompareScript : public testing::TestWithParam<const char*> {};
 
 TEST_P(CompareScript, MeasuresTheSameErrors) {
-    const fs::path shared = EXITANCE_SHARED_DIR;
+    const fs::path shared = test::shared_folder();
     const std::string name = GetParam(), scene_file = (shared / "scenes" / (name + ".obj")).string();
     const std::string reference_file = (shared / "reference" / (name + ".csv")).string();
     const std::string script = (shared / "reference" / "compare.py").string();

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <vector>
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
@@ -69,7 +70,7 @@ std::vector<Include> read_includes(const fs::path& root, const fs::path& path) {
 /// Every #include of the library and the program; unit tests are free in what they include.
 const std::vector<Include>& all_includes() {
     static const std::vector<Include> includes = [] {
-        const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+        const fs::path root = fs::path(test::source_folder()) / "src/exitance";
         std::vector<Include> all;
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
             const std::string name = entry.path().filename();
@@ -127,7 +128,7 @@ TEST(Includes, HeadersArePlain) {
 }
 
 TEST(Folders, HoldAtMostFortyFilesBesideTests) {
-    const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+    const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     std::map<std::string, std::size_t> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root))
         if (entry.is_regular_file() && !entry.path().stem().string().ends_with("_test"))
@@ -138,7 +139,7 @@ TEST(Folders, HoldAtMostFortyFilesBesideTests) {
 
 /// Two types of one name in one program are one to the linker, which keeps the code of either for both.
 TEST(Headers, DefineEveryTypeOnce) {
-    const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+    const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     const std::regex definition(
         R"(^(?:template <.*> )?(?:struct|class|enum class) (?:alignas\(\w+\) )?(\w+)(?: final)?(?: : [^;]*)? \{.*)");
     std::map<std::string, std::string> file_of;
@@ -156,7 +157,7 @@ TEST(Headers, DefineEveryTypeOnce) {
 }
 
 TEST(Includes, EveryHeaderIsGuardedAndEveryFileIsRead) {
-    const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+    const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     std::size_t headers = 0;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
         if (entry.path().extension() != ".hpp") continue;

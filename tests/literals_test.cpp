@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 #include <vector>
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
@@ -73,7 +74,7 @@ std::vector<std::string> homeless_literals(const std::string& name, std::istream
 }  // namespace
 
 TEST(Literals, ThatDecideWorkStandInTheTable) {
-    const fs::path root = fs::path(EXITANCE_SOURCE_DIR) / "src/exitance";
+    const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     std::size_t files = 0;
     for (const std::string& folder : deciding)
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {

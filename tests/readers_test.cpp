@@ -2,6 +2,7 @@
 
 #include "exitance/io/export/export.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "support/places.hpp"
 #include "support/run.hpp"
 #include "support/sample_solution.hpp"
 
@@ -13,7 +14,7 @@ bool have_readers() {
     return run("/usr/bin/python3 -c 'import h5py, numpy, vtk'").status == 0;
 }
 
-const std::string scripts = std::string(EXITANCE_SOURCE_DIR) + "/tests/readers/";
+const std::string scripts = test::source_folder() + "/tests/readers/";
 
 TEST(Readers, OfPythonAndVtkUnderstandSolutions) {
     if (bands != 3 || !have_readers()) return;

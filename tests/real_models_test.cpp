@@ -8,6 +8,7 @@
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/transport/stage.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace exitance {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Models as users bring them, each with one thing that they do.
 fs::path shared_scenes() {
-    return fs::path(EXITANCE_SHARED_DIR) / "scenes";
+    return fs::path(test::shared_folder()) / "scenes";
 }
 
 #define SKIP_WITHOUT_SHARED_SCENES() \

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <regex>
 #include <string>
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
@@ -19,7 +20,7 @@ std::string read(const fs::path& path) {
 }  // namespace
 
 TEST(References, EverySourceNamedInTheCodeHasAnEntry) {
-    const fs::path root(EXITANCE_SOURCE_DIR);
+    const fs::path root(test::source_folder());
     const std::string entries = read(root / "docs/references.bib");
     const std::regex key(R"(\[([A-Z][A-Za-z]+[0-9]{2}|CGAL)\])");
     std::size_t found = 0;

@@ -10,6 +10,7 @@
 #include "exitance/reconstruct/error/area_samples.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/scene/families/generate.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace exitance {
@@ -73,7 +74,7 @@ TEST(RoundTrip, ASceneHasTheSameLightInEveryFormat) {
         ASSERT_TRUE(write_obj(*description, folder / "s.obj"));
         ASSERT_TRUE(write_file(folder / "s.rad", radiance_text(*description)));
         const Scene obj = loaded(folder / "s.obj"), rad = loaded(folder / "s.rad"),
-                    glb = loaded(EXITANCE_SOURCE_DIR "/tests/data/" + family + "_blender.glb");
+                    glb = loaded(test::source_folder() + "/tests/data/" + family + "_blender.glb");
         EXPECT_EQ(glb.regions().size(), obj.regions().size()) << "triangles are polygons again";
         EXPECT_NEAR(glb.box().diagonal(), obj.box().diagonal(), 1e-6 * obj.box().diagonal());
 

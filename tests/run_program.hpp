@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 extern char** environ;
@@ -40,7 +41,7 @@ struct Finished {
 class RunningProgram {
   public:
     explicit RunningProgram(const std::vector<std::string>& arguments, const std::string& input = {},
-                            std::string program = EXITANCE_PROGRAM) {
+                            std::string program = test::program()) {
         write_text(folder_ / "in", input);
         posix_spawn_file_actions_t files;
         posix_spawn_file_actions_init(&files);

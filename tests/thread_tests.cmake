@@ -10,11 +10,9 @@ foreach(path IN LISTS unit_tests)
     endif()
 endforeach()
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${thread_tests})
-add_executable(exitance-thread-tests ${thread_tests} planted_race.cpp)
+add_executable(exitance-thread-tests ${thread_tests} planted_race.cpp ${places})
 target_include_directories(exitance-thread-tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_options(exitance-thread-tests PRIVATE -Wall -Wextra -Werror)
-target_compile_definitions(exitance-thread-tests PRIVATE
-    EXITANCE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" EXITANCE_SHARED_DIR="${EXITANCE_SHARED_DIR}")
 target_link_libraries(exitance-thread-tests PRIVATE exitance GTest::gtest_main rapidcheck fmt::fmt)
 target_precompile_headers(exitance-thread-tests PRIVATE <gtest/gtest.h>
     ${PROJECT_SOURCE_DIR}/src/exitance/transport/stage.hpp ${PROJECT_SOURCE_DIR}/src/exitance/reconstruct/solution.hpp)

@@ -6,13 +6,14 @@
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
+#include "support/places.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
 namespace {
 
 TEST(OpenScenes, AreRightToTwoPercentAtEveryProbeDownToTheirDimmestEdges) {
-    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "reference" / "analytic";
+    const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "reference" / "analytic";
     for (const char* name : {"plates_1", "plates_0.5"}) {
         const std::string scene_file = (folder / name / (std::string(name) + ".obj")).string();
         if (!std::filesystem::exists(scene_file) || bands != 3) continue;  // nothing to compare with

@@ -8,11 +8,12 @@
 #include "cli/small_scene.hpp"
 #include "exitance/core/archive.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "support/places.hpp"
 
 namespace exitance::test {
 namespace {
 
-const std::string mpirun = EXITANCE_MPIRUN;  ///< Empty where the build has no MPI.
+const std::string mpirun = test::mpirun();  ///< Empty where the build has no MPI.
 
 /// What a run wrote, but for what differs from run to run.
 std::string light_in(const TemporaryFolder& folder, const std::string& name) {
@@ -50,7 +51,7 @@ class ProgramOfProcesses : public ::testing::Test {
         return words;
     }
     static std::vector<std::string> launched(int processes, const std::vector<std::string>& words) {
-        std::vector<std::string> all{"-n", std::to_string(processes), EXITANCE_PROGRAM};
+        std::vector<std::string> all{"-n", std::to_string(processes), test::program()};
         all.insert(all.end(), words.begin(), words.end());
         return all;
     }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/small_scene.hpp"
+#include "support/places.hpp"
 
 namespace exitance::test {
 namespace {
@@ -64,7 +65,7 @@ TEST(ProgramResume, AnotherSolvesCheckpointIsRefusedWithStatusThree) {
     EXPECT_NE(other.err.find("room.h5.checkpoint"), std::string::npos) << other.err;
     // Another build may lay its state out otherwise; bytes after a program's end make it another one.
     const std::string build = folder / "exitance";
-    std::filesystem::copy_file(EXITANCE_PROGRAM, build);
+    std::filesystem::copy_file(test::program(), build);
     std::ofstream(build, std::ios::binary | std::ios::app) << "another";
     RunningProgram rebuilt(solve(scene, folder, "room", {"--resume"}), {}, build);
     const Finished refused = rebuilt.finish();

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "cli/small_scene.hpp"
+#include "support/places.hpp"
 
 namespace exitance::test {
 
@@ -102,7 +103,7 @@ TEST(ProgramSolve, TheLineOfTimesTellsEveryPhaseThatTookAny) {
 
 TEST(ProgramSolve, ContactsCloserThanRoundingCutElementsOnlySoOften) {
     const TemporaryFolder folder;
-    const std::string scene = std::string(EXITANCE_SOURCE_DIR) + "/tests/data/nearly_parallel_boxes.obj";
+    const std::string scene = test::source_folder() + "/tests/data/nearly_parallel_boxes.obj";
     const Finished run = run_program({"solve", scene, "-o", folder / "s.h5", "--error", "0.2", "-q"});
     EXPECT_EQ(run.status, 0) << run.err;
 }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/small_scene.hpp"
+#include "support/places.hpp"
 
 namespace exitance::test {
 
@@ -19,9 +20,9 @@ TEST(TimeToError, MeasuresTheErrorThatCompareMeasures) {
         points += std::string(point) + "\n";
     ASSERT_EQ(run_program({"probe", fine, "--points", "-", "-o", folder / "reference.csv"}, points).status, 0);
 
-    const std::string tool = std::string(EXITANCE_SOURCE_DIR) + "/bench/time_to_error";
+    const std::string tool = test::source_folder() + "/bench/time_to_error";
     const Finished run = RunningProgram({tool, scene, folder / "reference.csv", "--errors", "0.1", "--program",
-                                         EXITANCE_PROGRAM, "--no-probe-time", "--json", folder / "rows.json"},
+                                         test::program(), "--no-probe-time", "--json", folder / "rows.json"},
                                         {}, "/usr/bin/python3")
                              .finish();
     ASSERT_EQ(run.status, 0) << run.err;

@@ -3,11 +3,12 @@
 #include <regex>
 
 #include "run_program.hpp"
+#include "support/places.hpp"
 
 namespace exitance::test {
 namespace {
 
-const std::filesystem::path tutorials = std::filesystem::path(EXITANCE_SOURCE_DIR) / "docs/tutorials";
+const std::filesystem::path tutorials = std::filesystem::path(test::source_folder()) / "docs/tutorials";
 
 /// The same commands on less work: nothing that they do is left out.
 std::string made_quick(std::string commands) {
@@ -37,9 +38,9 @@ TEST_P(Tutorials, RunsAsItIsWritten) {
     const std::string page = std::string(GetParam()) + ".md", commands = commands_of(page);
     ASSERT_NE(commands, "");
     const TemporaryFolder folder;
-    write_text(folder / "run.sh", "set -eo pipefail\ncd '" + (folder / "") + "'\nmkdir bin\nln -s '" +
-                                      EXITANCE_PROGRAM + "' bin/exitance\nPATH=$PWD/bin:$PATH\n" +
-                                      made_quick(commands) + "\necho the end\n");
+    write_text(folder / "run.sh", "set -eo pipefail\ncd '" + (folder / "") + "'\nmkdir bin\nln -s '" + test::program() +
+                                      "' bin/exitance\nPATH=$PWD/bin:$PATH\n" + made_quick(commands) +
+                                      "\necho the end\n");
     const Finished run = RunningProgram({folder / "run.sh"}, {}, "/bin/bash").finish();
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     EXPECT_TRUE(run.out.ends_with("the end\n")) << run.out << run.err;

@@ -9,13 +9,14 @@
 #include "exitance/io/export/viewer_frame.hpp"
 #include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "support/places.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance::test {
 namespace {
 
 bool has_page() {
-    return std::filesystem::exists(std::filesystem::path(EXITANCE_PROGRAM).parent_path() / "../viewer/index.html");
+    return std::filesystem::exists(std::filesystem::path(test::program()).parent_path() / "../viewer/index.html");
 }
 
 /// What a server on this machine answers to a request, to the end of the connection.

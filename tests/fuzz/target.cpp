@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace exitance::fuzz {
@@ -31,7 +32,8 @@ std::vector<std::string> corpus_folder(std::string_view name) {
     namespace fs = std::filesystem;
     std::vector<fs::path> paths;
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(fs::path(EXITANCE_SOURCE_DIR "/tests/fuzz/corpus") / name, ignored))
+    for (const auto& entry :
+         fs::directory_iterator(fs::path(test::source_folder() + "/tests/fuzz/corpus") / name, ignored))
         paths.push_back(entry.path());
     std::sort(paths.begin(), paths.end());
     std::vector<std::string> out;

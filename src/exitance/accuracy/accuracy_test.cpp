@@ -21,7 +21,7 @@ void expect_continuous(bool sums) {
     std::vector<Piece> pieces;
     for (int i = 0; i < 12; ++i)
         pieces.push_back(
-            {RegionId(0), Patch({0, 0, 0}, {1 + 0.37 * i, 0, 0}, {0, 3 - 0.17 * i, 0}, Patch::Shape::parallelogram)});
+            {RegionId(0), Patch{{0, 0, 0}, {1 + 0.37 * i, 0, 0}, {0, 3 - 0.17 * i, 0}, Patch::Shape::parallelogram}});
     const auto of = [&](double error) {
         const Knobs plain = knobs_for_error(error, pieces, {});
         return sums ? knobs_for_sums(plain, error, pieces, {}) : plain;

@@ -10,6 +10,7 @@
 #include "exitance/experiments/cie171/page.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/io/files/probe_file.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace exitance {
@@ -54,7 +55,7 @@ TEST(Cie171, TheUniformSkyIsADiffuseOpening) {
 
 /// The values that rows are compared with, against those that another program found.
 TEST(Cie171, ExactValuesAreThoseOfTheReferences) {
-    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "reference/cie171";
+    const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "reference/cie171";
     if (bands != 3 || !std::filesystem::exists(folder)) return;
     const auto compare = [&](const std::string& file, const std::vector<Cie171Row>& rows, auto belongs) {
         const Result<ProbeReference> reference = load_probe_reference((folder / file).string());

@@ -1,4 +1,5 @@
 #include "exitance/form_factors/pair_form_factor.hpp"
+#include "support/places.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -120,7 +121,7 @@ Outline outline_of(const nlohmann::json& json) {
 }
 
 TEST(PairFormFactor, ReproducesThePublishedUnoccludedPairs) {
-    std::ifstream file(std::string(EXITANCE_SHARED_DIR) + "/reference/view_factors.json");
+    std::ifstream file(test::shared_folder() + "/reference/view_factors.json");
     const nlohmann::json table = nlohmann::json::parse(file, nullptr, false);
     if (table.is_discarded()) return;
     for (const auto& c : table["cases"]) {

@@ -9,6 +9,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
@@ -266,7 +267,7 @@ Outline outline_of(const nlohmann::json& json) {
 }
 
 nlohmann::json published() {
-    std::ifstream file(std::string(EXITANCE_SHARED_DIR) + "/reference/view_factors.json");
+    std::ifstream file(test::shared_folder() + "/reference/view_factors.json");
     nlohmann::json table = nlohmann::json::parse(file, nullptr, false);
     return table.is_discarded()
                ? nlohmann::json{{"cases", nlohmann::json::array()}, {"enclosures", nlohmann::json::array()}}

@@ -10,6 +10,7 @@
 #include "exitance/direct/direct_light.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
+#include "support/places.hpp"
 #include "support/test_scenes.hpp"
 
 namespace exitance {
@@ -61,7 +62,7 @@ TEST(VisiblePart, UnderABlockerIsTheSourceLessTheBlockersShadow) {
 /// The irradiance (first band) at the points of a reference file against this, as the largest difference over the
 /// largest value; negative when the files are not there.
 double largest_difference(const std::string& scene_name, const std::string& reference_name) {
-    const std::string shared = EXITANCE_SHARED_DIR;
+    const std::string shared = test::shared_folder();
     std::ifstream reference(shared + "/reference/" + reference_name);
     if (!reference) return -1;
     const CheckedScene checked = load_scene(shared + "/scenes/" + scene_name);

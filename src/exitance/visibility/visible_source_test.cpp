@@ -11,6 +11,7 @@
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/visible_from_four.hpp"
 #include "support/blockers.hpp"
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
@@ -145,7 +146,7 @@ Outline outline_of(const nlohmann::json& json) {
 }
 
 TEST(VisibleSource, ReproducesThePublishedPoints) {
-    std::ifstream file(std::string(EXITANCE_SHARED_DIR) + "/reference/view_factors.json");
+    std::ifstream file(test::shared_folder() + "/reference/view_factors.json");
     const nlohmann::json table = nlohmann::json::parse(file, nullptr, false);
     if (table.is_discarded()) return;
     for (const auto& c : table["cases"]) {

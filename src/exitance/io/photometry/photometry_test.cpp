@@ -8,6 +8,7 @@
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
@@ -48,7 +49,7 @@ Vec3 direction(double theta, double phi) {
 }
 
 TEST(Photometry, SamplesHaveTheirFluxAndBadOnesAPlace) {
-    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "formats/samples";
+    const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "formats/samples";
     if (!std::filesystem::exists(folder / "expected.json")) return;
     std::ifstream in(folder / "expected.json");
     const nlohmann::json all = nlohmann::json::parse(in);

@@ -7,6 +7,7 @@
 
 #include "exitance/core/random.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "support/places.hpp"
 #include "support/run.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -85,7 +86,7 @@ TEST(WriteExr, IsReadBackBitForBitByAnIndependentReader) {
     const TemporaryFolder folder;
     const LinearImage image = linear_image(sample_picture(37, 21));
     ASSERT_TRUE(write_exr(folder / "p.exr", image, {{"units", "W/(m^2 sr)"}}));
-    const Ran ran = run("cd '" EXITANCE_SOURCE_DIR
+    const Ran ran = run("cd '" + test::source_folder() +
                         "/tests/readers' && /usr/bin/python3 -B -c '\nimport sys, exr\n"
                         "header, channels = exr.read_exr(sys.argv[1])\n"
                         "assert header[\"units\"] == b\"W/(m^2 sr)\"\n"

@@ -6,6 +6,7 @@
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/io/scenes/obj/obj.hpp"
 #include "exitance/scene/families/generate.hpp"
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
@@ -68,7 +69,7 @@ TEST(Regions, OfACutUpSceneAreThoseOfTheWholeToTheLastBit) {
 TEST(Regions, OfPublishedScenesDoNotDependOnHowTheyAreCut) {
     for (const char* name : {"room", "largeroom", "office_2x2x3", "degenerate/slivers", "degenerate/coords_1e6",
                              "degenerate/coplanar_touching", "degenerate/t_vertices", "degenerate/nonplanar_1e-6"}) {
-        const std::string path = std::string(EXITANCE_SHARED_DIR) + "/scenes/" + name + ".obj";
+        const std::string path = test::shared_folder() + "/scenes/" + name + ".obj";
         if (!std::filesystem::exists(path)) continue;
         const auto scene = load_obj(path);
         ASSERT_TRUE(scene) << scene.error().message;

@@ -1,4 +1,5 @@
 #include "exitance/io/scenes/scene_file.hpp"
+#include "support/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +63,7 @@ std::string said(const Finding& f) {
 }
 
 TEST(SceneFile, HardAndMalformedFilesAreAcceptedRepairedOrRefusedByName) {
-    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "scenes" / "degenerate";
+    const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "scenes" / "degenerate";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "there are no shared scenes";
     for (const Expected& e : expectations) {
         const std::filesystem::path path = folder / (e.file + ".obj");
@@ -82,7 +83,7 @@ TEST(SceneFile, HardAndMalformedFilesAreAcceptedRepairedOrRefusedByName) {
 }
 
 TEST(SceneFile, StrictReadingMakesErrorsOfRepairs) {
-    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "scenes" / "degenerate";
+    const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "scenes" / "degenerate";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "there are no shared scenes";
     for (const char* file : {"nonplanar_5cm.obj", "reflectance_1.obj", "zero_area_face.obj"}) {
         const CheckedScene checked = load_scene((folder / file).string(), Faults::refuse);
@@ -93,7 +94,7 @@ TEST(SceneFile, StrictReadingMakesErrorsOfRepairs) {
 }
 
 TEST(SceneFile, EveryPublishedSceneIsAccepted) {
-    const std::filesystem::path folder = std::filesystem::path(EXITANCE_SHARED_DIR) / "scenes";
+    const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "scenes";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "there are no shared scenes";
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() != ".obj") continue;

@@ -7,13 +7,14 @@
 
 #include "exitance/io/scenes/obj/obj.hpp"
 #include "exitance/scene/families/generate.hpp"
+#include "support/places.hpp"
 
 namespace exitance {
 namespace {
 
 /// Where the published test scenes are, when they are.
 std::filesystem::path published(const std::string& file) {
-    return std::filesystem::path(EXITANCE_SHARED_DIR) / "scenes" / file;
+    return std::filesystem::path(test::shared_folder()) / "scenes" / file;
 }
 
 TEST(ObjWriter, WhatIsWrittenIsReadBackAsItWas) {
