@@ -98,11 +98,12 @@ std::size_t times(const std::string& all, const std::string& text) {
 
 TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
     const std::vector<std::string> forms[] = {{"--error", "0.1"},
+                                              {"--error", "0.1", "--method", "hierarchical", "--keep-links"},
                                               {"--error", "0.05", "--method", "matrix", "--basis", "linear"}};
     for (const std::vector<std::string>& form : forms) {
         ASSERT_EQ(run_program(solve("one", form)).status, 0);
         double bytes_of_two = 0, messages_of_two = 0;
-        const bool is_linear = form.size() > 2;  // of which one number is enough
+        const bool is_linear = form.back() == "linear";  // of which one number is enough
         for (int processes = is_linear ? 3 : 2; processes <= (is_linear ? 3 : 4); ++processes) {
             std::vector<std::string> words = form;
             words.insert(words.end(), {"--json", "--threads", processes == 2 ? "2" : "1"});
@@ -112,6 +113,7 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
             EXPECT_EQ(times(run.out, "\"method\""), 1u) << "only one of them speaks";
             Result<Solution> written = load_solution(folder / "several.h5");
             ASSERT_TRUE(written);
+            EXPECT_EQ(written->links.links.empty(), form.back() != "--keep-links");
             std::filesystem::remove(folder / "one.plain");
             EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one")) << processes << " processes";
             // What one process would hand on goes to all others: so many bytes and messages, and no other ones.
@@ -154,6 +156,9 @@ TEST_F(ProgramOfProcesses, RefuseWhatOneAloneCanDo) {
     EXPECT_EQ(method.status, 2);
     EXPECT_EQ(times(method.err, "progressive does not run over several processes"), 1u) << method.err;
     EXPECT_NE(method.err.find("matrix does"), std::string::npos) << method.err;
+    const Finished judged = run_on(2, solve("none", {"--method", "hierarchical", "--clusters", "on"}));
+    EXPECT_EQ(judged.status, 2);
+    EXPECT_NE(judged.err.find("links are judged one by one"), std::string::npos) << judged.err;
     const Finished verb = run_on(2, {"check", scene});
     EXPECT_EQ(verb.status, 2);
     EXPECT_NE(verb.err.find("only `solve`"), std::string::npos) << verb.err;

@@ -16,10 +16,15 @@ Result<void> check_processes(const SolveArguments& arguments) {
     if (processes() == 1) return {};
     const SolveOptions& o = arguments.options;
     const bool own_choice = o.method == Method::automatic;
-    if (!own_choice && o.method != Method::matrix)
+    if (o.method == Method::hierarchical && !runs_over_processes(o.method, o))
+        return Error{ErrorCode::usage,
+                     "hierarchical does not run over several processes where links are judged one by one", "--method",
+                     "links that rays find do, without --basis, --epsilon, --oracle, --importance, --smoothing, "
+                     "--triage, --visibility, --clusters and --min-area; so does matrix"};
+    if (!own_choice && !runs_over_processes(o.method, o))
         return Error{ErrorCode::usage,
                      std::string(name_in(method_names, o.method)) + " does not run over several processes", "--method",
-                     "matrix does (and auto, which takes it)"};
+                     "matrix does (and auto, which takes it), and hierarchical where rays find the links"};
     const std::array<std::pair<const char*, bool>, 8> alone{{
         {"--form-factors", o.form_factors && *o.form_factors != FormFactorKind::ray_cast},
         {"--basis", o.basis && is_galerkin(*o.basis)},

@@ -27,6 +27,14 @@ inline ResultSharing& result_sharing() {
     return sharing;
 }
 
+/// Does what is this process's own share of a step, so that its processor time counts as dealt out.
+template <class Share>
+void do_own_share(const Share& share) {
+    const double before = processor_seconds();
+    share();
+    result_sharing().dealt_seconds += processor_seconds() - before;
+}
+
 /// Finished values that all processes hold alike stand once in the memory of a node from here on, instead of once a
 /// process: whole pages of them. Whoever writes to them all the same gets pages of its own again. Where the system does
 /// not let processes have pages in common, and where values are few, nothing is done. All processes call it alike.
@@ -61,13 +69,13 @@ void find_together(std::vector<T>& out, std::size_t grain, const Find& find, con
     constexpr std::size_t rounds = 16;
     const std::size_t together = blocks / rounds + 1;
     const auto is_own = [&](std::size_t b) { return b % together % sharing.processes == sharing.own; };
-    const double before = processor_seconds();
-    parallel_for(blocks, 1,
-                 [&](std::size_t b) {
-                     if (is_own(b)) for_block(b, [&](std::size_t i) { out[i] = find(i); });
-                 },
-                 {what});
-    result_sharing().dealt_seconds += processor_seconds() - before;
+    do_own_share([&] {
+        parallel_for(blocks, 1,
+                     [&](std::size_t b) {
+                         if (is_own(b)) for_block(b, [&](std::size_t i) { out[i] = find(i); });
+                     },
+                     {what});
+    });
     if (sharing.processes == 1) return;
     for (std::size_t first = 0; first < blocks; first += together) {
         std::vector<std::string> bytes(std::min(together, blocks - first));

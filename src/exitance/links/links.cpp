@@ -7,6 +7,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/links/link_kernel.hpp"
 #include "exitance/links/link_layout.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -158,8 +159,9 @@ ElementPart linked_part(const LinkSites& sites, const Links& links, const Cluste
     return sites.part_with(std::move(marked));
 }
 
-LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part)
-    : sites_(&sites), links_(&links), far_(far), part_(&part), b_(sites), E_(sites) {}
+LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part,
+                           std::size_t together)
+    : sites_(&sites), links_(&links), far_(far), part_(&part), together_(together), b_(sites), E_(sites) {}
 
 void LinkOperator::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
     const std::size_t n = sites_->nodes();
@@ -169,12 +171,21 @@ void LinkOperator::gather(std::span<const Spectrum> radiosity, std::span<Spectru
     });
     b_.pull(*part_);
     E_.clear(*part_);
-    links_->add_to(E_, b_);
-    if (far_) far_->add_to(E_, b_);
+    const auto add_links = [&] {
+        links_->add_to(E_, b_);
+        if (far_) far_->add_to(E_, b_);
+    };
+    if (together_ > 0)
+        do_own_share(add_links);
+    else
+        add_links();
     E_.push(*part_);
     parallel_for(ends.size(), 256, [&](std::size_t i) {
         for (std::size_t k = 0; k < n; ++k) irradiance[i * n + k] = E_.node(ends[i], k);
     });
+    if (together_ > 0)
+        exchange_values(
+            ends.size(), together_, [&](std::size_t i) { return irradiance.subspan(i * n, n); }, "solve");
 }
 
 Spectrum LinkOperator::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {

@@ -117,10 +117,16 @@ ElementPart linked_part(const LinkSites& sites, const Links& links, const Cluste
 
 /// Links as an operator on what the ends of a part of the hierarchy hold: unknown i n + k is node k of end i. Pull,
 /// links, push. All elements that links touch must be in the part.
+///
+/// Over several processes the links may be dealt out by the ends that they lead to: then each process gathers at its
+/// own ends, and sends that to all.
 class LinkOperator final : public TransportOperator {
   public:
     /// `far`: those of clusters; may be null.
-    LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part);
+    /// `together`: so many ends, one after the other, are one process's, and it alone has the links that lead to them;
+    /// all links lead to ends then. 0: every process has all links.
+    LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part,
+                 std::size_t together = 0);
 
     std::size_t size() const override { return part_->ends.size() * sites_->nodes(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
@@ -133,6 +139,7 @@ class LinkOperator final : public TransportOperator {
     const Links* links_;
     const ClusterLinks* far_;
     const ElementPart* part_;
+    std::size_t together_;
     mutable NodalField b_, E_;
 };
 

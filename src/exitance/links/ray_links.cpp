@@ -5,6 +5,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/trace.hpp"
 #include "exitance/transport/direct_projection.hpp"
+#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 struct LeafOrder {
     Field<ElementId, std::uint32_t> first, count;  ///< Those of an element are [first, first + count).
     std::vector<std::uint32_t> place;              ///< By leaf number.
+    std::vector<std::uint32_t> roots;              ///< Where the leaves of each root begin.
 
     LeafOrder(const ElementTree& tree, const LeafNumbering& numbering)
         : first(tree.size(), 0), count(tree.size(), 0), place(numbering.leaves.size()) {
@@ -21,7 +23,7 @@ struct LeafOrder {
             for (ElementId child : tree.children(ElementId(e))) count[ElementId(e)] += count[child];
         }
         std::uint32_t at = 0;
-        for (ElementId root : tree.roots()) first[root] = at, at += count[root];
+        for (ElementId root : tree.roots()) roots.push_back(first[root] = at), at += count[root];
         for (ElementId e : tree.ids()) {
             std::uint32_t next = first[e];
             for (ElementId child : tree.children(e)) first[child] = next, next += count[child];
@@ -34,9 +36,7 @@ struct LeafOrder {
 class RowLinker {
   public:
     RowLinker(const LinkSites& sites, const LeafOrder& order, const Field<ElementId, double>& roughness)
-        : tree_(sites.tree()), sites_(sites), order_(order), roughness_(roughness) {
-        for (ElementId root : tree_.roots()) roots_.push_back(order.first[root]);
-    }
+        : tree_(sites.tree()), sites_(sites), order_(order), roughness_(roughness) {}
 
     /// `counts`: as how many rays each of those counts that `hits` are of; empty: all alike.
     void link(ElementId receiver, std::span<const std::uint32_t> hits, std::span<const float> counts, double allowed,
@@ -49,7 +49,8 @@ class RowLinker {
                            static_cast<double>(hits.size());
         const double strength = rho * std::sqrt(tree_.area(receiver));
         for (std::size_t begin = 0; begin < places_.size();) {
-            const auto root = std::upper_bound(roots_.begin(), roots_.end(), places_[begin].leaf) - roots_.begin() - 1;
+            const auto& roots = order_.roots;
+            const auto root = std::upper_bound(roots.begin(), roots.end(), places_[begin].leaf) - roots.begin() - 1;
             const ElementId source = tree_.roots()[static_cast<std::size_t>(root)];
             begin += link_to(source, std::span(places_).subspan(begin), receiver, allowed / strength,
                              1 / static_cast<float>(hits.size()), out);
@@ -89,38 +90,57 @@ class RowLinker {
     const LinkSites& sites_;
     const LeafOrder& order_;
     const Field<ElementId, double>& roughness_;
-    std::vector<std::uint32_t> roots_;  ///< Where the leaves of each begin.
-    std::vector<Met> places_;           ///< What the rays of a leaf met.
+    std::vector<Met> places_;  ///< What the rays of a leaf met.
 };
 
 }  // namespace
 
 Links link_by_rays(const LinkSites& sites, const LeafNumbering& numbering, const RayRows& rows, const NodalField& b,
                    double allowed) {
-    constexpr std::size_t block_size = 64;
+    constexpr std::size_t block = RayRows::block;
     const ElementTree& tree = sites.tree();
     const LeafOrder order(tree, numbering);
     const Field<ElementId, double> roughness = b.roughness();
-    std::vector<std::vector<Link>> found((numbering.leaves.size() + block_size - 1) / block_size);
-    parallel_for(
-        found.size(), 1,
-        [&](std::size_t block) {
-            RowLinker linker(sites, order, roughness);
-            const std::size_t end = std::min(numbering.leaves.size(), (block + 1) * block_size);
-            for (std::size_t i = block * block_size; i < end; ++i)
-                linker.link(numbering.leaves[i], rows.hits(i), rows.counts(i), allowed, found[block]);
-            note_touched("links", found[block].size());
-        },
-        {"link rows", [&](std::size_t block) { return tree.region(numbering.leaves[block * block_size]).value; }});
+    std::vector<std::vector<Link>> found((numbering.leaves.size() + block - 1) / block);
+    parallel_own_ranges(numbering.leaves.size(), block,
+                        [&](std::size_t begin, std::size_t end) {
+                            RowLinker linker(sites, order, roughness);
+                            for (std::size_t i = begin; i < end; ++i)
+                                linker.link(numbering.leaves[i], rows.hits(i), rows.counts(i), allowed,
+                                            found[i / block]);
+                            note_touched("links", found[begin / block].size());
+                        },
+                        {"link rows", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
     std::size_t count = 0;
-    for (const auto& block : found) count += block.size();
+    for (const auto& some : found) count += some.size();
     std::vector<Link> links;
     links.reserve(count);
-    for (auto& block : found) {
-        links.insert(links.end(), block.begin(), block.end());
-        block = {};
+    for (auto& some : found) {
+        links.insert(links.end(), some.begin(), some.end());
+        some = {};
     }
     return Links(sites, std::move(links), {});
+}
+
+std::vector<KeptLink> list_of_all(const Links& own, const LeafNumbering& numbering) {
+    if (processes() == 1) return own.list();
+    const std::vector<KeptLink> here = own.list();
+    const std::size_t leaves = numbering.leaves.size();
+    std::vector<std::uint64_t> count(leaves, 0);
+    for (const KeptLink& link : here) ++count[numbering.number[link.receiver]];
+    exchange_values(
+        leaves, RayRows::block, [&](std::size_t i) -> std::uint64_t& { return count[i]; }, "kept links");
+    std::vector<std::size_t> first(leaves + 1, 0);
+    for (std::size_t i = 0; i < leaves; ++i) first[i + 1] = first[i] + count[i];
+    std::vector<KeptLink> all(first.back());
+    // Leaves are numbered in order of their ids, as links are listed.
+    for (std::size_t i = 0, at = 0; i < leaves; ++i)
+        if (is_own(i, RayRows::block))
+            for (std::size_t k = 0; k < count[i]; ++k) all[first[i] + k] = here[at++];
+    exchange_values(
+        leaves, RayRows::block, [&](std::size_t i) { return std::span(all).subspan(first[i], count[i]); },
+        "kept links");
+    return all;
 }
 
 }  // namespace exitance

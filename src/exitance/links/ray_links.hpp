@@ -15,10 +15,16 @@ namespace exitance {
 /// for, and F sums to 1 over the links of a leaf that sees surfaces alone. Source: levels as in [Hanrahan91], form
 /// factors as in [Malley88]. O(rays log rays).
 ///
+/// Where several processes work together, each finds the links of its own rows (`RowsHeld::by_owner`), RayRows::block
+/// leaves at a time.
+///
 /// sites    of order 1          rows   of all leaves of its tree
 /// b        reflected light of all elements, W/m^2
 /// allowed  error of one link: root of the receiver's area times the RMS error of the radiosity that it causes, W/m^2 m
 Links link_by_rays(const LinkSites& sites, const LeafNumbering& numbering, const RayRows& rows, const NodalField& b,
                    double allowed);
+
+/// The links of all processes, by receiver, then by source; `own`: those that link_by_rays found for this one. All.
+std::vector<KeptLink> list_of_all(const Links& own, const LeafNumbering& numbering);
 
 }  // namespace exitance

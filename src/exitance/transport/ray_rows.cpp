@@ -18,8 +18,6 @@ unsigned RayBudget::rays(double area, double mean_area) const {
 
 namespace {
 
-constexpr std::size_t row_block = 16;  ///< So many rows are one process's.
-
 /// Which points of which sequence the rays of a leaf are.
 struct Deal {
     std::uint64_t key;
@@ -76,7 +74,7 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
     if (stage.rooms.portals()) counts_.assign(first_[n], 1);
 
     parallel_own_ranges(
-        n, row_block,
+        n, block,
         [&](std::size_t begin, std::size_t end) {
             ElementRays rays(stage, tree, locator);
             const auto leave = budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
@@ -93,12 +91,12 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
     const auto row_of = [&](auto& values) {
         return [&](std::size_t i) { return std::span(values).subspan(first_[i], first_[i + 1] - first_[i]); };
     };
-    exchange_values(n, row_block, row_of(hits_), "cast rows");
-    if (!counts_.empty()) exchange_values(n, row_block, row_of(counts_), "cast rows");
+    exchange_values(n, block, row_of(hits_), "cast rows");
+    if (!counts_.empty()) exchange_values(n, block, row_of(counts_), "cast rows");
 }
 
 bool RayRows::is_here(std::size_t i) const {
-    return held_ == RowsHeld::everywhere || is_own(i, row_block);
+    return held_ == RowsHeld::everywhere || is_own(i, block);
 }
 
 Spectrum RayRows::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {
@@ -112,7 +110,7 @@ void RayRows::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> ir
     if (held_ == RowsHeld::everywhere || processes() == 1)
         return parallel_for(size(), 64, [&](std::size_t i) { irradiance[i] = gather_at(i, radiosity); });
     shared_ranges(
-        size(), row_block,
+        size(), block,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) irradiance[i] = gather_at(i, radiosity);
         },
@@ -130,7 +128,7 @@ std::vector<double> RayRows::kept() const {
     });
     if (held_ == RowsHeld::by_owner)
         exchange_values(
-            size(), row_block, [&](std::size_t i) -> double& { return out[i]; }, "cast rows");
+            size(), block, [&](std::size_t i) -> double& { return out[i]; }, "cast rows");
     return out;
 }
 

@@ -26,7 +26,7 @@ struct RayBudget {
 enum class Dealing : std::uint8_t { by_element, by_piece };
 
 /// Where several processes work together: has each of them all rows, or only those that it has cast? The latter are
-/// rows to gather by, and by nothing else.
+/// rows to gather by, and to find each process's own links with.
 enum class RowsHeld : std::uint8_t { everywhere, by_owner };
 
 /// Transport by rays: row i holds the elements that n_i rays, spread over element i with density cos / pi around its
@@ -48,6 +48,8 @@ class RayRows final : public TransportOperator {
     /// Of all processes together.
     std::size_t rays() const { return rays_; }
     static constexpr std::uint32_t missed = 0xffffffffu;
+    /// So many rows, one after the other, are one process's.
+    static constexpr std::size_t block = 16;
     /// Of row i: leaf numbers, `missed` where a ray met nothing or a back.
     std::span<const std::uint32_t> hits(std::size_t i) const {
         return std::span(hits_).subspan(first_[i], first_[i + 1] - first_[i]);

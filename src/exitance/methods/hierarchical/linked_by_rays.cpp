@@ -6,6 +6,7 @@
 
 #include "exitance/links/ray_links.hpp"
 #include "exitance/methods/constant_elements.hpp"
+#include "exitance/transport/distributed.hpp"
 #include "exitance/transport/open_share.hpp"
 
 namespace exitance {
@@ -61,8 +62,9 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
     if (unless_open && is_mostly_open(stage, light.tree, light.numbering, locator, light.reflected, input.options.seed))
         return std::nullopt;
     const RayRows rows(stage, light.tree, light.numbering, locator, dealt_out(input.knobs.solve_rays),
-                       input.options.seed, Dealing::by_piece);
+                       input.options.seed, Dealing::by_piece, RowsHeld::by_owner);
     light.rays = rows.rays();
+    light.kept = kept_light(rows, stage.scene);
     reflect_again(rows, stage.scene, light);
 
     const NodalBasis constants(HierarchyBasis::haar);
@@ -71,17 +73,15 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
     for (std::size_t i = 0; i < leaves.size(); ++i) b.set_node(leaves[i], 0, light.reflected[i]);
     b.pull();
     const Links links = link_by_rays(sites, light.numbering, rows, b, allowed_error(input, light, rows.rays()));
-    input.progress.note(
-        fmt::format("{} links found by {} rays of {} leaves", links.size(), rows.rays(), leaves.size()));
+    light.links = static_cast<std::size_t>(sum_of_all(static_cast<double>(links.size())));
+    input.progress.note(fmt::format("{} links found by {} rays of {} leaves", light.links, rows.rays(), leaves.size()));
 
     // Every leaf has links of its own: the part is all of the hierarchy.
     const ElementPart part{sites.inner(), leaves};
-    light.kept = kept_light(rows, stage.scene);
-    relax_constant_elements(input, LinkOperator(sites, links, nullptr, part), light);
-    light.links = links.size();
+    relax_constant_elements(input, LinkOperator(sites, links, nullptr, part, RayRows::block), light);
     light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();
     light.elements_by_level = sites.count_by_level();
-    if (input.options.keep_links) light.kept_links = links.list();
+    if (input.options.keep_links) light.kept_links = list_of_all(links, light.numbering);
     return light;
 }
 

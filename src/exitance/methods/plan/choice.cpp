@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/plan/obedience.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/transport/distributed.hpp"
@@ -46,6 +47,10 @@ bool runs_over_processes(Relaxation relaxation) {
     return relaxation != Relaxation::gauss_seidel && relaxation != Relaxation::southwell;
 }
 
+bool runs_over_processes(Method method, const SolveOptions& options) {
+    return method == Method::matrix || (method == Method::hierarchical && !asks_for_judged_links(options));
+}
+
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     const bool is_free = options.method == Method::automatic;
     if (is_free && stage.scene.has_diffusing_panes() && obeys_all(Method::matrix, options)) {
@@ -60,7 +65,10 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
         choice.options.method = other;
         choice.why = "obeys all options that were given";
     }
-    if (processes() == 1 || choice.options.method == Method::matrix) return choice;
+    const bool by_rays = runs_over_processes(choice.options.method, choice.options) &&
+                         !(choice.options.method == Method::hierarchical &&
+                           links_outgrow_memory(stage.pieces.size(), choice.options));  // clusters are, then
+    if (processes() == 1 || by_rays) return choice;
     choice.why = fmt::format("{} would be the choice ({}), but does not run over processes",
                              name_in(method_names, choice.options.method), choice.why);
     choice.options = options;

@@ -16,6 +16,9 @@ struct MethodChoice {
 
 /// Are its steps those of all unknowns at once, so that several processes can share them?
 bool runs_over_processes(Relaxation relaxation);
+/// Can several processes share the method's work? That of `matrix` on rows of rays, and of `hierarchical` where rays
+/// find the links, too: not where something asked for has them judged one by one.
+bool runs_over_processes(Method method, const SolveOptions& options);
 
 /// By what is asked for, what stands in the scene, and the error. Where several processes work together and the choice
 /// does not run over them, the next that does, which is `matrix` on rows of rays.

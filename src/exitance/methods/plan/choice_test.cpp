@@ -37,5 +37,14 @@ TEST(MethodChoice, GivesLinksToWhoLooksAtPointsAndCountsReflectionsByMatrix) {
     EXPECT_EQ(choose_method(stage, {.method = Method::wavelet, .bounces = 2}).options.method, Method::matrix);
 }
 
+TEST(MethodChoice, KnowsWhatSeveralProcessesCanShare) {
+    EXPECT_TRUE(runs_over_processes(Method::matrix, {}));
+    EXPECT_TRUE(runs_over_processes(Method::hierarchical, {.keep_links = true}));
+    EXPECT_FALSE(runs_over_processes(Method::hierarchical, {.clusters = true}));
+    EXPECT_FALSE(runs_over_processes(Method::hierarchical, {.oracle = LinkOracle::form_factor}));
+    EXPECT_FALSE(runs_over_processes(Method::wavelet, {})) << "may judge links one by one, as the scene is";
+    EXPECT_FALSE(runs_over_processes(Method::progressive, {}));
+}
+
 }  // namespace
 }  // namespace exitance
