@@ -123,6 +123,11 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
             EXPECT_GT(bytes, 0);
             for (const char* part : {"dealt", "repeated"})
                 EXPECT_GT(written->statistics.figures[part + std::string("_processor_seconds")], 0);
+            double dealt = 0;
+            for (const auto& [name, seconds] : written->statistics.figures)
+                if (name.starts_with("dealt_seconds_")) dealt += seconds;
+            EXPECT_GE(p * written->statistics.figures["longest_processor_seconds"], 0.999 * dealt)
+                << "nobody takes longest for less than all do on average; a nanosecond is lost at every meeting";
             if (is_linear) continue;
             EXPECT_EQ(bytes, (p - 1) * bytes_of_two);
             EXPECT_EQ(messages, p * (p - 1) / 2 * messages_of_two);

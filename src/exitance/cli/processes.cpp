@@ -83,6 +83,15 @@ void record_processes(SolveStatistics& statistics) {
         messages += figures["messages_" + name] = sum_of_all(static_cast<double>(t.messages));
         bytes += figures["message_bytes_" + name] = sum_of_all(static_cast<double>(t.bytes));
     }
+    double longest = 0;
+    const std::map<std::string, DealtTime> dealt = dealt_time();
+    for (const auto& [what, t] : dealt) {
+        std::string name = what;
+        std::replace(name.begin(), name.end(), ' ', '_');
+        figures["dealt_seconds_" + name] = sum_of_all(t.own);
+        longest += figures["longest_seconds_" + name] = t.longest;
+    }
+    figures["longest_processor_seconds"] = longest;
     figures["messages"] = messages, figures["message_bytes"] = bytes;
     record_processor_time(statistics);
 }

@@ -363,10 +363,12 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         std::size_t count = 0;
         for (; end < planes && count < together; ++end) count += leaves[end].size();
         std::vector<FoundLeaves> found(end - first);
+        std::vector<double> work;  // planes differ much: a floor may have as many leaves as all that stands on it
+        for (std::size_t p = first; p < end; ++p) work.push_back(static_cast<double>(leaves[p].size()));
         find_together(
             found, 1, [&](std::size_t k) { return find(first + k); },
             [](auto& archive, FoundLeaves& f) { archive(f.node_count, f.leaf, f.places, f.nodes, f.place, f.node); },
-            "nodes");
+            "nodes", work);
         for (std::size_t k = 0; k < found.size(); ++k)
             if (!leaves[first + k].empty() && found[k].leaf.empty()) return {};
         if (first == 0 && count > 0) {

@@ -31,6 +31,8 @@ struct Team {
     int common_file = -1;  ///< Of what is open in common.
     std::map<std::string, Traffic> traffic;
     ExchangeTime time;
+    std::map<std::string, DealtTime> dealt;
+    double dealt_before = 0;  ///< Seconds that were dealt to this process until the end of a loop.
 };
 Team team;
 
@@ -78,14 +80,16 @@ void reduce(const T* own, T* all, int count, MPI_Datatype type, MPI_Op operation
     wait_for(request);
 }
 
-void exchange_results(std::span<std::string> blocks, const char* what) {
+void exchange_results(std::span<std::string* const> blocks, const char* what) {
     std::vector<std::uint64_t> sizes(blocks.size());
-    for (std::size_t b = 0; b < blocks.size(); ++b) sizes[b] = blocks[b].size();
+    for (std::size_t b = 0; b < blocks.size(); ++b) sizes[b] = blocks[b] ? blocks[b]->size() : 0;
     exchange_values(
-        blocks.size(), 1, [&](std::size_t b) -> std::uint64_t& { return sizes[b]; }, what);
-    for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].resize(sizes[b]);
+        blocks.size(), 1, [&](std::size_t b) { return std::span(&sizes[b], blocks[b] ? 1 : 0); }, what);
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+        if (blocks[b]) blocks[b]->resize(sizes[b]);
     exchange_values(
-        blocks.size(), 1, [&](std::size_t b) { return std::span<char>(blocks[b]); }, what);
+        blocks.size(), 1, [&](std::size_t b) { return blocks[b] ? std::span<char>(*blocks[b]) : std::span<char>(); },
+        what);
 }
 
 }  // namespace
@@ -137,6 +141,10 @@ const std::map<std::string, Traffic>& traffic() {
 
 ExchangeTime exchange_time() {
     return team.time;
+}
+
+const std::map<std::string, DealtTime>& dealt_time() {
+    return team.dealt;
 }
 
 std::size_t shared_memory_bytes() {
@@ -346,9 +354,13 @@ void send_from_first(void* data, std::size_t size, const char* what) {
 void meet(std::size_t things, const char* what) {
     const bool stops = team.agreed && ((team.asked && team.asked->requested()) || team.agreed->requested());
     const std::uint64_t place = ++team.meetings << 40 ^ things;
-    std::array<std::uint64_t, 3> own{place, ~place, stops}, all{};
+    constexpr double ticks = 1e9;  // a second
+    const double dealt = result_sharing().dealt_seconds, since = dealt - std::exchange(team.dealt_before, dealt);
+    std::array<std::uint64_t, 4> own{place, ~place, stops, static_cast<std::uint64_t>(ticks * since)}, all{};
     const Stopwatch watch;
-    reduce(own.data(), all.data(), 3, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    reduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    DealtTime& of_step = team.dealt[what];
+    of_step.own += since, of_step.longest += static_cast<double>(all[3]) / ticks;
     team.time.waiting += watch.seconds();
     count("agreement", sizeof own);
     if (all[0] != place || all[1] != ~place)

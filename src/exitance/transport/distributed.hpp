@@ -87,6 +87,13 @@ struct ExchangeTime {
 };
 ExchangeTime exchange_time();
 
+/// Processor time of what was dealt out, by what ended it: this process's, and that of whichever process took most,
+/// from one end of a loop to the next, seconds. With all processes' work alike they are the same.
+struct DealtTime {
+    double own = 0, longest = 0;
+};
+const std::map<std::string, DealtTime>& dealt_time();
+
 /// Are the indices around i, `grain` of them a block, this process's? Blocks are dealt out like cards: neighbours cost
 /// alike, so all processes have about the same work.
 inline bool is_own(std::size_t i, std::size_t grain) {

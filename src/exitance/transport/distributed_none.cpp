@@ -55,6 +55,12 @@ const std::map<std::string, Traffic>& traffic() {
 ExchangeTime exchange_time() {
     return {};
 }
+
+const std::map<std::string, DealtTime>& dealt_time() {
+    static const std::map<std::string, DealtTime> none;
+    return none;
+}
+
 std::size_t shared_memory_bytes() {
     return 0;
 }
