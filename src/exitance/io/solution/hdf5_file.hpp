@@ -50,7 +50,8 @@ class Hdf5Writer {
     void make_group(const std::string& name);
 
     /// Numbers in rows of `columns`; one column makes a one-dimensional set. Big sets are compressed (shuffled, gzip
-    /// level 1), small ones carry a checksum, so that a damaged file is noticed in either.
+    /// level 1) or carry a checksum, small ones stand in the header, under its checksum, so that a damaged file is
+    /// noticed. All threads pack.
     template <class T>
     void write(const std::string& name, std::span<const T> values, std::size_t columns, Hdf5Label label) {
         write_numbers(name, values.data(), hdf5_type<T>(), values.size() / columns, columns, label);
@@ -88,6 +89,7 @@ class Hdf5Writer {
     using MakeBlock = std::function<void(std::size_t first, std::size_t count, void* out)>;
     void write_blocks(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns, Hdf5Label label,
                       const MakeBlock& make);
+    bool write_chunks(std::int64_t set, Hdf5Type type, std::size_t rows, std::size_t columns, const MakeBlock& make);
     void write_numbers(const std::string& name, const void* data, Hdf5Type type, std::size_t rows, std::size_t columns,
                        Hdf5Label label);
     void set_numbers(const std::string& object, const char* name, const void* data, Hdf5Type type, std::size_t count,
@@ -130,7 +132,8 @@ class Hdf5Reader {
     std::vector<T> read(const std::string& name, std::size_t columns = 1, std::optional<std::size_t> rows = {}) {
         std::vector<T> out;
         const std::optional<std::size_t> count = open_numbers(name, hdf5_type<T>(), columns, rows);
-        if (count) out.resize(*count * columns), read_numbers(out.data(), hdf5_type<T>());
+        if (count)
+            out.resize(*count * columns), read_numbers(std::as_writable_bytes(std::span(out)), hdf5_type<T>(), columns);
         if (failed()) out.clear();
         return out;
     }
@@ -152,7 +155,7 @@ class Hdf5Reader {
     Hdf5Reader() = default;
     std::optional<std::size_t> open_numbers(const std::string& name, Hdf5Type type, std::size_t columns,
                                             std::optional<std::size_t> rows);
-    void read_numbers(void* out, Hdf5Type type);
+    void read_numbers(std::span<std::byte> out, Hdf5Type type, std::size_t columns);
     std::optional<std::int64_t> open_set(const std::string& name);
 
     std::string path_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 
+#include "exitance/io/solution/hdf5_chunks.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/io/solution/hdf5_library.hpp"
 #include "exitance/io/solution/hdf5_rehearsal.hpp"
@@ -85,8 +86,9 @@ std::optional<std::size_t> Hdf5Reader::open_numbers(const std::string& name, Hdf
     return extent[0];
 }
 
-void Hdf5Reader::read_numbers(void* out, Hdf5Type type) {
-    if (H5Dread(set_, hdf5_native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0)
+void Hdf5Reader::read_numbers(std::span<std::byte> out, Hdf5Type type, std::size_t columns) {
+    if (read_hdf5_chunks(set_, type, columns, out)) return;
+    if (H5Dread(set_, hdf5_native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
         fail(set_name_, "cannot be read" + hdf5_says());
 }
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
+#include "exitance/core/parallel.hpp"
+#include "exitance/io/solution/hdf5_chunks.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/io/solution/hdf5_library.hpp"
 #include "exitance/io/solution/hdf5_output.hpp"
@@ -24,6 +27,11 @@ hid_t text_type(std::size_t length, bool ascii) {
 /// How many rows are packed together.
 std::size_t rows_of_chunk(std::size_t row_bytes, std::size_t rows) {
     return std::clamp<std::size_t>(chunk_bytes / row_bytes, 1, std::max<std::size_t>(rows, 1));
+}
+
+/// The digits of light do not shrink: deflating them takes long and gains a sixth. They get a checksum instead.
+Hdf5Filters filters_of(Hdf5Type type) {
+    return {H5Tget_size(hdf5_native_type(type)), type != Hdf5Type::float32};
 }
 
 bool is_ascii(std::string_view text) {
@@ -93,7 +101,7 @@ std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_typ
     } else if (rank > 0) {
         chunk[0] = rows_of_chunk(items / shape[0] * item_bytes, shape[0]);
         H5Pset_chunk(creation, rank, chunk.data());
-        // The digits of light do not shrink: deflating them takes long and gains a sixth. They get a checksum instead.
+        // As `filters_of` has it.
         if (H5Tequal(file_type, hdf5_stored_type(Hdf5Type::float32)) > 0) {
             H5Pset_fletcher32(creation);
         } else {
@@ -119,36 +127,56 @@ void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64
     describe(name, label);
 }
 
-/// In blocks of whole chunks, each of which is written at once.
+/// Rows from `first` on, made into whole chunks, packed by all threads, and written in their order.
+bool Hdf5Writer::write_chunks(std::int64_t set, Hdf5Type type, std::size_t rows, std::size_t columns,
+                              const MakeBlock& make) {
+    const Hdf5Filters filters = filters_of(type);
+    const std::size_t row_bytes = columns * filters.item_bytes, together = rows_of_chunk(row_bytes, rows),
+                      chunks = (rows + together - 1) / together, chunk_bytes = together * row_bytes;
+    std::vector<std::byte> made(std::min(chunks, hdf5_chunks_together) * chunk_bytes);
+    std::array<std::vector<std::byte>, hdf5_chunks_together> packed;
+    for (std::size_t first = 0; first < chunks; first += hdf5_chunks_together) {
+        const std::size_t count = std::min(hdf5_chunks_together, chunks - first), row = first * together,
+                          made_rows = std::min(rows - row, count * together);
+        make(row, made_rows, made.data());
+        std::fill(made.begin() + static_cast<std::ptrdiff_t>(made_rows * row_bytes), made.end(), std::byte{0});
+        parallel_for(
+            count, 1,
+            [&](std::size_t k) { filters.pack(std::span(made).subspan(k * chunk_bytes, chunk_bytes), packed[k]); },
+            {"pack"});
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::array<hsize_t, 2> at{row + k * together, 0};
+            if (H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), packed[k].size(), packed[k].data()) < 0) return false;
+        }
+    }
+    return true;
+}
+
 void Hdf5Writer::write_blocks(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns,
                               Hdf5Label label, const MakeBlock& make) {
     if (!failure_.empty()) return;
     const std::array<std::size_t, 2> extent = {rows, columns};
-    const std::span<const std::size_t> shape = std::span(extent).first(columns == 1 ? 1 : 2);
-    const std::size_t item_bytes = H5Tget_size(hdf5_native_type(type)), row_bytes = columns * item_bytes;
-    const Hdf5Handle set(make_set(name, hdf5_stored_type(type), shape, item_bytes));
-    if (set < 0) return fail("data set " + name);
-    const Hdf5Handle in_file(H5Dget_space(set));
-    const std::size_t together = rows_of_chunk(row_bytes, rows);
-    std::vector<std::byte> block(std::min(rows, together) * row_bytes);
-    for (std::size_t first = 0; first < rows; first += together) {
-        const std::size_t count = std::min(together, rows - first);
-        make(first, count, block.data());
-        const std::array<hsize_t, 2> start{first, 0}, size{count, columns};
-        const Hdf5Handle in_memory(H5Screate_simple(static_cast<int>(shape.size()), size.data(), nullptr));
-        if (H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr) < 0 ||
-            H5Dwrite(set, hdf5_native_type(type), in_memory, in_file, H5P_DEFAULT, block.data()) < 0)
-            return fail("data set " + name);
+    const std::size_t item_bytes = H5Tget_size(hdf5_native_type(type)), bytes = rows * columns * item_bytes;
+    const Hdf5Handle set(
+        make_set(name, hdf5_stored_type(type), std::span(extent).first(columns == 1 ? 1 : 2), item_bytes));
+    bool is_written = set >= 0;
+    if (is_written && bytes >= big_bytes) {
+        is_written = write_chunks(set, type, rows, columns, make);
+    } else if (is_written && bytes > 0) {
+        std::vector<std::byte> all(bytes);
+        make(0, rows, all.data());
+        is_written = H5Dwrite(set, hdf5_native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) >= 0;
     }
+    if (!is_written) return fail("data set " + name);
     describe(name, label);
 }
 
 void Hdf5Writer::write_numbers(const std::string& name, const void* data, Hdf5Type type, std::size_t rows,
                                std::size_t columns, Hdf5Label label) {
-    if (!failure_.empty()) return;
-    const std::array<std::size_t, 2> shape = {rows, columns};
-    write_set(name, data, hdf5_native_type(type), hdf5_stored_type(type), std::span(shape).first(columns == 1 ? 1 : 2),
-              H5Tget_size(hdf5_native_type(type)), label);
+    const std::size_t row_bytes = columns * H5Tget_size(hdf5_native_type(type));
+    write_blocks(name, type, rows, columns, label, [&](std::size_t first, std::size_t count, void* out) {
+        std::memcpy(out, static_cast<const std::byte*>(data) + first * row_bytes, count * row_bytes);
+    });
 }
 
 void Hdf5Writer::write_text(const std::string& name, std::string_view text, Hdf5Label label) {
