@@ -160,7 +160,11 @@ std::string as_first(std::string bytes, const char* what) {
 
 Result<void> by_first(const std::function<Result<void>()>& work) {
     const ResultSharing sharing = std::exchange(result_sharing(), ResultSharing());  // the others do nothing
+    const int own_threads = threads();
+    // Those on its node sleep, and leave it their processors, as far as it may run on these.
+    if (is_first_process() && team.node_size > 1) set_threads(own_threads * team.node_size);
     const Result<void> done = is_first_process() ? work() : Result<void>();
+    if (is_first_process() && team.node_size > 1) set_threads(own_threads);
     result_sharing() = sharing;
     if (team.size == 1 || as_first(static_cast<bool>(done))) return done;
     const Error none, &own = done ? none : done.error();

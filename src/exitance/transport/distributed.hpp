@@ -62,7 +62,7 @@ requires std::is_trivially_copyable_v<T> T as_first(T value) {
 }
 /// The same for bytes of any number.
 std::string as_first(std::string bytes, const char* what);
-/// What only the first process does; how it went, for all.
+/// What only the first process does, with the threads of all that are on its node; how it went, for all.
 Result<void> by_first(const std::function<Result<void>()>& work);
 
 /// How many processes have memory in common with this one, itself among them: those of its node.
