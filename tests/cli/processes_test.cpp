@@ -13,7 +13,7 @@
 namespace exitance::test {
 namespace {
 
-const std::string mpirun = test::mpirun();  ///< Empty where the build has no MPI.
+const std::string launcher = mpirun();  ///< Empty where the build has no MPI.
 
 /// What a run wrote, but for what differs from run to run.
 std::string light_in(const TemporaryFolder& folder, const std::string& name) {
@@ -37,7 +37,7 @@ pid_t last_child(pid_t parent) {
 class ProgramOfProcesses : public ::testing::Test {
   protected:
     void SetUp() override {
-        if (mpirun.empty()) GTEST_SKIP() << "the build has no MPI";
+        if (launcher.empty()) GTEST_SKIP() << "the build has no MPI";
         // More processes than processors, and as root in containers: what mpirun warns of is as wanted here.
         ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1), ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
         ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1),
@@ -57,7 +57,7 @@ class ProgramOfProcesses : public ::testing::Test {
     }
     static Finished run_on(int processes, const std::vector<std::string>& words) {
         if (processes == 1) return run_program(words);
-        return RunningProgram(launched(processes, words), {}, mpirun).finish();
+        return RunningProgram(launched(processes, words), {}, launcher).finish();
     }
     /// What is kept of `several.h5`: the checkpoint, then the parts of processes 1, 2, ...
     std::vector<std::string> kept_files() const {
@@ -73,7 +73,7 @@ class ProgramOfProcesses : public ::testing::Test {
         const std::vector<std::string> words =
             solve("several", {"--error", error, "--checkpoint-every", "1e-9", "--resume", "--progress", "json"});
         RunningProgram run =
-            processes == 1 ? RunningProgram(words) : RunningProgram(launched(processes, words), {}, mpirun);
+            processes == 1 ? RunningProgram(words) : RunningProgram(launched(processes, words), {}, launcher);
         while (!std::filesystem::exists(folder / "several.h5.checkpoint")) ASSERT_TRUE(run.wait_for("phase"));
         ASSERT_TRUE(run.wait_for("\"gather\""));
         if (processes == 1)
@@ -201,7 +201,7 @@ TEST_F(ProgramOfProcesses, GoOnFromACheckpointInAnotherNumber) {
     for (const int signal : {SIGKILL, SIGTERM}) {
         RunningProgram run(launched(processes--, solve("several", {"--error", error, "--checkpoint-every", "1e-9",
                                                                    "--resume", "--progress", "json"})),
-                           {}, mpirun);
+                           {}, launcher);
         // The last of the processes that mpirun has started ends, and with it all.
         while (!std::filesystem::exists(kept)) ASSERT_TRUE(run.wait_for("phase"));
         ASSERT_TRUE(run.wait_for("\"gather\""));
