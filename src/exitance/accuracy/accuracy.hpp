@@ -14,6 +14,7 @@ struct Knobs {
     double residual = 0;          ///< Of the discrete system.
     std::size_t max_iterations = 1000;
     double link_error = 0;                 ///< Of all links together, relative to the mean reflected radiosity.
+    bool links_deliver = true;             ///< If their polynomials can, with nothing gathered afterwards.
     MeshSize gather_mesh;                  ///< Of the elements that indirect light is gathered on, to begin with.
     RayBudget gather_rays;                 ///< Rays of a node.
     double gather_tolerance = 0;           ///< Error of interpolation, relative to the mean reflected radiosity.

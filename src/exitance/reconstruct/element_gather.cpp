@@ -31,10 +31,7 @@ std::array<Vec2, 4> four_corners(const std::vector<Vec2>& domain) {
 }  // namespace
 
 bool ElementGather::suits(const Stage& stage) {
-    // Each gather begins at all pieces. Beyond some dozens, rays are cheaper.
-    constexpr std::size_t most = 64;
-    return stage.occluders.has_nothing_inside() && stage.scene.panes().empty() && !stage.scene.has_diffusing_panes() &&
-           stage.pieces.size() <= most;
+    return stage.occluders.has_nothing_inside() && stage.scene.panes().empty() && !stage.scene.has_diffusing_panes();
 }
 
 /// Light of an element, or of a part of a leaf.

@@ -24,7 +24,8 @@ class ElementGather {
     /// `b`: W/m^2. Light of elements that other surfaces lie on is left out: nobody sees it.
     ElementGather(const Stage& stage, const ElementFunction& b);
 
-    /// True if nothing stands between any two places, and there are few enough pieces to begin from.
+    /// True if nothing stands between any two places. A gather begins at all pieces: whether they are few enough for
+    /// it to take less than rays do, `forecast_ways` tells.
     static bool suits(const Stage& stage);
 
     class Workspace;

@@ -9,7 +9,6 @@
 #include "exitance/methods/hierarchical/link_rounds.hpp"
 #include "exitance/methods/hierarchical/linked_by_rays.hpp"
 #include "exitance/methods/hierarchical/ray_correction.hpp"
-#include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/transport/open_share.hpp"
 
 namespace exitance {
@@ -29,14 +28,13 @@ LinkSites::Held held_by(const MethodInput& input, HierarchyBasis kind) {
 }
 
 /// Are links alone asked for, or do polynomials give the light as exactly as it has to be? That the scene decides, not
-/// how far its links are refined: attempts of one solve do not take turns. In convex rooms sums (ElementGather) are
-/// surer where surfaces meet, unless very little error is asked for.
+/// how far its links are refined: attempts of one solve do not take turns. Not where the plan says that sums over
+/// elements (ElementGather) take less work.
 bool links_deliver(const Hierarchy& h) {
     const MethodInput& input = h.input;
     if (input.options.smoothing == false) return true;
     if (!h.is_polynomial) return false;
-    const bool sums = ElementGather::suits(input.stage) && input.options.error_target() > calibrated::sums_reach;
-    if (sums && !input.options.epsilon) return false;
+    if (!input.knobs.links_deliver && !input.options.epsilon) return false;
     const LeafNumbering numbering(h.light.tree);
     const ElementLocator locator(h.light.tree, input.stage.scene.regions().size());
     std::vector<Spectrum> light;

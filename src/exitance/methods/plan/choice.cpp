@@ -5,6 +5,7 @@
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/plan/obedience.hpp"
+#include "exitance/methods/plan/way_forecast.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/transport/distributed.hpp"
 
@@ -12,9 +13,16 @@ namespace exitance {
 
 namespace {
 
+/// May links be the way, or deliver the light of the polynomials that were asked for?
+bool may_deliver(const SolveOptions& options) {
+    const bool is_polynomial =
+        !options.basis || options.basis == BasisKind::multiwavelet2 || options.basis == BasisKind::multiwavelet3;
+    return is_polynomial && (options.method == Method::automatic || options.method == Method::wavelet) &&
+           options.error_demand() && !options.epsilon && options.importance.empty() && options.bounces < 0;
+}
+
 MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
-    MethodChoice out;
-    out.options = options;
+    MethodChoice out{.options = options, .forecast = forecast_ways(stage, options, may_deliver(options))};
     const auto choose = [&](Method method, std::string why) {
         out.options.method = method, out.why = std::move(why);
         return out;
@@ -29,16 +37,12 @@ MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
         !ElementGather::suits(stage))
         return choose(Method::discontinuity,
                       fmt::format("{:.3g}% asked of what is exported, past shadows", 100 * *options.error_interpolant));
-    // Rays need R^(-4/3), links of order 3 about R^(-1/3): in a tube of reflectance 0.7, 20 against 6 s at 0.1%. Above
-    // that the sums over elements which follow `matrix` are as fast, and better beside edges.
-    const bool is_fine = options.error_demand().value_or(1) <= calibrated::sums_reach;
-    if (is_fine && !options.basis && ElementGather::suits(stage)) {
-        out.options.basis = BasisKind::multiwavelet3;
-        return choose(Method::wavelet, fmt::format("few polygons with nothing between them, {:.3g}% asked for",
-                                                   100 * *options.error_demand()));
-    }
-    return choose(Method::matrix, fmt::format("{} polygons that hide one another; rays find light best there",
-                                              stage.scene.surfaces().size()));
+    if (!ElementGather::suits(stage))
+        return choose(Method::matrix, fmt::format("{} polygons that hide one another; rays find light best there",
+                                                  stage.scene.surfaces().size()));
+    if (!out.forecast.takes_links()) return choose(Method::matrix, describe(out.forecast));
+    out.options.basis = BasisKind::multiwavelet3;
+    return choose(Method::wavelet, describe(out.forecast));
 }
 
 }  // namespace
@@ -54,7 +58,7 @@ bool runs_over_processes(Method method, const SolveOptions& options) {
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     const bool is_free = options.method == Method::automatic;
     if (is_free && stage.scene.has_diffusing_panes() && obeys_all(Method::matrix, options)) {
-        MethodChoice choice{options, "counts both sides of diffusing panes"};
+        MethodChoice choice{.options = options, .why = "counts both sides of diffusing panes"};
         choice.options.method = Method::matrix;
         return choice;
     }

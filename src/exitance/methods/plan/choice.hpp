@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "exitance/methods/plan/way_forecast.hpp"
 #include "exitance/solve/solve_options.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -10,8 +11,9 @@ namespace exitance {
 /// The options with the method that solves in place of `auto`, its basis, and why that.
 struct MethodChoice {
     SolveOptions options;
-    std::string why;         ///< Empty where the user chose.
-    bool is_second = false;  ///< What would have been chosen does not run over the processes that there are.
+    std::string why = {};       ///< Empty where the user chose.
+    WayForecast forecast = {};  ///< Where there is a choice of transport, whoever chose the method.
+    bool is_second = false;     ///< What would have been chosen does not run over the processes that there are.
 };
 
 /// Are its steps those of all unknowns at once, so that several processes can share them?
@@ -20,7 +22,8 @@ bool runs_over_processes(Relaxation relaxation);
 /// find the links, too: not where something asked for has them judged one by one.
 bool runs_over_processes(Method method, const SolveOptions& options);
 
-/// By what is asked for, what stands in the scene, and the error. Where several processes work together and the choice
+/// By what is asked for and what stands in the scene; where nothing stands between any two places, by a forecast of the
+/// work that each way takes to the error. Where several processes work together and the choice
 /// does not run over them, the next that does, which is `matrix` on rows of rays.
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options);
 

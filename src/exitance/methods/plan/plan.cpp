@@ -7,7 +7,6 @@
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/plan/choice.hpp"
-#include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/reconstruct/unlit_sides.hpp"
 
 namespace exitance {
@@ -59,7 +58,8 @@ Plan make_plan(const Stage& stage, const SolveOptions& asked, bool hurry) {
                  error = hurry ? std::max(calibrated::hurried_error, target) : target;
     const std::vector<Piece> lit = stage.lit_pieces();
     plan.knobs = knobs_for_error(error, lit, plan.options);
-    plan.sums = ElementGather::suits(stage);
+    plan.sums = choice.forecast.takes_sums();
+    plan.knobs.links_deliver = !plan.sums || choice.forecast.takes_links();
     if (plan.sums) plan.knobs = knobs_for_sums(plan.knobs, error, lit, plan.options);
     plan.may_refine_delivered = asked.method == Method::automatic && method == Method::matrix && !plan.options.basis &&
                                 plan.options.bounces < 0 && !plan.sums && !plan.options.form_factors;

@@ -1,0 +1,148 @@
+#include "exitance/methods/plan/way_forecast.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exitance/accuracy/accuracy.hpp"
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/methods/plan/attempt_forecast.hpp"
+#include "exitance/reconstruct/element_gather.hpp"
+#include "exitance/reconstruct/error/area_samples.hpp"
+#include "exitance/reconstruct/gather.hpp"
+#include "exitance/scene/locator.hpp"
+#include "exitance/transport/direct_projection.hpp"
+
+namespace exitance {
+namespace {
+
+// Measured by `solve --threads 1 --verbose` on tubes, boxes and prisms at 2 to 0.1% (docs/figures.md, section G).
+constexpr double terms_a_ray = 10;           ///< Elements summed over, 25 ns each, in the time of a ray that is read.
+constexpr double terms_beside_pieces = 300;  ///< Of a place: elements that pieces near it are opened to.
+constexpr double light_rays = 64;            ///< Direct light on an element, in rays.
+constexpr double certificate_rays = 12;      ///< Of an element of the method's mesh, for late light.
+constexpr double pair_form_factors = 100;    ///< Of a pair of pieces: what may stand between is looked up for each.
+constexpr double element_form_factors = 24;  ///< Of links an element of the method's mesh, by 1 - mean reflectance.
+constexpr std::size_t pilot_points = 256;
+constexpr unsigned pilot_rays = 64;
+/// Rays that a solve is to take at least for a look at its light, which takes about twice those of the pilot: three
+/// percent.
+constexpr double worth_a_look = 64 * pilot_points * pilot_rays;
+
+/// Counts of a first attempt.
+struct Counts {
+    double elements = 0, row_rays = 0;
+    double gathered = 0;  ///< Elements that light is gathered on to begin with.
+    double light() const { return light_rays * elements; }
+};
+
+Counts count_elements(const Stage& stage, const Knobs& knobs) {
+    const ElementTree solved = stage.make_elements(knobs.solve_mesh);
+    const std::vector<ElementId> leaves = solved.leaves();
+    Counts out{.elements = static_cast<double>(leaves.size()),
+               .gathered = static_cast<double>(stage.make_elements(knobs.gather_mesh).leaves().size())};
+    for (const ElementId e : leaves) out.row_rays += knobs.solve_rays.rays(solved.area(e), stage.area / out.elements);
+    return out;
+}
+
+double gather_by_rays(const Counts& counts, const Knobs& knobs) {
+    constexpr double straight_places = 9, curved_places = 16;
+    return counts.gathered * (knobs.gather_curved ? curved_places : straight_places) * knobs.gather_rays.average;
+}
+
+/// Each place begins at all pieces, for a first estimate of its light and for the sum.
+double gather_by_sums(const Stage& stage, const Counts& counts, const Knobs& knobs) {
+    constexpr double places = 9;
+    const double terms = 2 * static_cast<double>(stage.pieces.size()) + terms_beside_pieces;
+    return (knobs.refined ? 2 : 1) * counts.gathered * places * terms / terms_a_ray;
+}
+
+/// What a link misses comes back from every reflection, so that links grow with their number; source: link_rounds.
+double links_work(const Stage& stage, const Counts& counts) {
+    double reflected = 0;
+    for (const Piece& piece : stage.lit_pieces())
+        reflected += piece.patch.area() * mean(stage.scene.material(piece.region).reflectance);
+    const double reflections = std::min(calibrated::largest_reflection_count, 1 / (1 - reflected / stage.area));
+    const double pairs = static_cast<double>(stage.pieces.size()) * static_cast<double>(stage.pieces.size());
+    return counts.light() + calibrated::link_form_factor_rays *
+                                (pair_form_factors * pairs + element_form_factors * reflections * counts.elements);
+}
+
+/// Spread of what 64 rays gather of direct light reflected once, by the mean of that: how uneven light is as surfaces
+/// see it.
+double pilot_spread(const Stage& stage, const SolveOptions& options) {
+    const Knobs coarse = knobs_for_error(calibrated::hurried_error, stage.lit_pieces(), options);
+    const StopRequest never;
+    const DirectProjection direct = project_direct_light(
+        stage, {.mesh = coarse.solve_mesh, .tolerance = coarse.direct_tolerance, .seed = options.seed}, never);
+    const std::vector<ProbePoint> points = points_uniform_in_area(stage.scene, pilot_points, options.seed);
+    const Locator locator(stage.scene);
+    const ElementLocator elements(direct.tree, stage.scene.regions().size());
+    const auto reflectance = [&](RegionId r) { return stage.scene.material(r).reflectance; };
+    const auto reflected = [&](RegionId r, const Point& p) { return reflectance(r) * direct.at(elements.find(r, p)); };
+    struct Sum {
+        double variance = 0, light = 0;
+        Sum& operator+=(const Sum& o) {
+            variance += o.variance, light += o.light;
+            return *this;
+        }
+    };
+    const Sum sum = parallel_sum<Sum>(points.size(), [&](std::size_t i) {
+        const SurfaceId face = locator.find(points[i].x, points[i].n);
+        if (face.is_none()) return Sum();
+        const RegionId region = stage.scene.surfaces()[face].region;
+        GatherWorkspace workspace;
+        const Gathered g =
+            gather_reflected(stage, points[i].x, points[i].n, region, pilot_rays, i, reflected, workspace);
+        const Spectrum rho = reflectance(region);
+        return Sum{mean(rho * rho * g.quarters), mean(rho * g.irradiance)};
+    });
+    return sum.light > 0 ? std::sqrt(sum.variance * static_cast<double>(points.size())) / sum.light : 0;
+}
+
+/// Attempts after the first, where constant elements err by more than their half of what is asked for: they err like
+/// independent rows of so many rays.
+double further_attempts(double spread, double error, const Counts& counts, double gather) {
+    namespace c = calibrated;
+    constexpr double methods_share = 0.5;
+    const double method = spread / std::sqrt(counts.elements);
+    if (method <= methods_share * error) return 0;
+    const double wanted = methods_share * c::attempt_aim * error;
+    const double finer = std::clamp(c::part_aim * wanted / method, c::least_tightening, c::most_method_tightening);
+    return forecast_attempt({.row_rays = counts.row_rays,
+                             .gather_rays = gather,
+                             .certificate_rays = certificate_rays * counts.elements,
+                             .method = method,
+                             .wanted = wanted,
+                             .left = 1,
+                             .finer = finer})
+        .finer_rays;
+}
+
+}  // namespace
+
+WayForecast forecast_ways(const Stage& stage, const SolveOptions& options, bool may_deliver) {
+    WayForecast out;
+    if (!ElementGather::suits(stage)) return out;
+    const double error = options.error_target();
+    const std::vector<Piece> lit = stage.lit_pieces();
+    const Knobs knobs = knobs_for_error(error, lit, options), for_sums = knobs_for_sums(knobs, error, lit, options);
+    const Counts by_rays = count_elements(stage, knobs), by_sums = count_elements(stage, for_sums);
+    const double gather = gather_by_sums(stage, by_sums, for_sums);
+    out.rays = by_rays.light() + by_rays.row_rays + gather_by_rays(by_rays, knobs);
+    out.sums = by_sums.light() + by_sums.row_rays + gather;
+    if (!may_deliver || std::min(out.rays, out.sums) < worth_a_look) return out;
+    out.links = links_work(stage, by_sums);
+    // What rays gather is noise enough to hide the elements' own error, and is refined step by step.
+    out.sums += further_attempts(pilot_spread(stage, options), error, by_sums, gather);
+    return out;
+}
+
+std::string describe(const WayForecast& forecast) {
+    const std::string matrix =
+        fmt::format("work of about {:.2g} rays by sums over elements, {:.2g} by rays", forecast.sums, forecast.rays);
+    return std::isfinite(forecast.links) ? fmt::format("{}, {:.2g} by links", matrix, forecast.links) : matrix;
+}
+
+}  // namespace exitance

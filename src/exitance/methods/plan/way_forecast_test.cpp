@@ -1,0 +1,101 @@
+#include "exitance/methods/plan/way_forecast.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/methods/plan/plan.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// A room over a regular polygon, 2.5 m high and white, whose ceiling shines.
+Scene round_room(int corners) {
+    SceneDescription d;
+    d.file = "round.obj";
+    const auto corner = [&](int k, double z) {
+        const double angle = 2 * pi * k / corners;
+        return Point{2 * std::cos(angle), 2 * std::sin(angle), z};
+    };
+    for (int k = 0; k < corners; ++k) d.points.insert(d.points.end(), {corner(k, 0), corner(k, 2.5)});
+    d.materials = {{"wall", Spectrum(0.75), Spectrum()}, {"ceiling", Spectrum(0.75), Spectrum(1.0)}};
+    d.groups = {"room"};
+    std::vector<std::uint32_t> floor, ceiling;
+    for (int k = 0; k < corners; ++k) {
+        const auto here = static_cast<std::uint32_t>(2 * k), next = static_cast<std::uint32_t>(2 * ((k + 1) % corners));
+        floor.push_back(here), ceiling.insert(ceiling.begin(), here + 1);
+        d.faces.push_back({{here, here + 1, next + 1, next}, 0u, 0, k + 1});
+    }
+    d.faces.push_back({floor, 0u, 0, corners + 1}), d.faces.push_back({ceiling, 1u, 0, corners + 2});
+    CheckedScene checked = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(checked.scene));
+    return std::move(*checked.scene);
+}
+
+Plan plan_at(const Scene& scene, double error) {
+    return make_plan(Stage(scene), {.error = error}, false);
+}
+
+// What is expected below was measured with each way forced, `solve --threads 1`, user time; none of these scenes is
+// among those that the forecast's numbers are from.
+
+TEST(WayForecast, SumsWhereManySidesStandRoundAnEmptyRoom) {
+    const Scene room = round_room(40);  // 116 pieces
+    EXPECT_TRUE(plan_at(room, 0.02).sums);
+    EXPECT_TRUE(plan_at(room, 0.005).sums);
+}
+
+TEST(WayForecast, TakesLinksWhereConstantElementsWouldNotReachTheErrorAtOnce) {
+    const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
+    EXPECT_EQ(plan_at(shaft, 0.02).options.method, Method::matrix);
+    const Plan fine = plan_at(shaft, 0.002);
+    EXPECT_EQ(fine.options.method, Method::wavelet);
+    EXPECT_TRUE(fine.knobs.links_deliver);
+}
+
+TEST(WayForecast, TakesSumsInALowRoomWhoseLightIsEven) {
+    const Scene low = box_scene(12, 9, 1.5, 0.8, 10);
+    EXPECT_EQ(plan_at(low, 0.002).options.method, Method::matrix);
+    EXPECT_TRUE(plan_at(low, 0.002).sums);
+}
+
+TEST(WayForecast, PairsOfManyPolygonsOutgrowSums) {
+    const Scene room = round_room(100);
+    const Stage stage(room);
+    const WayForecast forecast = forecast_ways(stage, {.error = 0.005}, true);
+    ASSERT_TRUE(std::isfinite(forecast.links));
+    EXPECT_LT(2 * forecast.sums, forecast.links);
+}
+
+TEST(WayForecast, CountsNothingWhereThingsStandInBetween) {
+    const Scene room = built_scene("cornell");
+    const WayForecast forecast = forecast_ways(Stage(room), {.error = 0.001}, true);
+    EXPECT_FALSE(forecast.takes_sums() || forecast.takes_links());
+}
+
+TEST(WayForecast, DeliversByTheLinksThatWereAskedForWhereTheyTakeLessThanSums) {
+    const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
+    const Stage stage(shaft);
+    const auto delivers = [&](double error) {
+        return make_plan(stage, {.method = Method::wavelet, .error = error}, false).knobs.links_deliver;
+    };
+    EXPECT_FALSE(delivers(0.02));
+    EXPECT_TRUE(delivers(0.002));
+}
+
+TEST(WayForecast, IsTheSameOnAnyNumberOfThreads) {
+    const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
+    const Stage stage(shaft);
+    const auto on = [&](int count) {
+        set_threads(count);
+        return forecast_ways(stage, {.error = 0.002}, true);
+    };
+    const WayForecast one = on(1), three = on(3);
+    set_threads(0);
+    EXPECT_EQ(one.sums, three.sums);
+    EXPECT_EQ(one.rays, three.rays);
+    EXPECT_EQ(one.links, three.links);
+}
+
+}  // namespace
+}  // namespace exitance
