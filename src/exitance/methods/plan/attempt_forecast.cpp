@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
+
 namespace exitance {
 
 AttemptForecast forecast_attempt(const AttemptFacts& facts) {
@@ -23,6 +25,13 @@ AttemptForecast forecast_attempt(const AttemptFacts& facts) {
         rows /= facts.finer * facts.finer;
         out.finer_rays += rows + facts.gather_rays + facts.certificate_rays;
     }
+    return out;
+}
+
+std::vector<double> attempt_aims(double asked, double error) {
+    std::vector<double> out = {asked};
+    const double most = calibrated::part_aim * error;
+    for (double aim = asked / calibrated::least_step; aim <= most; aim /= calibrated::least_step) out.push_back(aim);
     return out;
 }
 

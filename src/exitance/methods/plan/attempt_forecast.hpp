@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 namespace exitance {
 
@@ -25,5 +26,9 @@ struct AttemptForecast {
 };
 
 AttemptForecast forecast_attempt(const AttemptFacts& facts);
+
+/// What an attempt may aim at, where the last one has left an error and another is asked for: that one, and where there
+/// is no time for it, a little more, up to what is hardly better than what there is.
+std::vector<double> attempt_aims(double asked, double error);
 
 }  // namespace exitance

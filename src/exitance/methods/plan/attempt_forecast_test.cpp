@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace exitance {
 namespace {
 
@@ -34,6 +36,16 @@ TEST(AttemptForecast, FinerElementsAreTakenWhereTheGatherIsCheapAndTheEstimateDe
     AttemptFacts facts = usual;
     facts.gather_rays = 1e6, facts.row_rays = 1e4, facts.certificate_rays = 20e6, facts.left = 0.5, facts.finer = 0.2;
     EXPECT_FALSE(forecast_attempt(facts).takes_steps());
+}
+
+TEST(AttemptAims, BeginWithWhatIsAskedForAndEndWhereLittleIsGained) {
+    const std::vector<double> aims = attempt_aims(0.02, 0.1);
+    EXPECT_EQ(aims.front(), 0.02);
+    EXPECT_TRUE(std::is_sorted(aims.begin(), aims.end()));
+    EXPECT_LT(aims.back(), 0.1);
+    EXPECT_GT(aims.back(), 0.05) << "where time is short, half of what there is is worth an attempt";
+    // An error hardly above what is asked has to come down to that, or stays.
+    EXPECT_EQ(attempt_aims(0.02, 0.021), std::vector<double>{0.02});
 }
 
 }  // namespace

@@ -34,16 +34,16 @@ void Solver::solve_indirect_light() {
         if (light_->limited_by_memory) stop_early("memory limit");
         if (statistics().stopped_by == "memory limit") return;
         if (attempt_ == most_attempts) return stop_early("iterations");
-        const Tightened finer = next_attempt(*demand);
-        // One that cannot end in time would only be thrown away.
-        if (as_first(seconds_left(stop_) < watch.seconds() * finer.work)) return stop_early("time limit");
+        const std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
+        if (!next) return stop_early("time limit");
+        if (!next->forecast.empty()) progress_.note(next->forecast);
         progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, {}", 100 * certificate_.largest(),
                                    100 * *demand,
-                                   takes_step_    ? "refining what is delivered"
-                                   : finer.method ? "finer"
-                                                  : "finer, on the light that the method found"));
-        knobs_ = finer.knobs;
-        if (finer.method && !takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
+                                   next->is_step        ? "refining what is delivered"
+                                   : next->finer.method ? "finer"
+                                                        : "finer, on the light that the method found"));
+        knobs_ = next->finer.knobs, takes_step_ = next->is_step;
+        if (next->finer.method && !takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
         if (options_.memory_limit_bytes) {
             const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
             if (!fits || !*fits) return stop_early("memory limit");
@@ -51,12 +51,22 @@ void Solver::solve_indirect_light() {
     }
 }
 
-Tightened Solver::next_attempt(double demand) {
+std::optional<Solver::NextAttempt> Solver::next_in_time(double demand, double last_seconds) const {
+    // One that cannot end in time would only be thrown away.
+    const double left = as_first(seconds_left(stop_));
+    for (const double aim : attempt_aims(demand, certificate_.largest())) {
+        NextAttempt next = next_attempt(aim);
+        if (last_seconds * next.finer.work <= left) return next;
+    }
+    return {};
+}
+
+Solver::NextAttempt Solver::next_attempt(double demand) const {
     const double target = calibrated::attempt_aim * demand;
     const ErrorParts parts = error_parts();
-    const Tightened finer = tightened(knobs_, parts, target, options_);
-    takes_step_ = false;
-    if (!finer.method || !plan_.may_refine_delivered || !gathers() || !light_->on_projection) return finer;
+    NextAttempt out{.finer = tightened(knobs_, parts, target, options_)};
+    const Tightened& finer = out.finer;
+    if (!finer.method || !plan_.may_refine_delivered || !gathers() || !light_->on_projection) return out;
     // A step leaves a third of what is rough, more where light is reflected often; the first one shows it.
     const double left = steps_.not_local > 0 ? not_local(parts) / steps_.not_local : 0.5;
     const AttemptForecast forecast = forecast_attempt({.row_rays = static_cast<double>(light_->rays),
@@ -66,12 +76,12 @@ Tightened Solver::next_attempt(double demand) {
                                                        .wanted = 0.5 * target,
                                                        .left = left,
                                                        .finer = finer.left});
-    takes_step_ = forecast.takes_steps();
-    progress_.note(
+    out.is_step = forecast.takes_steps();
+    out.forecast =
         fmt::format("another attempt: about {:.3g} rays by refining what is delivered, {:.3g} by finer elements",
-                    forecast.step_rays, forecast.finer_rays));
-    if (!takes_step_) return finer;
-    return refined(knobs_, parts, left, margin(certificate_.points) * demand, target, options_);
+                    forecast.step_rays, forecast.finer_rays);
+    if (out.is_step) out.finer = refined(knobs_, parts, left, margin(certificate_.points) * demand, target, options_);
+    return out;
 }
 
 double Solver::not_local(const ErrorParts& parts) const {

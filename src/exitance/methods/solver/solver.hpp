@@ -52,10 +52,18 @@ class Solver {
     void project_coarsely();
     void find_light();
     void choose_basis();
-    /// Knobs of the next attempt, and how it is made. One step of refinement on from what is delivered (`next_light`)
+    /// Another attempt: its knobs, and how it is made. One step of refinement on from what is delivered (`next_light`)
     /// takes neither finer elements nor rows of the method, and of the gather what changes: it is taken where the
     /// method is to blame and a forecast says that less work leads there so.
-    Tightened next_attempt(double demand);
+    struct NextAttempt {
+        Tightened finer;
+        bool is_step = false;
+        std::string forecast = {};  ///< In words, where there was a choice.
+    };
+    NextAttempt next_attempt(double demand) const;
+    /// The same, aimed at what is asked for or at as little above it as there is time for, where the last one took so
+    /// many seconds. None where there is time for none that is worth it.
+    std::optional<NextAttempt> next_in_time(double demand, double last_seconds) const;
     /// What of the error is not of the local pass.
     double not_local(const ErrorParts& parts) const;
     void take_step();
