@@ -217,10 +217,31 @@ Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjectio
                    const Spectrum& c) {
     const FluxSums power = flux_sums(E, scene, direct, light, c);
     if (!is_kept(power.first + power.again, power.sent)) return Spectrum(1.0);
-    const Spectrum scale = conserving_scale(power.first, power.gathered - power.again);
-    for (std::array<float, bands>& value : E.values)
-        for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(scale[b] * value[b]);
-    return scale;
+    const Spectrum factor = conserving_scale(power.first, power.gathered - power.again);
+    scale(E, factor);
+    return factor;
+}
+
+Spectrum power(const ElementFunction& E) {
+    Spectrum out;
+    for (ElementId e : E.tree.leaves()) out += E.tree.area(e) * E.at({e, E.tree.centre(e)});
+    return out;
+}
+
+Spectrum arriving_power(const Scene& scene, const GlobalLight& light, std::span<const ElementFunction> b) {
+    const Field<RegionId, double> kept = kept_by_region(scene, light);
+    Spectrum sent, arriving;
+    for (const ElementFunction& f : b)
+        for (ElementId e : f.tree.leaves()) {
+            const Spectrum power = f.tree.area(e) * f.at({e, f.tree.centre(e)});
+            sent += power, arriving += kept[f.tree.region(e)] * power;
+        }
+    return is_kept(arriving, sent) ? arriving : Spectrum();
+}
+
+void scale(ElementFunction& f, const Spectrum& factor) {
+    for (std::array<float, bands>& value : f.values)
+        for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(factor[b] * value[b]);
 }
 
 bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,

@@ -42,6 +42,15 @@ bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::ui
 Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                    const Spectrum& c);
 
+/// W, by band: all that arrives, where E is the function.
+Spectrum power(const ElementFunction& E);
+
+/// The same of what functions together send, as far as the method kept it (`GlobalLight::kept`); 0 where much escapes.
+Spectrum arriving_power(const Scene& scene, const GlobalLight& light, std::span<const ElementFunction> b);
+
+/// Multiplies all values, by band.
+void scale(ElementFunction& f, const Spectrum& factor);
+
 /// Does E have that balance, as `keep_flux` left it, and does hardly anything escape?
 bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
                    const GlobalLight& light, const Spectrum& c);

@@ -68,6 +68,16 @@ TEST(KeepFlux, CountsTheShareOfDirectLightThatElementsGatherAsSent) {
     EXPECT_NEAR(furnace.gathered.values[0][0], 2, 1e-6);
 }
 
+TEST(ArrivingPower, IsWhatIsKeptOfAllThatFunctionsSend) {
+    const Furnace furnace(0.99, 1);
+    const ElementFunction two[] = {furnace.gathered, furnace.gathered};
+    const double each = furnace.stage.area * Furnace::exact(0.99);
+    EXPECT_NEAR(power(furnace.gathered)[0], each, 1e-6 * each);
+    EXPECT_NEAR(arriving_power(furnace.scene, furnace.light, two)[0], 0.99 * 2 * each, 1e-6 * each);
+    const Furnace open(0.9, 1);
+    EXPECT_EQ(arriving_power(open.scene, open.light, two)[0], 0) << "of what escapes few rays tell";
+}
+
 TEST(KeepFlux, LeavesAloneWhatMuchEscapesFromOrIsFarOff) {
     EXPECT_NEAR(Furnace(0.9, 1.02).after_keeping(), 1.02 * Furnace::exact(0.9), 1e-6);
     EXPECT_NEAR(Furnace(1, 1.2).after_keeping(), 1.2 * Furnace::exact(1), 1e-6);

@@ -14,6 +14,7 @@
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/continuous.hpp"
+#include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/direct_share.hpp"
 #include "exitance/transport/distributed.hpp"
 #include "exitance/transport/narrow_places.hpp"
@@ -134,7 +135,9 @@ void Solver::attempt() {
     NextLight found;
     if (next_.parts.empty()) found.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
     for (const ElementFunction& f : found.parts) share_on_node(std::span(f.values));
-    const ReadNextLight b(next_.parts.empty() ? found : next_, stage_.scene.regions().size());
+    const NextLight& gathered_on = next_.parts.empty() ? found : next_;
+    steps_.sent = gathers() && keeps_flux() ? arriving_power(stage_.scene, *light_, gathered_on.parts) : Spectrum();
+    const ReadNextLight b(gathered_on, stage_.scene.regions().size());
     if (b.stands_alone() && !sums_) found = {};
     release_freed_memory();
     if (step_ == Step::gather) {
@@ -168,8 +171,11 @@ void Solver::attempt() {
 void Solver::take_step() {
     const Stopwatch watch;
     if (next_.parts.empty()) next_.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
-    next_ = next_light(stage_, *light_, solution_.indirect, direct_, share_, std::move(next_), knobs_.solve_rays,
-                       options_.seed);
+    // What is delivered has the balance of light that has come to rest. A step solves for that, and would mend it
+    // twice: it begins with what arrives of the light that was gathered, but for rays' noise.
+    ElementFunction gathered = solution_.indirect;
+    if (mean(steps_.sent) > 0) scale(gathered, conserving_scale(steps_.sent, power(gathered)));
+    next_ = next_light(stage_, *light_, gathered, direct_, share_, std::move(next_), knobs_.solve_rays, options_.seed);
     for (const auto* const functions : {&next_.parts, &next_.rest})
         for (const ElementFunction& f : *functions) share_on_node(std::span(f.values));
     steps_.not_local = not_local(error_parts());

@@ -139,6 +139,7 @@ class Solver {
     struct {
         double not_local = 0;         ///< What `not_local` was before the last one; 0: none was taken.
         std::size_t gather_rays = 0;  ///< The most that one attempt has gathered by.
+        Spectrum sent;  ///< W, what arrives of the light that was gathered last; 0 where that is not known.
     } steps_;
     LocalPassReport gathered_;
     Certificate certificate_;
