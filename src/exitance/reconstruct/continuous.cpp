@@ -60,9 +60,9 @@ class Projection {
         Spectrum rz, start;
         for (std::size_t i = 0; i < count; ++i) {
             r[i] = right_[i] - Mp[i];
-            p[i] = r[i] / diagonal_[i];
+            p[i] = by_diagonal(i, r[i]);
             rz += r[i] * p[i];
-            start += right_[i] * right_[i] / diagonal_[i];
+            start += right_[i] * by_diagonal(i, right_[i]);
         }
         for (int step = 0; step < most_steps && max(quotient(rz, start)) > precision; ++step) {
             multiply(p, Mp);
@@ -73,10 +73,10 @@ class Projection {
             for (std::size_t i = 0; i < count; ++i) {
                 x[i] += alpha * p[i];
                 r[i] -= alpha * Mp[i];
-                next += r[i] * r[i] / diagonal_[i];
+                next += r[i] * by_diagonal(i, r[i]);
             }
             const Spectrum beta = quotient(next, rz);
-            for (std::size_t i = 0; i < count; ++i) p[i] = r[i] / diagonal_[i] + beta * p[i];
+            for (std::size_t i = 0; i < count; ++i) p[i] = by_diagonal(i, r[i]) + beta * p[i];
             rz = next;
         }
         return x;
@@ -84,6 +84,12 @@ class Projection {
 
   private:
     std::span<const std::uint32_t> of(ElementId leaf) const { return nodes_.of(leaf, tree_); }
+
+    /// A node's share of a vector by its entry of the diagonal. Nodes that no element of the plane has, as those
+    /// between elements of an area that rounding left none of, have no entry and nothing to solve for.
+    Spectrum by_diagonal(std::size_t i, const Spectrum& value) const {
+        return diagonal_[i] > 0 ? value / diagonal_[i] : Spectrum();
+    }
 
     /// int phi dA of a node: for all these elements what its diagonal entry says, but for a factor.
     double mass_of(std::size_t i) const { return lumped_[i]; }

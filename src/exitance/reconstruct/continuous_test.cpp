@@ -77,6 +77,19 @@ TEST(Continuous, KeepsALinearFunctionAndTheLightOfAnyOther) {
     EXPECT_NEAR(mean_of(nearest_continuous(rough, scene, contacts), light), mean_of(rough, light), 1e-6);
 }
 
+/// Strips that halve towards an edge have corners on the side of the leaf beside them that are too close for triangles.
+/// Nodes that no triangle has ended the projection before it began, at means over what is beside each node, which are
+/// no linear function where sizes change.
+TEST(Continuous, KeepsALinearFunctionBesideStripsThatHalveTowardsAnEdge) {
+    const Scene scene = square();
+    ElementTree tree = cut_square(1, 0);
+    ElementId strip = tree.leaves().front();
+    for (int i = 0; i < 30; ++i) strip = tree.split(strip, Cut::v);
+    ASSERT_EQ(tree.patch(strip).origin.y, 0);
+    const auto linear = [](Point p) { return 1 + 2 * p.x - 3 * p.y; };
+    EXPECT_LT(rms_error(nearest_continuous(fitted(tree, linear, 0), scene, ContactLines(scene)), linear), 1e-5);
+}
+
 TEST(Continuous, IsNoFurtherFromContinuousLightThanWhatItIsMadeOf) {
     const Scene scene = square();
     const ContactLines contacts(scene);
