@@ -66,13 +66,13 @@ constexpr std::uint8_t vtk_cell_type(std::size_t corners) {
     return corners == 3 ? 5 : corners == 4 ? 9 : 7;
 }
 
-/// Numbers in rows, one row after the other.
+/// Numbers in rows, one row after the other, where they stand.
 template <class T, std::size_t n>
-std::span<const T> flat(const std::vector<std::array<T, n>>& rows) {
+std::span<const T> numbers_of(const std::vector<std::array<T, n>>& rows) {
     static_assert(sizeof(std::array<T, n>) == n * sizeof(T));
     return {rows.empty() ? nullptr : rows.front().data(), rows.size() * n};
 }
-inline std::span<const double> flat(const std::vector<Point>& points) {
+inline std::span<const double> numbers_of(const std::vector<Point>& points) {
     static_assert(sizeof(Point) == 3 * sizeof(double));
     return {points.empty() ? nullptr : &points.front().x, points.size() * 3};
 }

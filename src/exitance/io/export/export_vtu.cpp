@@ -80,12 +80,12 @@ Result<void> write_vtu(const Solution& solution, const std::string& path) {
         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
         std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" + std::to_string(mesh.size()) + "\">\n");
     file->write("<PointData Vectors=\"radiosity\">\n");
-    write_array(*file, "radiosity", flat(mesh.radiosity), bands);
-    write_array(*file, "irradiance", flat(mesh.irradiance), bands);
+    write_array(*file, "radiosity", numbers_of(mesh.radiosity), bands);
+    write_array(*file, "irradiance", numbers_of(mesh.irradiance), bands);
     file->write("</PointData>\n<CellData>\n");
     for (const auto& [name, ids] : mesh.cell_ids()) write_array(*file, name, std::span<const std::int32_t>(*ids), 1);
     file->write("</CellData>\n<Points>\n");
-    write_array(*file, "Points", flat(mesh.points), 3);
+    write_array(*file, "Points", numbers_of(mesh.points), 3);
     file->write("</Points>\n<Cells>\n");
     write_array(*file, "connectivity", std::span<const std::int64_t>(connectivity), 1);
     write_array(*file, "offsets", std::span<const std::int64_t>(ends), 1);

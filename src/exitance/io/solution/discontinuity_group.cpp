@@ -82,8 +82,8 @@ void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNo
     }
     const auto in = [&](const char* name) { return group + "/" + name; };
     file.make_group(group);
-    file.write(in("points"), flat(mesh.points), 3, {"m", "nodes"});
-    file.write(in("values"), flat(mesh.values), bands, {"W/m^2", "irradiance at the nodes"});
+    file.write(in("points"), numbers_of(mesh.points), 3, {"m", "nodes"});
+    file.write(in("values"), numbers_of(mesh.values), bands, {"W/m^2", "irradiance at the nodes"});
     file.write(in("nodes"), nodes, 6, {"1", "nodes of a triangle: corners, then the middles of edges 01, 12, 20"});
     file.write(in("region"), region, 1, {"1", "region of a triangle"});
     file.write(in("edge_order"), edge_order, 3,

@@ -35,13 +35,13 @@ void write_mesh(Hdf5Writer& file, const ElementMesh& mesh) {
     const std::vector<std::int64_t> offsets(mesh.first_point.begin(), mesh.first_point.end());
     write_counts(file, static_cast<std::int64_t>(mesh.points.size()), static_cast<std::int64_t>(mesh.size()),
                  static_cast<std::int64_t>(connectivity.size()));
-    file.write("VTKHDF/Points", flat(mesh.points), 3, of_points);
+    file.write("VTKHDF/Points", numbers_of(mesh.points), 3, of_points);
     file.write("VTKHDF/Connectivity", connectivity, 1, of_connectivity);
     file.write("VTKHDF/Offsets", offsets, 1, of_offsets);
     file.write("VTKHDF/Types", mesh.cell_types(), 1, of_types);
     file.make_group("VTKHDF/PointData");
-    file.write("VTKHDF/PointData/radiosity", flat(mesh.radiosity), bands, of_radiosity);
-    file.write("VTKHDF/PointData/irradiance", flat(mesh.irradiance), bands, of_irradiance);
+    file.write("VTKHDF/PointData/radiosity", numbers_of(mesh.radiosity), bands, of_radiosity);
+    file.write("VTKHDF/PointData/irradiance", numbers_of(mesh.irradiance), bands, of_irradiance);
     file.make_group("VTKHDF/CellData");
     for (const auto& [name, ids] : mesh.cell_ids()) file.write(in_cells(name), *ids, 1, of_ids);
 }
