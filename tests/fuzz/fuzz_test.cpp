@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <ostream>
 
+#include "exitance/core/sanitizers.hpp"
 #include "fuzz/mutator.hpp"
 #include "fuzz/target.hpp"
 
@@ -14,11 +15,7 @@ void PrintTo(const Target& target, std::ostream* out) {
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::uint64_t usual_rounds = 100;  // each ten times as slow
-#else
-constexpr std::uint64_t usual_rounds = 400;
-#endif
+constexpr std::uint64_t usual_rounds = has_address_sanitizer ? 100 : 400;  // each ten times as slow
 
 /// How many damaged files every reader is given; EXITANCE_FUZZ_ROUNDS in the environment asks for more.
 std::uint64_t rounds() {

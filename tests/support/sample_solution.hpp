@@ -71,7 +71,8 @@ inline ElementFunction sample_function(const Scene& scene, std::uint64_t seed, i
             f.tree.split_by_line(leaf, {n, dot(n, f.tree.centre(leaf))});
             continue;
         }
-        f.tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), 0.2 + 0.6 * random.uniform());
+        const double ratio = 0.2 + 0.6 * random.uniform();
+        f.tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), ratio);
     }
     f.first_value.resize(f.tree.size(), 0);
     for (ElementId e : f.tree.leaves()) {

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <new>
 
+#include "exitance/core/sanitizers.hpp"
+
 namespace exitance {
 namespace {
 
@@ -25,16 +27,10 @@ unsigned longest_wait(rlim_t seconds) {
 
 enum Outcome { went_well, failed, lacks_memory };  ///< The copy's exit status.
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool memory_can_be_limited = false;
-#else
-constexpr bool memory_can_be_limited = true;
-#endif
-
 /// From now on no more than `bytes` beyond what this process has mapped.
 void limit_memory(std::size_t bytes) {
     std::size_t pages = 0;
-    if (!memory_can_be_limited || !(std::ifstream("/proc/self/statm") >> pages)) return;
+    if (has_address_sanitizer || !(std::ifstream("/proc/self/statm") >> pages)) return;
     const std::size_t mapped = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
     if (bytes > std::numeric_limits<std::size_t>::max() - mapped) return;
     rlimit space{};

@@ -38,7 +38,7 @@ class ScenePrograms : public testing::Test {
     }
     TemporaryFolder folder_;
     std::string path_;
-    const StopRequest never_;
+    const StopRequest never_{};
 };
 
 constexpr const char* grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 1 1 1\n";

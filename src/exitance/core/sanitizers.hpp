@@ -1,0 +1,14 @@
+#pragma once
+
+namespace exitance {
+
+/// Is the program built with the address sanitizer, whose shadow fills the address space and which is slow?
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool has_address_sanitizer = true;
+#elif defined(__has_feature)
+constexpr bool has_address_sanitizer = __has_feature(address_sanitizer);
+#else
+constexpr bool has_address_sanitizer = false;
+#endif
+
+}  // namespace exitance
