@@ -47,7 +47,8 @@ void QuickFunction::read(std::span<const HitPoint> hits, std::span<Spectrum> val
         for (std::size_t i = 0; i < count; ++i)
             locator_.find_root(hits[first + i].region, hits[first + i].y, queries[i]);
         locator_.leaves().find(std::span(queries).first(count));
-        for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(leaves_.data() + queries[i].leaf);
+        for (std::size_t i = 0; i < count; ++i)
+            if (queries[i].leaf < leaves_.size()) __builtin_prefetch(leaves_.data() + queries[i].leaf);
         for (std::size_t i = 0; i < count; ++i) {
             const std::uint32_t leaf = queries[i].leaf;
             Polynomial made;
