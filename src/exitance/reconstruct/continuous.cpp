@@ -85,8 +85,8 @@ class Projection {
   private:
     std::span<const std::uint32_t> of(ElementId leaf) const { return nodes_.of(leaf, tree_); }
 
-    /// A node's share of a vector by its entry of the diagonal. Nodes that no element of the plane has, as those
-    /// between elements of an area that rounding left none of, have no entry and nothing to solve for.
+    /// A node's share of a vector by its entry of the diagonal. A fan that would have triangles without area is none
+    /// (`make_conforming`), and leaves a node that no element has: it has no entry, and nothing to solve for.
     Spectrum by_diagonal(std::size_t i, const Spectrum& value) const {
         return diagonal_[i] > 0 ? value / diagonal_[i] : Spectrum();
     }

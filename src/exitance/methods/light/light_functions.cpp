@@ -233,8 +233,8 @@ Spectrum arriving_power(const Scene& scene, const GlobalLight& light, std::span<
     Spectrum sent, arriving;
     for (const ElementFunction& f : b)
         for (ElementId e : f.tree.leaves()) {
-            const Spectrum power = f.tree.area(e) * f.at({e, f.tree.centre(e)});
-            sent += power, arriving += kept[f.tree.region(e)] * power;
+            const Spectrum leaves = f.tree.area(e) * f.at({e, f.tree.centre(e)});
+            sent += leaves, arriving += kept[f.tree.region(e)] * leaves;
         }
     return is_kept(arriving, sent) ? arriving : Spectrum();
 }

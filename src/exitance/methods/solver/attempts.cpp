@@ -53,11 +53,11 @@ void Solver::solve_indirect_light() {
 }
 
 std::optional<Solver::NextAttempt> Solver::next_in_time(double demand, double last_seconds) const {
-    // One that cannot end in time would only be thrown away.
-    const double left = as_first(seconds_left(stop_));
+    // One that cannot end in time would only be thrown away. All processes go by the first one's clock.
+    const double most_work = seconds_left(stop_) / as_first(last_seconds);
     for (const double aim : attempt_aims(demand, certificate_.largest())) {
         NextAttempt next = next_attempt(aim);
-        if (last_seconds * next.finer.work <= left) return next;
+        if (next.finer.work <= most_work) return next;
     }
     return {};
 }
