@@ -10,7 +10,7 @@ packages=(
     libfmt-dev libcli11-dev nlohmann-json3-dev                               # the program
     libcpp-httplib-dev                                                       # the viewer's server
     libtomlplusplus-dev gnuplot-nox                                          # the test bed's studies and their plots
-    libopenmpi-dev openmpi-bin                                               # several processes
+    libopenmpi-dev openmpi-bin libpetsc64-real-dev                           # several processes
     libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers
     libbenchmark-dev                                                         # the benchmarks
 )

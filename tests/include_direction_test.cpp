@@ -44,6 +44,7 @@ const std::vector<Door> doors{
     {"CLI11", std::regex("CLI/.*"), {"cli/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view/view_server.cpp"}},
     {"MPI", std::regex("mpi\\.h"), {"transport/distributed.cpp"}},
+    {"PETSc", std::regex("petsc.*"), {"solve/petsc.cpp"}},
     {"nlohmann-json",
      std::regex("nlohmann/.*"),
      {"cli/json_output.cpp", "experiments/study/run_facts.cpp", "io/export/viewer_data.cpp"}},

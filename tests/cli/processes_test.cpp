@@ -102,7 +102,7 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
                                               {"--error", "0.05", "--method", "matrix", "--basis", "linear"}};
     for (const std::vector<std::string>& form : forms) {
         ASSERT_EQ(run_program(solve("one", form)).status, 0);
-        double bytes_of_two = 0, messages_of_two = 0;
+        double bytes_of_two = 0, messages_of_two = 0, fetched_of_four = 0, fetches_of_four = 0;
         const bool is_linear = form.back() == "linear";  // of which one number is enough
         for (int processes = is_linear ? 3 : 2; processes <= (is_linear ? 3 : 4); ++processes) {
             std::vector<std::string> words = form;
@@ -117,10 +117,19 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
             std::filesystem::remove(folder / "one.plain");
             EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one")) << processes << " processes";
             // What one process would hand on goes to all others: so many bytes and messages, and no other ones.
-            const double bytes = written->statistics.figures["message_bytes_solve"],
-                         messages = written->statistics.figures["messages_solve"], p = processes;
+            std::map<std::string, double>& figures = written->statistics.figures;
+            const double bytes = figures["message_bytes_solve"], messages = figures["messages_solve"], p = processes;
             if (processes == 2) bytes_of_two = bytes, messages_of_two = messages;
             EXPECT_GT(bytes, 0);
+            // What others read goes to them alone; two know what four would.
+            EXPECT_GT(figures["message_bytes_fetch"], 0);
+            if (processes == 2) {
+                fetched_of_four = figures["message_bytes_fetch_of_twice"];
+                fetches_of_four = figures["messages_fetch_of_twice"];
+            } else if (processes == 4) {
+                EXPECT_EQ(figures["message_bytes_fetch"], fetched_of_four);
+                EXPECT_EQ(figures["messages_fetch"], fetches_of_four);
+            }
             for (const char* part : {"dealt", "repeated"})
                 EXPECT_GT(written->statistics.figures[part + std::string("_processor_seconds")], 0);
             double dealt = 0;

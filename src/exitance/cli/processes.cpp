@@ -82,6 +82,9 @@ void record_processes(SolveStatistics& statistics) {
         std::replace(name.begin(), name.end(), ' ', '_');
         messages += figures["messages_" + name] = sum_of_all(static_cast<double>(t.messages));
         bytes += figures["message_bytes_" + name] = sum_of_all(static_cast<double>(t.bytes));
+        if (what != "fetch") continue;
+        figures["messages_" + name + "_of_twice"] = sum_of_all(static_cast<double>(t.messages_of_twice));
+        figures["message_bytes_" + name + "_of_twice"] = sum_of_all(static_cast<double>(t.bytes_of_twice));
     }
     double longest = 0;
     const std::map<std::string, DealtTime> dealt = dealt_time();

@@ -161,31 +161,79 @@ ElementPart linked_part(const LinkSites& sites, const Links& links, const Cluste
 
 LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part,
                            std::size_t together)
-    : sites_(&sites), links_(&links), far_(far), part_(&part), together_(together), b_(sites), E_(sites) {}
+    : sites_(&sites),
+      links_(&links),
+      far_(far),
+      part_(&part),
+      dealt_(together > 0 ? DealtUnknowns(part.ends.size() * sites.nodes(), together * sites.nodes())
+                          : DealtUnknowns(part.ends.size() * sites.nodes())),
+      b_(sites),
+      E_(sites) {
+    if (dealt_.is_spread()) fetch_what_links_read();
+}
 
-void LinkOperator::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+/// The mean of an element is read by way of all ends below it.
+void LinkOperator::fetch_what_links_read() {
     const std::size_t n = sites_->nodes();
     const std::vector<ElementId>& ends = part_->ends;
-    parallel_for(ends.size(), 256, [&](std::size_t i) {
-        for (std::size_t k = 0; k < n; ++k) b_.set_node(ends[i], k, radiosity[i * n + k]);
+    Field<ElementId, std::uint32_t> end_of(sites_->tree().size(), 0);
+    for (std::size_t i = 0; i < ends.size(); ++i) end_of[ends[i]] = static_cast<std::uint32_t>(i);
+    Field<ElementId, std::uint8_t> read(sites_->tree().size(), 0);
+    do_own_share([&] {
+        links_->for_each([&](ElementId receiver, ElementId source) {
+            FetchedValues::mark(read[source], dealt_, dealt_.place(end_of[receiver] * n));
+        });
     });
+    for (const std::vector<ElementId>& level : part_->inner)
+        for (ElementId e : level)
+            for (ElementId child : sites_->tree().children(e)) read[child] |= read[e];
+    std::vector<std::uint8_t> marked;
+    marked.reserve(size());
+    for (ElementId e : ends) marked.insert(marked.end(), n, read[e]);
+    fetched_ = FetchedValues(dealt_, marked);
+}
+
+/// From b at the ends to E at the ends: pull, links, push.
+void LinkOperator::carry() const {
     b_.pull(*part_);
     E_.clear(*part_);
     const auto add_links = [&] {
         links_->add_to(E_, b_);
         if (far_) far_->add_to(E_, b_);
     };
-    if (together_ > 0)
+    if (dealt_.is_spread())
         do_own_share(add_links);
     else
         add_links();
     E_.push(*part_);
+}
+
+void LinkOperator::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+    if (dealt_.is_spread()) return gather_dealt(radiosity, irradiance);
+    const std::size_t n = sites_->nodes();
+    const std::vector<ElementId>& ends = part_->ends;
+    parallel_for(ends.size(), 256, [&](std::size_t i) {
+        for (std::size_t k = 0; k < n; ++k) b_.set_node(ends[i], k, radiosity[i * n + k]);
+    });
+    carry();
     parallel_for(ends.size(), 256, [&](std::size_t i) {
         for (std::size_t k = 0; k < n; ++k) irradiance[i * n + k] = E_.node(ends[i], k);
     });
-    if (together_ > 0)
-        exchange_values(
-            ends.size(), together_, [&](std::size_t i) { return irradiance.subspan(i * n, n); }, "solve");
+}
+
+void LinkOperator::gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+    if (!dealt_.is_spread()) return gather(radiosity, irradiance);
+    const std::size_t n = sites_->nodes();
+    const std::vector<Spectrum> values = fetched_.with_fetched(radiosity);
+    parallel_for(values.size(), 256, [&](std::size_t at) {
+        const std::uint32_t unknown = fetched_.unknown_at(at);
+        b_.set_node(part_->ends[unknown / n], unknown % n, values[at]);
+    });
+    carry();
+    parallel_for(irradiance.size(), 256, [&](std::size_t at) {
+        const std::size_t unknown = dealt_.unknown(at);
+        irradiance[at] = E_.node(part_->ends[unknown / n], unknown % n);
+    });
 }
 
 Spectrum LinkOperator::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {

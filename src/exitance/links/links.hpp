@@ -9,6 +9,7 @@
 #include "exitance/links/kept_link.hpp"
 #include "exitance/links/link_sites.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/transport/fetched_values.hpp"
 #include "exitance/transport/transport_operator.hpp"
 
 namespace exitance {
@@ -67,6 +68,15 @@ class Links {
     /// Marks the elements that links lead to or come from.
     void mark(Field<ElementId, std::uint8_t>& marked) const;
 
+    /// Calls body(receiver, source) for every one.
+    template <class Body>
+    void for_each(const Body& body) const {
+        for (const Rows* rows : {&constants_, &kernels_})
+            for (std::size_t row = 0; row < rows->receiver.size(); ++row)
+                for (std::size_t i = rows->first[row]; i < rows->first[row + 1]; ++i)
+                    body(rows->receiver[row], rows->source_of(i));
+    }
+
     /// All of them, by receiver, then by source. O(links).
     std::vector<KeptLink> list() const;
 
@@ -119,7 +129,7 @@ ElementPart linked_part(const LinkSites& sites, const Links& links, const Cluste
 /// links, push. All elements that links touch must be in the part.
 ///
 /// Over several processes the links may be dealt out by the ends that they lead to: then each process gathers at its
-/// own ends, and sends that to all.
+/// own ends, from these and from those that lie below what its links come from.
 class LinkOperator final : public TransportOperator {
   public:
     /// `far`: those of clusters; may be null.
@@ -133,13 +143,19 @@ class LinkOperator final : public TransportOperator {
     /// No cheaper than gathering for all of them.
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
     std::size_t memory_bytes() const override { return links_->memory_bytes() + (far_ ? far_->memory_bytes() : 0); }
+    DealtUnknowns dealt() const override { return dealt_; }
+    void gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
 
   private:
+    void fetch_what_links_read();
+    void carry() const;
+
     const LinkSites* sites_;
     const Links* links_;
     const ClusterLinks* far_;
     const ElementPart* part_;
-    std::size_t together_;
+    DealtUnknowns dealt_;
+    FetchedValues fetched_;
     mutable NodalField b_, E_;
 };
 

@@ -97,7 +97,7 @@ class RowLinker {
 
 Links link_by_rays(const LinkSites& sites, const LeafNumbering& numbering, const RayRows& rows, const NodalField& b,
                    double allowed) {
-    constexpr std::size_t block = RayRows::block;
+    const std::size_t block = rows.dealt().block();
     const ElementTree& tree = sites.tree();
     const LeafOrder order(tree, numbering);
     const Field<ElementId, double> roughness = b.roughness();
@@ -105,9 +105,11 @@ Links link_by_rays(const LinkSites& sites, const LeafNumbering& numbering, const
     parallel_own_ranges(numbering.leaves.size(), block,
                         [&](std::size_t begin, std::size_t end) {
                             RowLinker linker(sites, order, roughness);
-                            for (std::size_t i = begin; i < end; ++i)
-                                linker.link(numbering.leaves[i], rows.hits(i), rows.counts(i), allowed,
-                                            found[i / block]);
+                            std::vector<std::uint32_t> met;
+                            for (std::size_t i = begin; i < end; ++i) {
+                                rows.leaves_met(i, met);
+                                linker.link(numbering.leaves[i], met, rows.counts(i), allowed, found[i / block]);
+                            }
                             note_touched("links", found[begin / block].size());
                         },
                         {"link rows", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
@@ -125,21 +127,20 @@ Links link_by_rays(const LinkSites& sites, const LeafNumbering& numbering, const
 std::vector<KeptLink> list_of_all(const Links& own, const LeafNumbering& numbering) {
     if (processes() == 1) return own.list();
     const std::vector<KeptLink> here = own.list();
-    const std::size_t leaves = numbering.leaves.size();
+    const std::size_t leaves = numbering.leaves.size(), block = dealt_block(leaves);
     std::vector<std::uint64_t> count(leaves, 0);
     for (const KeptLink& link : here) ++count[numbering.number[link.receiver]];
     exchange_values(
-        leaves, RayRows::block, [&](std::size_t i) -> std::uint64_t& { return count[i]; }, "kept links");
+        leaves, block, [&](std::size_t i) -> std::uint64_t& { return count[i]; }, "kept links");
     std::vector<std::size_t> first(leaves + 1, 0);
     for (std::size_t i = 0; i < leaves; ++i) first[i + 1] = first[i] + count[i];
     std::vector<KeptLink> all(first.back());
     // Leaves are numbered in order of their ids, as links are listed.
     for (std::size_t i = 0, at = 0; i < leaves; ++i)
-        if (is_own(i, RayRows::block))
+        if (is_own(i, block))
             for (std::size_t k = 0; k < count[i]; ++k) all[first[i] + k] = here[at++];
     exchange_values(
-        leaves, RayRows::block, [&](std::size_t i) { return std::span(all).subspan(first[i], count[i]); },
-        "kept links");
+        leaves, block, [&](std::size_t i) { return std::span(all).subspan(first[i], count[i]); }, "kept links");
     return all;
 }
 

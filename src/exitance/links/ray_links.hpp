@@ -15,8 +15,8 @@ namespace exitance {
 /// for, and F sums to 1 over the links of a leaf that sees surfaces alone. Source: levels as in [Hanrahan91], form
 /// factors as in [Malley88]. O(rays log rays).
 ///
-/// Where several processes work together, each finds the links of its own rows (`RowsHeld::by_owner`), RayRows::block
-/// leaves at a time.
+/// Where several processes work together, each finds the links of its own rows (`RowsHeld::by_owner`), a block of
+/// leaves at a time (`dealt_block`).
 ///
 /// sites    of order 1          rows   of all leaves of its tree
 /// b        reflected light of all elements, W/m^2

@@ -36,6 +36,15 @@ bool ConservingTransport::conserve(std::span<const Spectrum> b) {
 
 void ConservingTransport::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
     F_.gather(radiosity, irradiance);
+    multiply(irradiance);
+}
+
+void ConservingTransport::gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+    F_.gather_own(radiosity, irradiance);
+    multiply(irradiance);
+}
+
+void ConservingTransport::multiply(std::span<Spectrum> irradiance) const {
     parallel_for(irradiance.size(), 4096, [&](std::size_t i) { irradiance[i] = scale_ * irradiance[i]; });
 }
 

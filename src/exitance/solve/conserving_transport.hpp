@@ -35,8 +35,12 @@ class ConservingTransport final : public TransportOperator {
         return scale_ * F_.gather_at(receiver, radiosity);
     }
     std::size_t memory_bytes() const override { return F_.memory_bytes(); }
+    DealtUnknowns dealt() const override { return F_.dealt(); }
+    void gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
 
   private:
+    void multiply(std::span<Spectrum> irradiance) const;
+
     const TransportOperator& F_;
     std::span<const double> area_, kept_;
     Spectrum scale_{1.0};

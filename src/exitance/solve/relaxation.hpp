@@ -38,6 +38,8 @@ struct SolveReport {
 /// L2 norm over the surfaces, all bands together: sqrt(sum_i A_i |b_i|^2).
 double surface_norm(std::span<const Spectrum> b, std::span<const double> area);
 
+/// Where F is dealt out to processes, each relaxes its own unknowns; all call this alike, and have all of b afterwards.
+///
 /// Iterates from the b given until the rule stops it. Missing the tolerance is a finding in the report, not an error.
 ///
 /// - jacobi: b <- rhs + rho F b. Contracts while rho < 1 and no row of F sums past 1. One gather an iteration.
@@ -46,7 +48,8 @@ double surface_norm(std::span<const Spectrum> b, std::span<const double> area);
 /// - cg: conjugate gradients on the symmetric form (diag(A / rho) - A F) b = A rhs / rho, Jacobi-preconditioned;
 /// elements
 ///   with rho = 0 are known (b = rhs) and leave the system. Wants A_i F_ij = A_j F_ji; each band has its own process.
-/// - gmres: GMRES(20) on (I - rho F) b = rhs, any F; each band has its own process. Source: [Saad86].
+/// - gmres: GMRES(20) on (I - rho F) b = rhs, any F; all bands have one Krylov space (solve/gmres.hpp). Source:
+/// [Saad86].
 /// - chebyshev: Jacobi with two terms, b' = a + w (rhs + rho F b - a) from b and the step before it, a; w from a bound
 /// r
 ///   on the eigenvalues of rho F, real and in [-r, r] by reciprocity. 1 / (1 - r^2)^(1/2) gathers where Jacobi takes

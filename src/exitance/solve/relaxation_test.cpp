@@ -120,6 +120,36 @@ TEST(Relaxation, ChebyshevNeedsTheRootOfJacobisGathersWhereLightIsReflectedOften
     EXPECT_LE(gathers(Relaxation::chebyshev), 65u);
 }
 
+/// Elements in a ring, each of which receives all that the one before it sends: Krylov spaces of few dimensions hold
+/// nothing of what comes round.
+class Ring final : public TransportOperator {
+  public:
+    std::size_t size() const override { return 64; }
+    Spectrum gather_at(std::size_t i, std::span<const Spectrum> b) const override {
+        return b[(i + size() - 1) % size()];
+    }
+    void gather(std::span<const Spectrum> b, std::span<Spectrum> E) const override {
+        for (std::size_t i = 0; i < size(); ++i) E[i] = gather_at(i, b);
+    }
+    std::size_t memory_bytes() const override { return 0; }
+};
+
+TEST(Relaxation, GmresGoesOnWhereItHasToBeginAnew) {
+    const Ring F;
+    Spectrum even;
+    for (std::size_t k = 0; k < bands; ++k) even[k] = 0.9 - 0.2 * static_cast<double>(k);
+    const std::vector<Spectrum> rho(F.size(), even);
+    std::vector<Spectrum> rhs(F.size()), b(F.size());
+    rhs[0] = Spectrum(1.0);
+    const std::vector<double> area(F.size(), 1.0);
+    const SolveReport report = solve_radiosity({F, rho, rhs, area}, Relaxation::gmres, b, {.residual = 1e-10});
+    EXPECT_TRUE(report.converged);
+    EXPECT_GT(report.iterations, 40u) << "light has to come round twice";
+    for (std::size_t i = 0; i < F.size(); ++i)
+        for (std::size_t k = 0; k < bands; ++k)
+            EXPECT_NEAR(b[i][k], std::pow(even[k], i) / (1 - std::pow(even[k], F.size())), 1e-9);
+}
+
 TEST(Relaxation, AStopRequestEndsIt) {
     const Problem problem;
     StopRequest stop;

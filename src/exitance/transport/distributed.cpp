@@ -342,6 +342,13 @@ void count_as_sent(std::size_t bytes, const char* what) {
     team.traffic[what].bytes += bytes * (team.size - 1);
 }
 
+void count_fetched(const Fetched& fetched, std::size_t bytes_each) {
+    Traffic& t = team.traffic["fetch"];
+    ++t.exchanges;
+    t.messages += fetched.messages, t.bytes += bytes_each * fetched.values;
+    t.messages_of_twice += fetched.messages_of_twice, t.bytes_of_twice += bytes_each * fetched.values_of_twice;
+}
+
 void send_from_first(void* data, std::size_t size, const char* what) {
     constexpr std::size_t most = std::size_t(1) << 28;  // MPI counts by int
     for (std::size_t done = 0; done < size; done += most) {

@@ -77,6 +77,8 @@ double sum_of_all(double value);
 /// their bytes.
 struct Traffic {
     std::size_t exchanges = 0, messages = 0, bytes = 0;
+    /// Of what goes to those alone who read it (`count_fetched`): with twice as many processes. Else 0.
+    std::size_t messages_of_twice = 0, bytes_of_twice = 0;
 };
 /// By what was sent.
 const std::map<std::string, Traffic>& traffic();
@@ -190,6 +192,11 @@ std::span<char> open_in_common(std::span<char> array);
 void close_in_common(std::span<char> pages);
 /// Counts bytes as sent that the processes have in common.
 void count_as_sent(std::size_t bytes, const char* what);
+/// What this process has fetched, as Traffic has it: counted by who gets it.
+struct Fetched {
+    std::size_t messages = 0, values = 0, messages_of_twice = 0, values_of_twice = 0;
+};
+void count_fetched(const Fetched& fetched, std::size_t bytes_each);
 /// `share_on_node` of bytes.
 void share_pages(char* begin, std::size_t size);
 }  // namespace detail

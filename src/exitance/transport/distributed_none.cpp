@@ -78,6 +78,7 @@ std::span<char> open_in_common(std::span<char>) {
 }
 void close_in_common(std::span<char>) {}
 void count_as_sent(std::size_t, const char*) {}
+void count_fetched(const Fetched&, std::size_t) {}
 void share_pages(char*, std::size_t) {}
 void exchange(std::span<char>, std::span<const std::size_t>, const char*) {}
 }  // namespace detail

@@ -10,8 +10,6 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t node_block = 16;  ///< The rows of so many nodes are one process's.
-
 std::uint16_t quantised(double t) {
     return static_cast<std::uint16_t>(std::clamp(t, 0.0, 1.0) * 65535 + 0.5);
 }
@@ -50,11 +48,15 @@ void aim(const Stage& stage, const Point& x, const Normal& n, RegionId region, c
 LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const LeafNumbering& numbering,
                        const ElementLocator& locator, RayBudget budget, std::uint64_t seed)
     : ids_(numbering.leaves) {
-    const ElementTree& tree = direct.tree;
-    std::vector<Point> place;
-    std::vector<RegionId> region;
+    number_nodes(stage, direct.tree, budget);
+    cast(stage, direct.tree, numbering, locator, seed);
+    find_what_is_met();
+}
+
+/// Nodes of all leaves, and which rays are those of the own ones.
+void LinearRows::number_nodes(const Stage& stage, const ElementTree& tree, const RayBudget& budget) {
+    std::vector<unsigned> rays;
     const double mean_area = stage.area / static_cast<double>(ids_.size());
-    std::size_t rays = 0;
     for (ElementId e : ids_) {
         Leaf leaf{.first_node = static_cast<std::uint32_t>(nodes_.size()),
                   .triangle = tree.patch(e).is_triangle(),
@@ -68,18 +70,34 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
             const ElementFit fit(tree, e, nodes, unit);
             for (int c = 0; c < tree.patch(e).corner_count(); ++c)
                 leaf.to_corner[static_cast<std::size_t>(c)][k] = static_cast<float>(fit.corner(c)[0]);
-            const unsigned count = budget.rays(tree.area(e), mean_area);
-            const bool own = is_own(nodes_.size(), node_block);
-            nodes_.push_back({nodes[k].weight * tree.area(e), rays, rays + (own ? count : 0)});
-            rays += own ? count : 0, rays_ += count;
-            place.push_back(tree.patch(e).at(nodes[k].uv));
-            region.push_back(tree.region(e));
+            nodes_.push_back({.area = nodes[k].weight * tree.area(e)});
+            rays.push_back(budget.rays(tree.area(e), mean_area));
+            rays_ += rays.back();
         }
         leaves_.push_back(leaf);
     }
-    hits_.resize(rays);
-    if (stage.rooms.portals()) counts_.assign(rays, 1);
-    parallel_own_ranges(nodes_.size(), node_block, [&](std::size_t begin, std::size_t end) {
+    dealt_ = DealtUnknowns(nodes_.size(), dealt_block(nodes_.size()));
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        nodes_[k].first_ray = at;
+        nodes_[k].last_ray = at += dealt_.is_own(k) ? rays[k] : 0;
+    }
+    hits_.resize(at);
+    if (stage.rooms.portals()) counts_.assign(at, 1);
+}
+
+void LinearRows::cast(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                      const ElementLocator& locator, std::uint64_t seed) {
+    std::vector<Point> place;
+    std::vector<RegionId> region;
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+        const std::vector<WeightedPlace> nodes = leaf_nodes(tree, ids_[i]);
+        for (const WeightedPlace& node : nodes) {
+            place.push_back(tree.patch(ids_[i]).at(node.uv));
+            region.push_back(tree.region(ids_[i]));
+        }
+    }
+    parallel_own_ranges(nodes_.size(), dealt_.block(), [&](std::size_t begin, std::size_t end) {
         std::vector<Vec3> directions;
         std::vector<RayHit> found;
         for (std::size_t k = begin; k < end; ++k) {
@@ -102,6 +120,34 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
     });
 }
 
+/// Finds out which leaves the own rows read, and numbers what rays met by where their values will stand.
+void LinearRows::find_what_is_met() {
+    std::vector<std::uint8_t> met(leaves_.size(), 0), marked(nodes_.size(), 0);
+    do_own_share([&] {
+        parallel_for(dealt_.own_count(), 256, [&](std::size_t at) {
+            const Node& node = nodes_[dealt_.unknown(at)];
+            for (std::size_t i = node.first_ray; i < node.last_ray; ++i)
+                if (hits_[i].leaf != missed) FetchedValues::mark(met[hits_[i].leaf], dealt_, at);
+        });
+    });
+    std::vector<std::uint32_t> place(leaves_.size(), 0);
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+        if (met[i] == 0) continue;
+        place[i] = static_cast<std::uint32_t>(met_.size());
+        met_.push_back(static_cast<std::uint32_t>(i));
+        std::fill_n(marked.begin() + leaves_[i].first_node, leaves_[i].node_count, met[i]);
+    }
+    parallel_for(hits_.size(), 4096, [&](std::size_t i) {
+        if (hits_[i].leaf != missed) hits_[i].leaf = place[hits_[i].leaf];
+    });
+    fetched_ = FetchedValues(dealt_, marked);
+    const std::vector<std::uint32_t> places = fetched_.places();
+    for (const std::uint32_t i : met_) {
+        first_read_.push_back(static_cast<std::uint32_t>(read_.size()));
+        for (std::size_t k = 0; k < leaves_[i].node_count; ++k) read_.push_back(places[leaves_[i].first_node + k]);
+    }
+}
+
 Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node) const {
     Spectrum sum;
     for (std::size_t i = node.first_ray; i < node.last_ray; ++i) {
@@ -110,7 +156,7 @@ Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node)
         const double u = hit.u / 65535.0, v = hit.v / 65535.0;
         const double counts = counts_.empty() ? 1 : static_cast<double>(counts_[i]);
         const Corners& c = corners[hit.leaf];
-        if (leaves_[hit.leaf].triangle)
+        if (leaves_[met_[hit.leaf]].triangle)
             sum += counts * ((1 - u - v) * c[0] + u * c[1] + v * c[2]);
         else
             sum += counts * ((1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]));
@@ -118,13 +164,14 @@ Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node)
     return sum / static_cast<double>(node.last_ray - node.first_ray);
 }
 
-void LinearRows::read_all(const std::vector<Corners>& corners, std::span<Spectrum> out) const {
-    shared_ranges(
-        nodes_.size(), node_block,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) out[k] = read(corners, nodes_[k]);
-        },
-        [&](std::size_t k) -> Spectrum& { return out[k]; }, {"solve"});
+void LinearRows::read_own(const std::vector<Corners>& corners, std::span<Spectrum> out) const {
+    const auto read_nodes = [&] {
+        parallel_for(out.size(), 64, [&](std::size_t at) { out[at] = read(corners, nodes_[dealt_.unknown(at)]); });
+    };
+    if (dealt_.is_spread())
+        do_own_share(read_nodes);
+    else
+        read_nodes();
 }
 
 std::array<Spectrum, 4> LinearRows::corners(std::size_t leaf, std::span<const Spectrum> nodal) const {
@@ -147,38 +194,55 @@ Spectrum LinearRows::mean(std::size_t leaf, std::span<const Spectrum> nodal) con
     return sum / area;
 }
 
-void LinearRows::gather(std::span<const Spectrum> nodal, std::span<Spectrum> out) const {
-    std::vector<Corners> reflected(leaves_.size());
-    parallel_for(leaves_.size(), 256, [&](std::size_t i) {
-        reflected[i] = corners(i, nodal);
-        for (Spectrum& c : reflected[i]) c *= leaves_[i].reflectance;
+std::vector<LinearRows::Corners> LinearRows::reflected(std::span<const Spectrum> values) const {
+    std::vector<Corners> out(met_.size());
+    parallel_for(met_.size(), 256, [&](std::size_t m) {
+        const Leaf& l = leaves_[met_[m]];
+        for (std::size_t c = 0; c < 4; ++c) {
+            for (std::size_t k = 0; k < l.node_count; ++k)
+                out[m][c] += static_cast<double>(l.to_corner[c][k]) * values[read_[first_read_[m] + k]];
+            out[m][c] *= l.reflectance;
+        }
     });
-    read_all(reflected, out);
+    return out;
+}
+
+void LinearRows::gather(std::span<const Spectrum> nodal, std::span<Spectrum> out) const {
+    if (dealt_.is_spread()) return gather_dealt(nodal, out);
+    read_own(reflected(nodal), out);
+}
+
+void LinearRows::gather_own(std::span<const Spectrum> nodal, std::span<Spectrum> out) const {
+    if (!dealt_.is_spread()) return gather(nodal, out);
+    read_own(reflected(fetched_.with_fetched(nodal)), out);
 }
 
 Spectrum LinearRows::gather_at(std::size_t node, std::span<const Spectrum> nodal) const {
+    EXI_CHECK(!dealt_.is_spread());
     Spectrum sum;
     for (std::size_t i = nodes_[node].first_ray; i < nodes_[node].last_ray; ++i) {
         const Hit& hit = hits_[i];
         if (hit.leaf == missed) continue;
+        const std::size_t leaf = met_[hit.leaf];
         const double u = hit.u / 65535.0, v = hit.v / 65535.0;
-        const Corners c = corners(hit.leaf, nodal);
-        const Spectrum E = leaves_[hit.leaf].triangle
+        const Corners c = corners(leaf, nodal);
+        const Spectrum E = leaves_[leaf].triangle
                                ? (1 - u - v) * c[0] + u * c[1] + v * c[2]
                                : (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
-        sum += (counts_.empty() ? 1 : static_cast<double>(counts_[i])) * (leaves_[hit.leaf].reflectance * E);
+        sum += (counts_.empty() ? 1 : static_cast<double>(counts_[i])) * (leaves_[leaf].reflectance * E);
     }
     return sum / static_cast<double>(nodes_[node].last_ray - nodes_[node].first_ray);
 }
 
 std::vector<Spectrum> LinearRows::first_reflection(const DirectProjection& direct) const {
-    std::vector<Corners> reflected(leaves_.size());
-    for (std::size_t i = 0; i < leaves_.size(); ++i) {
-        reflected[i] = direct.fit[ids_[i]].corners;
-        for (Spectrum& c : reflected[i]) c *= leaves_[i].reflectance;
+    std::vector<Corners> reflected(met_.size());
+    for (std::size_t m = 0; m < met_.size(); ++m) {
+        reflected[m] = direct.fit[ids_[met_[m]]].corners;
+        for (Spectrum& c : reflected[m]) c *= leaves_[met_[m]].reflectance;
     }
-    std::vector<Spectrum> out(nodes_.size());
-    read_all(reflected, out);
+    std::vector<Spectrum> own(dealt_.own_count()), out(nodes_.size());
+    read_own(reflected, own);
+    dealt_.tell<Spectrum>(own, out, "solve");
     return out;
 }
 

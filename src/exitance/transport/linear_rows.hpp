@@ -23,6 +23,8 @@ class LinearRows final : public TransportOperator {
     std::size_t size() const override { return nodes_.size(); }
     void gather(std::span<const Spectrum> nodal, std::span<Spectrum> out) const override;
     Spectrum gather_at(std::size_t node, std::span<const Spectrum> nodal) const override;
+    DealtUnknowns dealt() const override { return dealt_; }
+    void gather_own(std::span<const Spectrum> nodal, std::span<Spectrum> out) const override;
     std::size_t memory_bytes() const override {
         return sizeof(Hit) * hits_.size() + sizeof(float) * counts_.size() + sizeof(Node) * nodes_.size();
     }
@@ -40,14 +42,15 @@ class LinearRows final : public TransportOperator {
 
   private:
     static constexpr std::uint32_t missed = 0xffffffffu;
-    /// Where a ray ends: a leaf number, and the place there in steps of 2^-16 of the patch.
+    /// Where a ray ends: a leaf, by its place among those that are met here, and the place there in steps of 2^-16 of
+    /// the patch.
     struct Hit {
         std::uint32_t leaf = missed;
         std::uint16_t u = 0, v = 0;
     };
     struct Node {
         double area = 0;
-        std::size_t first_ray = 0, last_ray = 0;
+        std::size_t first_ray = 0, last_ray = 0;  ///< Empty where the node is another process's.
     };
     struct Leaf {
         std::uint32_t first_node = 0, node_count = 0;
@@ -57,10 +60,21 @@ class LinearRows final : public TransportOperator {
         std::array<std::array<float, 8>, 4> to_corner{};
     };
     using Corners = std::array<Spectrum, 4>;
+    void number_nodes(const Stage& stage, const ElementTree& tree, const RayBudget& budget);
+    void cast(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+              const ElementLocator& locator, std::uint64_t seed);
+    void find_what_is_met();
+    /// What the leaves that are met reflect, at their corners; `values`: own and fetched ones.
+    std::vector<Corners> reflected(std::span<const Spectrum> values) const;
     Spectrum read(const std::vector<Corners>& corners, const Node& node) const;
-    void read_all(const std::vector<Corners>& corners, std::span<Spectrum> out) const;
+    void read_own(const std::vector<Corners>& corners, std::span<Spectrum> out) const;
 
+    DealtUnknowns dealt_{0};
     std::size_t rays_ = 0;
+    FetchedValues fetched_;
+    std::vector<std::uint32_t> met_;         ///< Leaves that rays of own nodes end on, ascending.
+    std::vector<std::uint32_t> first_read_;  ///< Where the nodes of each begin in read_;
+    std::vector<std::uint32_t> read_;        ///< where their values stand among own and fetched ones.
 
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;

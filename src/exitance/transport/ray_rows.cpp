@@ -57,21 +57,23 @@ std::vector<Deal> deal(const ElementTree& tree, const LeafNumbering& numbering, 
 RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                  const ElementLocator& locator, RayBudget budget, std::uint64_t seed, Dealing dealing, RowsHeld held,
                  const StopRequest* stop)
-    : held_(held) {
-    const std::size_t n = numbering.leaves.size();
+    : dealt_(held == RowsHeld::everywhere
+                 ? DealtUnknowns(numbering.leaves.size())
+                 : DealtUnknowns(numbering.leaves.size(), dealt_block(numbering.leaves.size()))) {
+    const std::size_t n = numbering.leaves.size(), block = dealt_.block();
     const double mean_area = stage.area / static_cast<double>(n);
-    first_.assign(n + 1, 0);
+    std::vector<std::size_t> first(n + 1, 0);  // of all rows
     for (std::size_t i = 0; i < n; ++i)
-        first_[i + 1] = first_[i] + budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
-    rays_ = first_[n];
-    const std::vector<Deal> dealt = deal(tree, numbering, first_, seed, dealing);
-    if (held == RowsHeld::by_owner)
-        for (std::size_t i = 0, all = 0; i < n; ++i) {
-            const std::size_t count = std::exchange(all, first_[i + 1]), here = is_here(i) ? all - count : 0;
-            first_[i + 1] = first_[i] + here;
-        }
-    hits_.assign(first_[n], missed);
-    if (stage.rooms.portals()) counts_.assign(first_[n], 1);
+        first[i + 1] = first[i] + budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
+    rays_ = first[n];
+    const std::vector<Deal> points = deal(tree, numbering, first, seed, dealing);
+    first_.assign(dealt_.own_count() + 1, 0);
+    for (std::size_t at = 0; at < dealt_.own_count(); ++at) {
+        const std::size_t i = dealt_.unknown(at);
+        first_[at + 1] = first_[at] + first[i + 1] - first[i];
+    }
+    hits_.assign(first_.back(), missed);
+    if (stage.rooms.portals()) counts_.assign(first_.back(), 1);
 
     parallel_own_ranges(
         n, block,
@@ -79,56 +81,81 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
             ElementRays rays(stage, tree, locator);
             const auto leave = budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
             for (std::size_t i = begin; i < end && !(stop && stop->requested()); ++i) {
-                const std::size_t count = first_[i + 1] - first_[i];
-                const auto counts = counts_.empty() ? std::span<float>() : std::span(counts_).subspan(first_[i], count);
-                rays.cast(numbering.leaves[i], dealt[i].key, std::span(hits_).subspan(first_[i], count), dealt[i].first,
-                          leave, counts);
-                note_touched("rays", count);
+                const auto row = of_row(std::span(hits_), i);
+                const auto counts = counts_.empty() ? std::span<float>() : of_row(std::span(counts_), i);
+                rays.cast(numbering.leaves[i], points[i].key, row, points[i].first, leave, counts);
+                note_touched("rays", row.size());
             }
         },
         {"cast rows", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
-    if (held != RowsHeld::everywhere) return;
-    const auto row_of = [&](auto& values) {
-        return [&](std::size_t i) { return std::span(values).subspan(first_[i], first_[i + 1] - first_[i]); };
-    };
-    exchange_values(n, block, row_of(hits_), "cast rows");
-    if (!counts_.empty()) exchange_values(n, block, row_of(counts_), "cast rows");
+    if (dealt_.is_spread())
+        fetch_what_is_met();
+    else
+        tell_rows();
 }
 
-bool RayRows::is_here(std::size_t i) const {
-    return held_ == RowsHeld::everywhere || is_own(i, block);
+void RayRows::tell_rows() {
+    const auto row_of = [&](auto& values) { return [&](std::size_t i) { return of_row(std::span(values), i); }; };
+    exchange_values(size(), dealt_.block(), row_of(hits_), "cast rows");
+    if (!counts_.empty()) exchange_values(size(), dealt_.block(), row_of(counts_), "cast rows");
+}
+
+/// Finds out which leaves the own rows read, and numbers what rays met by where their values will stand.
+void RayRows::fetch_what_is_met() {
+    std::vector<std::uint8_t> met(size(), 0);
+    do_own_share([&] {
+        parallel_for(dealt_.own_count(), 256, [&](std::size_t at) {
+            for (const std::uint32_t leaf : places(dealt_.unknown(at)))
+                if (leaf != missed) FetchedValues::mark(met[leaf], dealt_, at);
+        });
+    });
+    fetched_ = FetchedValues(dealt_, met);
+    const std::vector<std::uint32_t> place = fetched_.places();
+    parallel_for(hits_.size(), 4096, [&](std::size_t k) {
+        if (hits_[k] != missed) hits_[k] = place[hits_[k]];
+    });
+}
+
+void RayRows::leaves_met(std::size_t i, std::vector<std::uint32_t>& out) const {
+    out.assign(places(i).begin(), places(i).end());
+    if (!dealt_.is_spread()) return;
+    for (std::uint32_t& at : out)
+        if (at != missed) at = fetched_.unknown_at(at);
+}
+
+Spectrum RayRows::read(std::size_t place, std::span<const Spectrum> radiosity) const {
+    Spectrum sum;
+    for (std::size_t k = first_[place]; k < first_[place + 1]; ++k)
+        if (hits_[k] != missed) sum += (counts_.empty() ? 1 : counts_[k]) * radiosity[hits_[k]];
+    return sum / static_cast<double>(first_[place + 1] - first_[place]);
 }
 
 Spectrum RayRows::gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const {
-    Spectrum sum;
-    for (std::size_t k = first_[receiver]; k < first_[receiver + 1]; ++k)
-        if (hits_[k] != missed) sum += (counts_.empty() ? 1 : counts_[k]) * radiosity[hits_[k]];
-    return sum / static_cast<double>(first_[receiver + 1] - first_[receiver]);
+    EXI_CHECK(!dealt_.is_spread());
+    return read(receiver, radiosity);
 }
 
 void RayRows::gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
-    if (held_ == RowsHeld::everywhere || processes() == 1)
-        return parallel_for(size(), 64, [&](std::size_t i) { irradiance[i] = gather_at(i, radiosity); });
-    shared_ranges(
-        size(), block,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) irradiance[i] = gather_at(i, radiosity);
-        },
-        [&](std::size_t i) -> Spectrum& { return irradiance[i]; }, {"solve"});
+    if (dealt_.is_spread()) return gather_dealt(radiosity, irradiance);
+    parallel_for(size(), 64, [&](std::size_t i) { irradiance[i] = read(i, radiosity); });
+}
+
+void RayRows::gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+    if (!dealt_.is_spread()) return gather(radiosity, irradiance);
+    const std::vector<Spectrum> values = fetched_.with_fetched(radiosity);
+    do_own_share(
+        [&] { parallel_for(irradiance.size(), 64, [&](std::size_t at) { irradiance[at] = read(at, values); }); });
 }
 
 std::vector<double> RayRows::kept() const {
-    std::vector<double> out(size());
-    parallel_for(size(), 256, [&](std::size_t i) {
-        if (!is_here(i)) return;
+    std::vector<double> own(dealt_.own_count()), out(size());
+    parallel_for(own.size(), 256, [&](std::size_t at) {
         double lost = 0;
-        for (std::size_t k = first_[i]; k < first_[i + 1]; ++k)
+        for (std::size_t k = first_[at]; k < first_[at + 1]; ++k)
             if (hits_[k] == missed) lost += counts_.empty() ? 1.0 : static_cast<double>(counts_[k]);
-        out[i] = std::max(0.0, 1 - lost / static_cast<double>(first_[i + 1] - first_[i]));
+        own[at] = std::max(0.0, 1 - lost / static_cast<double>(first_[at + 1] - first_[at]));
     });
-    if (held_ == RowsHeld::by_owner)
-        exchange_values(
-            size(), block, [&](std::size_t i) -> double& { return out[i]; }, "cast rows");
+    dealt_.tell<double>(own, out, "cast rows");
     return out;
 }
 

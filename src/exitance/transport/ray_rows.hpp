@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/transport/fetched_values.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/transport/transport_operator.hpp"
 
@@ -41,37 +42,48 @@ class RayRows final : public TransportOperator {
             RayBudget budget, std::uint64_t seed, Dealing dealing = Dealing::by_element,
             RowsHeld held = RowsHeld::everywhere, const StopRequest* stop = nullptr);
 
-    std::size_t size() const override { return first_.size() - 1; }
+    std::size_t size() const override { return dealt_.count(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
+    DealtUnknowns dealt() const override { return dealt_; }
+    void gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
     std::size_t memory_bytes() const override { return 4 * (hits_.size() + counts_.size()) + 8 * first_.size(); }
     /// Of all processes together.
     std::size_t rays() const { return rays_; }
     static constexpr std::uint32_t missed = 0xffffffffu;
-    /// So many rows, one after the other, are one process's.
-    static constexpr std::size_t block = 16;
-    /// Of row i: leaf numbers, `missed` where a ray met nothing or a back.
+    /// Of row i, which is here, leaf numbers, `missed` where a ray met nothing or a back. For rows that are everywhere.
     std::span<const std::uint32_t> hits(std::size_t i) const {
-        return std::span(hits_).subspan(first_[i], first_[i + 1] - first_[i]);
+        EXI_ASSERT(!dealt_.is_spread());
+        return places(i);
     }
+    /// The same of any row that is here.
+    void leaves_met(std::size_t i, std::vector<std::uint32_t>& out) const;
 
     /// As how many rays each of them counts; empty where all count alike.
     std::span<const float> counts(std::size_t i) const {
-        if (counts_.empty()) return {};
-        return std::span(counts_).subspan(first_[i], first_[i + 1] - first_[i]);
+        return counts_.empty() ? std::span<const float>() : of_row(std::span(counts_), i);
     }
 
     /// Of every row, the share of its rays that hit a front.
     std::vector<double> kept() const;
 
   private:
-    bool is_here(std::size_t i) const;
+    template <class T>
+    std::span<T> of_row(std::span<T> values, std::size_t i) const {
+        const std::size_t at = dealt_.place(i);
+        return values.subspan(first_[at], first_[at + 1] - first_[at]);
+    }
+    std::span<const std::uint32_t> places(std::size_t i) const { return of_row(std::span(hits_), i); }
+    void tell_rows();
+    void fetch_what_is_met();
+    Spectrum read(std::size_t place, std::span<const Spectrum> radiosity) const;
 
-    RowsHeld held_;
+    DealtUnknowns dealt_;
     std::size_t rays_ = 0;
-    std::vector<std::size_t> first_;  ///< Row i stands in hits_[first_[i], first_[i + 1]); empty where it is not here.
-    std::vector<std::uint32_t> hits_;
-    std::vector<float> counts_;  ///< Of each of them; empty where all are 1.
+    std::vector<std::size_t> first_;   ///< The row at a place stands in hits_[first_[place], first_[place + 1]).
+    std::vector<std::uint32_t> hits_;  ///< The leaves' places among own and fetched ones; their numbers where all are.
+    std::vector<float> counts_;        ///< Of each of them; empty where all are 1.
+    FetchedValues fetched_;
 };
 
 }  // namespace exitance

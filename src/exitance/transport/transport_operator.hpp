@@ -4,6 +4,7 @@
 #include <span>
 
 #include "exitance/core/spectrum.hpp"
+#include "exitance/transport/dealt_unknowns.hpp"
 
 namespace exitance {
 
@@ -19,6 +20,23 @@ class TransportOperator {
     /// The same for one receiver.
     virtual Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const = 0;
     virtual std::size_t memory_bytes() const = 0;
+
+    /// How processes hold vectors while they solve with it. Those that have all of every row hold all.
+    virtual DealtUnknowns dealt() const { return DealtUnknowns(size()); }
+    /// `gather` of what this process holds of both, dealt().own_count() entries. All processes call it.
+    virtual void gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+        gather(radiosity, irradiance);
+    }
+
+  protected:
+    /// `gather` by way of `gather_own`, for operators that are dealt out: all processes have all of `irradiance`.
+    void gather_dealt(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
+        const DealtUnknowns unknowns = dealt();
+        const std::vector<Spectrum> own = unknowns.own_part(radiosity);
+        std::vector<Spectrum> out(own.size());
+        gather_own(own, out);
+        unknowns.tell<Spectrum>(out, irradiance, "solve");
+    }
 };
 
 }  // namespace exitance

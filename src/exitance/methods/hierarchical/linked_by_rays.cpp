@@ -78,7 +78,7 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
 
     // Every leaf has links of its own: the part is all of the hierarchy.
     const ElementPart part{sites.inner(), leaves};
-    relax_constant_elements(input, LinkOperator(sites, links, nullptr, part, RayRows::block), light);
+    relax_constant_elements(input, LinkOperator(sites, links, nullptr, part, rows.dealt().block()), light);
     light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();
     light.elements_by_level = sites.count_by_level();
     if (input.options.keep_links) light.kept_links = list_of_all(links, light.numbering);

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/core/spectrum.hpp"
+#include "exitance/transport/dealt_unknowns.hpp"
+
+namespace exitance {
+
+using Values = std::vector<Spectrum>;
+
+/// What Krylov methods do with vectors of own unknowns, in one order of operations, so that ours and PETSc's give the
+/// same bits on any number of processes. All processes call each alike.
+struct KrylovVectors {
+    DealtUnknowns dealt;
+    std::span<const double> area;  ///< m^2, of own unknowns.
+
+    /// x . y_j = sum_i A_i sum_band x_i y_ji, of every y.
+    std::vector<double> products(std::span<const Spectrum> x, std::span<const std::span<const Spectrum>> y) const {
+        return dealt.sums<double>(y.size(), [&](std::size_t i, std::size_t j) {
+            double sum = 0;
+            for (std::size_t band = 0; band < bands; ++band) sum += x[i][band] * y[j][i][band];
+            return area[i] * sum;
+        });
+    }
+    /// (sum_i A_i |x_i|^2)^(1/2), all bands together.
+    double norm(std::span<const Spectrum> x) const {
+        return std::sqrt(dealt.sum<double>([&](std::size_t i) { return area[i] * squared(x[i]); }));
+    }
+};
+
+/// y <- y + sum_j a_j x_j, j after j.
+inline void add_combination(std::span<Spectrum> y, std::span<const double> a,
+                            std::span<const std::span<const Spectrum>> x) {
+    parallel_for(y.size(), 1024, [&](std::size_t i) {
+        for (std::size_t j = 0; j < a.size(); ++j)
+            for (std::size_t band = 0; band < bands; ++band) y[i][band] += a[j] * x[j][i][band];
+    });
+}
+
+/// x <- factor x
+inline void multiply(std::span<Spectrum> x, double factor) {
+    parallel_for(x.size(), 1024, [&](std::size_t i) { x[i] *= factor; });
+}
+
+}  // namespace exitance
