@@ -93,6 +93,7 @@ void record_processes(SolveStatistics& statistics) {
         std::replace(name.begin(), name.end(), ' ', '_');
         figures["dealt_seconds_" + name] = sum_of_all(t.own);
         longest += figures["longest_seconds_" + name] = t.longest;
+        figures["repeated_seconds_" + name] = as_first(t.repeated);
     }
     figures["longest_processor_seconds"] = longest;
     figures["messages"] = messages, figures["message_bytes"] = bytes;

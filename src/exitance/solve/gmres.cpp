@@ -45,7 +45,7 @@ struct Hessenberg {
 /// Makes it 1 long, where it is not 0; returns how long it was.
 double normalise(const KrylovVectors& vectors, std::span<Spectrum> x) {
     const double length = vectors.norm(x);
-    if (length > 0) multiply(x, 1 / length);
+    if (length > 0) vectors.multiply(x, 1 / length);
     return length;
 }
 
@@ -53,14 +53,14 @@ double normalise(const KrylovVectors& vectors, std::span<Spectrum> x) {
 void residual(const RadiositySystem& system, std::span<const Spectrum> b, std::span<Spectrum> r) {
     Values product(b.size());
     apply_system(system, b, product);
-    parallel_for(r.size(), 1024, [&](std::size_t i) { r[i] = system.rhs[i] - product[i]; });
+    system.F.dealt().for_each_own([&](std::size_t i) { r[i] = system.rhs[i] - product[i]; });
 }
 
 }  // namespace
 
 void apply_system(const RadiositySystem& system, std::span<const Spectrum> b, std::span<Spectrum> out) {
     system.F.gather_own(b, out);
-    parallel_for(out.size(), 1024, [&](std::size_t i) { out[i] = b[i] - system.reflectance[i] * out[i]; });
+    system.F.dealt().for_each_own([&](std::size_t i) { out[i] = b[i] - system.reflectance[i] * out[i]; });
 }
 
 SolveReport gmres(const RadiositySystem& system, std::span<Spectrum> b, StopRule stop) {
@@ -83,15 +83,15 @@ SolveReport gmres(const RadiositySystem& system, std::span<Spectrum> b, StopRule
                 small.H[j][k] = products[static_cast<std::size_t>(j)];
                 products[static_cast<std::size_t>(j)] *= -1;
             }
-            add_combination(w, products, known);
+            watch.vectors.add_combination(w, products, known);
             small.H[k + 1][k] = normalise(watch.vectors, w);
             done = watch.done(small.rotate(k));
             basis.push_back(std::move(w));
         }
         if (known.empty()) break;
         Values change(b.size());
-        add_combination(change, small.solve(static_cast<int>(known.size())), known);
-        parallel_for(b.size(), 1024, [&](std::size_t i) { b[i] += change[i]; });
+        watch.vectors.add_combination(change, small.solve(static_cast<int>(known.size())), known);
+        watch.vectors.dealt.for_each_own([&](std::size_t i) { b[i] += change[i]; });
     }
     return watch.report;
 }

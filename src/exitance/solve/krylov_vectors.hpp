@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/parallel.hpp"
 #include "exitance/core/spectrum.hpp"
 #include "exitance/transport/dealt_unknowns.hpp"
 
@@ -30,20 +29,18 @@ struct KrylovVectors {
     double norm(std::span<const Spectrum> x) const {
         return std::sqrt(dealt.sum<double>([&](std::size_t i) { return area[i] * squared(x[i]); }));
     }
+    /// y <- y + sum_j a_j x_j, j after j.
+    void add_combination(std::span<Spectrum> y, std::span<const double> a,
+                         std::span<const std::span<const Spectrum>> x) const {
+        dealt.for_each_own([&](std::size_t i) {
+            for (std::size_t j = 0; j < a.size(); ++j)
+                for (std::size_t band = 0; band < bands; ++band) y[i][band] += a[j] * x[j][i][band];
+        });
+    }
+    /// x <- factor x
+    void multiply(std::span<Spectrum> x, double factor) const {
+        dealt.for_each_own([&](std::size_t i) { x[i] *= factor; });
+    }
 };
-
-/// y <- y + sum_j a_j x_j, j after j.
-inline void add_combination(std::span<Spectrum> y, std::span<const double> a,
-                            std::span<const std::span<const Spectrum>> x) {
-    parallel_for(y.size(), 1024, [&](std::size_t i) {
-        for (std::size_t j = 0; j < a.size(); ++j)
-            for (std::size_t band = 0; band < bands; ++band) y[i][band] += a[j] * x[j][i][band];
-    });
-}
-
-/// x <- factor x
-inline void multiply(std::span<Spectrum> x, double factor) {
-    parallel_for(x.size(), 1024, [&](std::size_t i) { x[i] *= factor; });
-}
 
 }  // namespace exitance

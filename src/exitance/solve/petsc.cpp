@@ -34,7 +34,7 @@ void check(PetscErrorCode code) {
 
 /// The functions of the library that are used here, by their own names.
 struct Petsc {
-    void* library = dlopen(EXITANCE_PETSC_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    void* library = dlopen(EXITANCE_PETSC_LIBRARY, RTLD_LAZY | RTLD_LOCAL);
 
     template <class Function>
     Function* find(const char* name) const {
@@ -218,7 +218,7 @@ PetscErrorCode norm(Vec x, NormType, PetscReal* out) {
 }
 
 PetscErrorCode scale(Vec x, PetscScalar factor) {
-    multiply(WrittenValues(x).get(), factor);
+    running->watch.vectors.multiply(WrittenValues(x).get(), factor);
     return 0;
 }
 
@@ -226,7 +226,7 @@ PetscErrorCode add_multiples(Vec y, PetscInt count, const PetscScalar* factors, 
     std::vector<std::unique_ptr<ReadValues>> read;
     std::vector<std::span<const Spectrum>> values;
     for (PetscInt j = 0; j < count; ++j) values.push_back(read.emplace_back(new ReadValues(x[j]))->get());
-    add_combination(WrittenValues(y).get(), {factors, values.size()}, values);
+    running->watch.vectors.add_combination(WrittenValues(y).get(), {factors, values.size()}, values);
     return 0;
 }
 

@@ -10,12 +10,6 @@
 namespace exitance {
 namespace {
 
-/// body(i) for every unknown.
-template <class Body>
-void for_each(std::size_t n, const Body& body) {
-    parallel_for(n, 1024, body);
-}
-
 Spectrum divided(const Spectrum& x, const Spectrum& y) {
     Spectrum out;
     for (std::size_t k = 0; k < bands; ++k) out[k] = y[k] != 0 ? x[k] / y[k] : 0;
@@ -26,7 +20,7 @@ Spectrum divided(const Spectrum& x, const Spectrum& y) {
 void residual(const RadiositySystem& s, std::span<const Spectrum> b, Values& r) {
     r.resize(b.size());
     s.F.gather_own(b, r);
-    for_each(b.size(), [&](std::size_t i) { r[i] = s.rhs[i] + s.reflectance[i] * r[i] - b[i]; });
+    s.F.dealt().for_each_own([&](std::size_t i) { r[i] = s.rhs[i] + s.reflectance[i] * r[i] - b[i]; });
 }
 
 SolveReport jacobi(const RadiositySystem& s, std::span<Spectrum> b, StopRule stop) {
@@ -37,7 +31,7 @@ SolveReport jacobi(const RadiositySystem& s, std::span<Spectrum> b, StopRule sto
         ++watch.report.iterations;
         const bool done = watch.done(r);
         // The residual is the change that one more sweep makes: it is taken along even when it is the last.
-        for (std::size_t i = 0; i < b.size(); ++i) b[i] += r[i];
+        watch.vectors.dealt.for_each_own([&](std::size_t i) { b[i] += r[i]; });
         if (done) return watch.report;
     }
 }
@@ -83,7 +77,7 @@ SolveReport chebyshev(const RadiositySystem& s, std::span<Spectrum> b, StopRule 
             omega[k] = done || step == 0 ? 1
                        : step == 1       ? 2 / (2 - r[k] * r[k])
                                          : 1 / (1 - 0.25 * r[k] * r[k] * omega[k]);
-        parallel_for(b.size(), 1024, [&](std::size_t i) {
+        watch.vectors.dealt.for_each_own([&](std::size_t i) {
             const Spectrum now = b[i];
             b[i] = before[i] + omega * (now + change[i] - before[i]);
             before[i] = now;
@@ -106,20 +100,16 @@ SolveReport gauss_seidel(const RadiositySystem& s, std::span<Spectrum> b, StopRu
     }
 }
 
-/// x <- x + scale p, a factor a band.
-void add_scaled(std::span<Spectrum> x, const Spectrum& scale, std::span<const Spectrum> p) {
-    for_each(x.size(), [&](std::size_t i) { x[i] += scale * p[i]; });
-}
-
 SolveReport conjugate_gradients(const RadiositySystem& s, std::span<Spectrum> b, StopRule stop) {
     const std::size_t n = b.size();
     RelaxationWatch watch(s, stop);
-    Values r, p(n), z(n), q(n);
+    Values r, p(n), q(n);
     // Rows of black elements are solved at once; for the others the residual of the symmetric form is A r / rho, and
     // its Jacobi preconditioner rho / A (1 - rho F_ii), F_ii = 0: so z = r, and the products carry the weight A / rho.
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < bands; ++k)
             if (s.reflectance[i][k] == 0) b[i][k] = s.rhs[i][k];
+    const auto for_each = [&](const auto& body) { watch.vectors.dealt.for_each_own(body); };
     const auto weighted = [&](std::span<const Spectrum> x, std::span<const Spectrum> y) {
         return watch.vectors.dealt.sum<Spectrum>(
             [&](std::size_t i) { return s.area[i] * divided(x[i] * y[i], s.reflectance[i]); });
@@ -132,15 +122,14 @@ SolveReport conjugate_gradients(const RadiositySystem& s, std::span<Spectrum> b,
     for (;;) {
         s.F.gather_own(p, q);
         ++watch.report.iterations;
-        for (std::size_t i = 0; i < n; ++i) q[i] = p[i] - s.reflectance[i] * q[i];
+        for_each([&](std::size_t i) { q[i] = p[i] - s.reflectance[i] * q[i]; });
         const Spectrum alpha = divided(rr, weighted(p, q));
-        add_scaled(b, alpha, p);
-        add_scaled(r, -1.0 * alpha, q);
+        for_each([&](std::size_t i) { b[i] += alpha * p[i], r[i] += -1.0 * alpha * q[i]; });
         if (watch.done(r)) return watch.report;
         const Spectrum next = weighted(r, r);
         const Spectrum beta = divided(next, rr);
         rr = next;
-        for (std::size_t i = 0; i < n; ++i) p[i] = r[i] + beta * p[i];
+        for_each([&](std::size_t i) { p[i] = r[i] + beta * p[i]; });
     }
 }
 

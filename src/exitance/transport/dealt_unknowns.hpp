@@ -64,6 +64,16 @@ class DealtUnknowns {
                 count_, block_, [&](std::size_t i) -> T& { return all[i]; }, what);
     }
 
+    /// Calls body(i) for the places of all own ones. Where they are few of all, it counts as what is dealt out.
+    template <class Body>
+    void for_each_own(const Body& body) const {
+        const auto all = [&] { parallel_for(own_count(), 1024, body); };
+        if (is_spread())
+            do_own_share(all);
+        else
+            all();
+    }
+
     /// sum_i term(i, k), k < terms, over all unknowns; i is the place of an own one. All processes call it.
     template <class T, class Term>
     std::vector<T> sums(std::size_t terms, const Term& term) const {
@@ -80,8 +90,7 @@ class DealtUnknowns {
             sum_own();
         } else {
             do_own_share(sum_own);
-            exchange_values(
-                blocks, 1, [&](std::size_t b) { return std::span(of_block).subspan(b * terms, terms); }, "sums");
+            exchange_equal_blocks(std::span(of_block), blocks, "sums");
         }
         std::vector<T> out(terms);
         for (std::size_t b = 0; b < blocks; ++b)

@@ -32,7 +32,7 @@ struct Team {
     std::map<std::string, Traffic> traffic;
     ExchangeTime time;
     std::map<std::string, DealtTime> dealt;
-    double dealt_before = 0;  ///< Seconds that were dealt to this process until the end of a loop.
+    double dealt_before = 0, taken_before = 0;  ///< Seconds of what was dealt to this process, and of all, by then.
 };
 Team team;
 
@@ -366,12 +366,13 @@ void meet(std::size_t things, const char* what) {
     const bool stops = team.agreed && ((team.asked && team.asked->requested()) || team.agreed->requested());
     const std::uint64_t place = ++team.meetings << 40 ^ things;
     constexpr double ticks = 1e9;  // a second
-    const double dealt = result_sharing().dealt_seconds, since = dealt - std::exchange(team.dealt_before, dealt);
+    const double dealt = result_sharing().dealt_seconds, since = dealt - std::exchange(team.dealt_before, dealt),
+                 taken = processor_seconds(), all_since = taken - std::exchange(team.taken_before, taken);
     std::array<std::uint64_t, 4> own{place, ~place, stops, static_cast<std::uint64_t>(ticks * since)}, all{};
     const Stopwatch watch;
     reduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     DealtTime& of_step = team.dealt[what];
-    of_step.own += since, of_step.longest += static_cast<double>(all[3]) / ticks;
+    of_step.own += since, of_step.longest += static_cast<double>(all[3]) / ticks, of_step.repeated += all_since - since;
     team.time.waiting += watch.seconds();
     count("agreement", sizeof own);
     if (all[0] != place || all[1] != ~place)

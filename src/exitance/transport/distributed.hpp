@@ -89,10 +89,11 @@ struct ExchangeTime {
 };
 ExchangeTime exchange_time();
 
-/// Processor time of what was dealt out, by what ended it: this process's, and that of whichever process took most,
-/// from one end of a loop to the next, seconds. With all processes' work alike they are the same.
+/// Processor time from one end of a shared loop to the next, by what ended it, seconds: this process's of what was
+/// dealt out, and that of whichever process took most, which are the same where all have as much to do; and this one's
+/// of everything else, which all repeat or one does while others wait.
 struct DealtTime {
-    double own = 0, longest = 0;
+    double own = 0, longest = 0, repeated = 0;
 };
 const std::map<std::string, DealtTime>& dealt_time();
 
@@ -173,6 +174,18 @@ void exchange_values(std::size_t count, std::size_t grain, const Value& value, c
         for (std::size_t p = 0; p < processes(); ++p) first[p + 1] += first[p];
         detail::exchange_blocks(block, end, count, grain, first, value, what);
     }
+}
+
+/// Sends to all the values of `blocks` blocks, as many each, of which block b is process b % processes()'s. For few
+/// values, where all have met just before: in one round, without agreeing on stops. All.
+template <class T>
+void exchange_equal_blocks(std::span<T> values, std::size_t blocks, const char* what) {
+    const std::size_t each = blocks > 0 ? values.size() / blocks : 0, all = processes();
+    std::vector<std::size_t> first(all + 1, 0);
+    for (std::size_t p = 0; p < all; ++p)
+        first[p + 1] = first[p] + (blocks / all + (p < blocks % all ? 1 : 0)) * each * sizeof(T);
+    detail::exchange_blocks(
+        0, blocks, blocks, 1, first, [&](std::size_t b) { return values.subspan(b * each, each); }, what);
 }
 
 /// `parallel_ranges`, dealt out to all processes: body(first, last) writes value(i), a reference to a plain value, for
