@@ -37,63 +37,6 @@ void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double
     out.push_back({p - across, q - across, height});
 }
 
-constexpr double deepest_strip = 7;  ///< Heights of a gap: there a hundredth of the light at its mouth is left.
-
-/// Lines along an edge, on one side of it (`inwards`, of length 1), under what is `height` above the plane there: light
-/// that enters such a gap falls off with the distance from its mouth by the height, so that strips twice as wide as
-/// those before them follow it, until next to nothing is left. The first one ends where the mouth's own strip does.
-void strips_into_gap(const Point& p, const Point& q, const Vec3& inwards, double height, std::vector<Segment>& out) {
-    for (double distance : {1.0, 3.0, deepest_strip}) {
-        const Vec3 across = distance * height * inwards;
-        out.push_back({p + across, q + across, height});
-    }
-}
-
-/// How high things stand over a surface for a gap to be between them, metres.
-struct GapHeights {
-    double least, most;
-    bool hold(double height) const { return height > least && height <= most; }
-};
-
-/// The direction in a plane to the left of a border's edge, which runs counter-clockwise: to the inside. Length 1.
-Vec3 inwards_of(const Point& p, const Point& q, const Normal& n) {
-    const Vec3 left = cross(n, q - p);
-    return (1 / norm(left)) * left;
-}
-
-/// Where a gap opens along the edge of another face, which hovers over the plane: to the side on which that face is.
-/// Upright sides have their edges there, too, but nothing under them is a gap.
-void gap_under_face(const Point& p, const Point& q, const Normal& n, const Plane& plane, const GapHeights& heights,
-                    std::vector<Segment>& out) {
-    constexpr double alike = 0.9;  // cosine
-    if (dot(n, plane.n) >= -alike) return;
-    const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
-    if (std::min(hp, hq) > heights.least && heights.hold(std::max(hp, hq)))
-        strips_into_gap(p, q, inwards_of(p, q, n), std::max(hp, hq), out);
-}
-
-/// Where a gap opens along an edge of the region itself, over which another face hovers: inwards.
-void gap_over_border(const Scene& scene, const Bvh& faces, const Point& p, const Point& q, RegionId own,
-                     const GapHeights& heights, double tolerance, std::vector<Segment>& out) {
-    const Plane& plane = scene.regions()[own].plane;
-    const Vec3 inwards = inwards_of(p, q, plane.n);
-    const Point x = 0.5 * (p + q) + (10 * tolerance) * inwards;
-    double height = heights.most;
-    bool is_covered = false;
-    Box above;
-    above.add(x + heights.least * plane.n), above.add(x + heights.most * plane.n);
-    faces.visit_box(above, [&](std::uint32_t i) {
-        const SurfaceId s(i);
-        const Normal& other = scene.surfaces()[s].normal;
-        const double down = -dot(other, plane.n);
-        if (scene.surfaces()[s].region == own || down <= 0) return;
-        const double h = dot(other, x - scene.outline(s)[0]) / down;
-        if (!heights.hold(h) || h > height || !contains(scene.outline(s), other, x + h * plane.n)) return;
-        height = h, is_covered = true;
-    });
-    if (is_covered) strips_into_gap(p, q, inwards, height, out);
-}
-
 /// How far a flat outline reaches at right angles to a line of its plane, on either side of it; metres.
 struct Reach {
     double left = 0, right = 0;
@@ -112,22 +55,20 @@ struct Reach {
 
 /// Leaves of the lines beside what hovers over an element those that are worth it. Light there changes within the
 /// height: to a slat no wider than a few heights that is no jump, however long the slat is; what is cut off along a
-/// border is to be no mere trace of the element; and strips, which stand from `first_strip` on, are to be a noticeable
-/// part of it, all together. `before_cuts`: how many times longer the element was before contacts cut it.
-void leave_worthy(std::vector<Segment>& lines, std::size_t first_strip, std::span<const Point> outline,
-                  double before_cuts, const Normal& n, double tolerance) {
+/// border is to be no mere trace of the element; and strips in a gap are to be a noticeable part of it, all together.
+/// `before_cuts`: how many times longer the element was before contacts cut it.
+void leave_worthy(std::vector<Segment>& lines, std::span<const Point> outline, double before_cuts, const Normal& n,
+                  double tolerance) {
     constexpr double trace = 0.01, noticeable = 0.1;  // of its width across the line
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const double height = lines[i].height;
-        const Reach reach(outline, lines[i], n);
-        const double width = before_cuts * reach.whole();
-        const bool is_jump = height <= ContactLines::height_of_jump(width * width);
+    std::erase_if(lines, [&](const Segment& line) {
+        if (line.height <= 10 * tolerance) return false;
+        const Reach reach(outline, line, n);
+        const double width = before_cuts * reach.whole(), area = width * width;
         const bool is_part = std::min(reach.left, reach.right) > trace * width;
-        const bool is_noticed = i < first_strip || deepest_strip * height >= noticeable * width;
-        if (height <= 10 * tolerance || (is_jump && is_part && is_noticed)) lines[kept++] = lines[i];
-    }
-    lines.resize(kept);
+        const bool is_strip = line.gap_depth > 0;
+        const double highest = is_strip ? ContactLines::height_of_gap(area) : ContactLines::height_of_jump(area);
+        return !is_part || line.height > highest || (is_strip && line.gap_depth < noticeable * width);
+    });
 }
 
 /// The line in which a face crosses a plane; its edges that hover over the plane are left out.
@@ -200,6 +141,10 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
         for (const std::vector<Point>& loop : scene.regions()[r].loops) add_loop(loop, r);
     for (const Pane& pane : scene.panes()) add_loop(pane.corners, RegionId());
     borders_ = Bvh(boxes);
+    gap_lines_ = find_gap_lines(scene, faces_, 10 * tolerance_);
+    boxes.clear();
+    for (const GapLine& line : gap_lines_) boxes.emplace_back().add(line.a), boxes.back().add(line.b);
+    gaps_ = Bvh(boxes);
 }
 
 std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, ElementId e, double area) const {
@@ -217,24 +162,12 @@ std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, El
     borders_.visit_box(box, [&](std::uint32_t i) {
         if (edges_[i].region != own) contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, out);
     });
-    // Strips lie beside the edge that they begin at, over parts that others have cut off from it, too.
-    const std::size_t first_strip = out.size();
-    const GapHeights heights{10 * tolerance_, gap};
-    const Vec3 within_plane = {std::sqrt(std::max(0.0, 1 - plane.n.x * plane.n.x)),
-                               std::sqrt(std::max(0.0, 1 - plane.n.y * plane.n.y)),
-                               std::sqrt(std::max(0.0, 1 - plane.n.z * plane.n.z))};
-    const Vec3 reach = deepest_strip * gap * within_plane;
-    Box wider = box;
-    wider.lo -= reach, wider.hi += reach;
-    borders_.visit_box(wider, [&](std::uint32_t i) {
-        const auto& [a, b, region] = edges_[i];
-        if (region.is_none()) return;  // light passes under a pane's edge
-        if (region == own)
-            gap_over_border(*scene_, faces_, a, b, own, heights, tolerance_, out);
-        else
-            gap_under_face(a, b, scene_->regions()[region].plane.n, plane, heights, out);
+    gaps_.visit_box(box, [&](std::uint32_t i) {
+        const GapLine& line = gap_lines_[i];
+        if (line.region == own && line.height <= height_of_gap(area))
+            out.push_back({line.a, line.b, line.height, line.depth});
     });
-    leave_worthy(out, first_strip, tree.outline(e), std::sqrt(area / tree.area(e)), plane.n, tolerance_);
+    leave_worthy(out, tree.outline(e), std::sqrt(area / tree.area(e)), plane.n, tolerance_);
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
         if (scene_->surfaces()[s].region != own) crossing_of_face(scene_->outline(s), plane, tolerance_, gap, out);

@@ -7,6 +7,7 @@
 #include "exitance/core/progress.hpp"
 #include "exitance/geometry/bvh.hpp"
 #include "exitance/mesh/element_tree.hpp"
+#include "exitance/mesh/gap_lines.hpp"
 
 namespace exitance {
 
@@ -22,11 +23,13 @@ class ContactLines {
     struct Line {
         Point a, b;
         double height;
+        double gap_depth = 0;  ///< Of a line between strips of a gap: how far into it all of them reach, metres.
     };
     /// Lines that may run through an element's domain, from faces of other regions: edges that lie in its plane or
     /// hover over it by little, with a line on either side of the latter; the lines in which faces cross it; and in
-    /// gaps, along whose mouths light falls off, three lines inwards. Little is a share of its width across the
-    /// line and of the root of `area` (m^2), the element's before contacts cut it, so that its parts share its lines.
+    /// gaps, along whose mouths light falls off, up to three lines inwards. What is little, and what a gap, are shares
+    /// of its width across the line and of the root of `area` (m^2), the element's before contacts cut it, so that its
+    /// parts share its lines.
     std::vector<Line> around(const ElementTree& tree, ElementId e, double area) const;
     /// Leaves of the lines those that meet an element's domain; returns what of them runs through its inside, as pairs
     /// of points in the element's own coordinates.
@@ -41,11 +44,15 @@ class ContactLines {
     /// Under an edge that hovers over a surface light changes within a strip as narrow as the edge is high: that is a
     /// jump to elements whose area (m^2) is so large.
     static double height_of_jump(double area) { return 0.05 * std::sqrt(area); }
+    /// Between two faces light falls off within their distance from where it enters: elements of such an area that are
+    /// more than twice as wide as the faces are apart would carry it further in than it goes, and from there back out.
+    static double height_of_gap(double area) { return 0.5 * std::sqrt(area); }
 
     /// Calls visit(span) for the plain arrays that most of it stands in.
     template <class Visit>
     void visit_arrays(const Visit& visit) const {
-        faces_.visit_arrays(visit), borders_.visit_arrays(visit), visit(std::span(edges_));
+        faces_.visit_arrays(visit), borders_.visit_arrays(visit), gaps_.visit_arrays(visit);
+        visit(std::span(edges_)), visit(std::span(gap_lines_));
     }
 
   private:
@@ -54,9 +61,10 @@ class ContactLines {
         RegionId region;
     };
     const Scene* scene_;
-    Bvh faces_, borders_;
-    std::vector<Edge> edges_;  ///< Of borders of regions, and of panes, which are of none.
-    double tolerance_;         ///< Metres; what is nearer than this to a plane touches it.
+    Bvh faces_, borders_, gaps_;
+    std::vector<Edge> edges_;         ///< Of borders of regions, and of panes, which are of none.
+    std::vector<GapLine> gap_lines_;  ///< What `gaps_` is of.
+    double tolerance_;                ///< Metres; what is nearer than this to a plane touches it.
 };
 
 /// Cuts every leaf of `from` along the contacts inside it: into parallelograms where they run in its directions, else

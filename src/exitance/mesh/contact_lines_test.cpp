@@ -121,35 +121,72 @@ Scene floor_under_board(double gap) {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// Where elements end along a line through both, at y = 2; x from 1 to 1.5.
-std::vector<double> ends_under_board(const ElementTree& tree, double from, double gap) {
+/// Where parts of the first element end along its middle, in heights of the gap under the board's edge at x = 1. The
+/// element begins at x = `from` and is `width` wide.
+std::vector<double> ends_under_board(const ElementTree& tree, double from, double width, double gap) {
     std::vector<double> out;
     for (double height : {0.0, 1.0, 3.0, 7.0}) {
-        const double before = (1 + height * gap - 1e-6 - from) / 4, after = (1 + height * gap + 1e-6 - from) / 4;
-        if (tree.leaf_at(ElementId(0), {before, 0.5}).element != tree.leaf_at(ElementId(0), {after, 0.5}).element)
+        const double at = (1 + height * gap - from) / width;
+        if (at + 1e-6 < 1 && tree.leaf_at(ElementId(0), {at - 1e-6, 0.5}).element !=
+                                 tree.leaf_at(ElementId(0), {at + 1e-6, 0.5}).element)
             out.push_back(height);
     }
     return out;
 }
 
+/// A part of the floor of `width` metres, as wide as it is long, from `from` on, cut.
+ElementTree floor_element(const Scene& scene, double from, double width) {
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{from, 2 - width / 2, 0}, {width, 0, 0}, {0, width, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+    return tree;
+}
+
 TEST(ContactLines, AGapHasStripsThatWidenFromItsMouthInwards) {
-    const Scene scene = floor_under_board(0.06);
-    const ContactLines contacts(scene);
-    ElementTree floor;
-    floor.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
-    cut_along_contacts(floor, {ElementId(0)}, contacts);
-    EXPECT_EQ(ends_under_board(floor, 0, 0.06), (std::vector<double>{0, 1, 3, 7}));
-    // The board itself, from its own border on; beyond it there is nothing. It is a quarter as wide as the floor.
-    const Scene nearer = floor_under_board(0.045);
+    const Scene scene = floor_under_board(0.045);
+    EXPECT_EQ(ends_under_board(floor_element(scene, 0.5, 2), 0.5, 2, 0.045), (std::vector<double>{0, 1, 3, 7}));
+    // The board itself, from its own border on; beyond it there is nothing.
     ElementTree board;
     board.add_root(RegionId(1), {{1, 1, 0.045}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
-    cut_along_contacts(board, {ElementId(0)}, ContactLines(nearer));
+    cut_along_contacts(board, {ElementId(0)}, ContactLines(scene));
     for (double height : {1.0, 3.0, 7.0}) {
         const double at = height * 0.045;
         EXPECT_NE(board.leaf_at(ElementId(0), {0.5, at - 1e-6}).element,
                   board.leaf_at(ElementId(0), {0.5, at + 1e-6}).element)
             << height;
     }
+}
+
+/// What is no jump to an element may be a gap to it still: until the gap is half as high as the element is wide.
+TEST(ContactLines, AnElementThatIsWiderThanAGapIsHighIsCut) {
+    const Scene scene = floor_under_board(0.05);
+    EXPECT_EQ(ends_under_board(floor_element(scene, 0.8, 0.4), 0.8, 0.4, 0.05), (std::vector<double>{1, 3}));
+    EXPECT_EQ(ends_under_board(floor_element(scene, 0.97, 0.12), 0.97, 0.12, 0.05), (std::vector<double>{1}));
+    EXPECT_EQ(floor_element(scene, 0.97, 0.09).leaves().size(), 1u);
+}
+
+TEST(ContactLines, StripsEndBeforeTheMiddleOfAGap) {
+    for (const auto& [gap, ends] : {std::pair{0.08, std::vector<double>{1, 3}}, {0.2, {1}}, {0.26, {}}}) {
+        const Scene scene = floor_under_board(gap);
+        EXPECT_EQ(ends_under_board(floor_element(scene, 0.5, 1), 0.5, 1, gap), ends) << gap;
+    }
+}
+
+/// Of boards that hang one above the other the lowest makes the floor's gap; another one's mouth is not over the floor.
+TEST(ContactLines, TheNearestOfAStackMakesTheGap) {
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1}};
+    for (const double z : {0.05, 0.08, 0.11}) {
+        const auto first = static_cast<std::uint32_t>(d.points.size());
+        d.points.insert(d.points.end(), {{1, 1, z}, {1, 3, z}, {2, 3, z}, {2, 1, z}});
+        d.faces.push_back({{first, first + 1, first + 2, first + 3}, 0, 0, static_cast<int>(first)});
+    }
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    const Scene alone = floor_under_board(0.05);
+    EXPECT_EQ(floor_element(scene, 0.8, 0.4).leaves().size(), floor_element(alone, 0.8, 0.4).leaves().size());
 }
 
 TEST(ContactLines, ABoardFarAboveHasNone) {

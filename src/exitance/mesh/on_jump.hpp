@@ -33,9 +33,9 @@ class OnJump {
         Box box;
         box.add(middle - around), box.add(middle + around);
         return tree_.visit_box(box, [&](std::uint32_t i) {
-            const auto& [p, q, height] = lines_[i];
+            const Point &p = lines_[i].a, &q = lines_[i].b;
             const Vec3 d = q - p, side = b - a;
-            if (height > std::max(tolerance_, ContactLines::height_of_jump(area))) return false;
+            if (lines_[i].height > std::max(tolerance_, ContactLines::height_of_jump(area))) return false;
             if (norm(cross(d, side)) > parallel * norm(d) * norm(side)) return false;
             const double at = std::clamp(dot(middle - p, d) / squared_norm(d), 0.0, 1.0);
             return norm(middle - p - at * d) <= tolerance_;

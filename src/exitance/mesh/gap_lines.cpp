@@ -1,0 +1,149 @@
+#include "exitance/mesh/gap_lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/geometry/polygon.hpp"
+
+namespace exitance {
+namespace {
+
+/// Where strips end, in heights of the gap: at the last of them a hundredth of the light at its mouth is left.
+constexpr std::array<double, 3> ends_of_strips{1, 3, 7};
+
+/// A gap that is less than this many times as wide as it is high has no strips: the first one, and as much as that up
+/// to the middle, from both sides.
+constexpr double narrowest = 4;
+
+/// An edge of a border along which a gap may open, and the directions in the plane, of length 1, along it and to the
+/// region's inside.
+struct Mouth {
+    Point p, q;
+    Vec3 along, inwards;
+
+    Mouth(const Point& from, const Point& to, const Normal& n)
+        : p(from), q(to), along(normalized(to - from)), inwards(cross(n, along)) {}
+};
+
+/// How far a region reaches from a mouth inwards, or if that is less, along it; metres.
+double width_at(const Mouth& mouth, const Region& region) {
+    double inwards = 0, least = HUGE_VAL, most = -HUGE_VAL;
+    for (const std::vector<Point>& loop : region.loops)
+        for (const Point& corner : loop) {
+            const double at = dot(mouth.along, corner - mouth.p);
+            inwards = std::max(inwards, dot(mouth.inwards, corner - mouth.p));
+            least = std::min(least, at), most = std::max(most, at);
+        }
+    return std::min(inwards, most - least);
+}
+
+/// Where along a mouth it is looked for what stands opposite: in the middles of its thirds.
+constexpr double middle = 0.5;
+constexpr std::array<double, 3> places{1.0 / 6, middle, 5.0 / 6};
+constexpr double alike = 0.9;  ///< Cosine of the angle that two sides of a gap may make.
+
+/// A region that stands opposite a mouth, how far off at most, and does it so in the mouth's middle?
+struct Opposite {
+    RegionId region;
+    double height;
+    bool is_in_the_middle;
+};
+
+/// Finds the gaps at the border of one region.
+class GapFinder {
+  public:
+    GapFinder(const Scene& scene, const Bvh& faces, double touching, RegionId own)
+        : scene_(scene), faces_(faces), touching_(touching), own_(own), plane_(scene.regions()[own].plane) {
+        Box box;
+        for (const std::vector<Point>& loop : region(own).loops)
+            for (const Point& corner : loop) box.add(corner);
+        highest_ = norm(box.hi - box.lo) / narrowest;
+    }
+
+    std::vector<GapLine> run() {
+        for (const std::vector<Point>& loop : region(own_).loops)
+            for (std::size_t i = 0; i < loop.size(); ++i) find_at({loop[i], loop[(i + 1) % loop.size()], plane_.n});
+        return std::move(out_);
+    }
+
+  private:
+    const Region& region(RegionId r) const { return scene_.regions()[r]; }
+
+    void find_at(const Mouth& mouth) {
+        opposite_.clear();
+        for (const double along : places) look_from(mouth, along);
+        if (opposite_.empty()) return;
+        const double own_width = width_at(mouth, region(own_));
+        for (const Opposite& other : opposite_) {
+            const double width = std::min(own_width, width_at(mouth, region(other.region)));
+            add_strips(mouth, other.region, other.height, width);
+            if (other.is_in_the_middle) add_strips(mouth, own_, other.height, width);
+        }
+    }
+
+    /// Notes what stands in front of a place at the mouth, if the nearest is one that looks back.
+    void look_from(const Mouth& mouth, double along) {
+        const Point x = mouth.p + along * (mouth.q - mouth.p) + touching_ * mouth.inwards;
+        Opposite nearest{RegionId(), highest_, along == middle};
+        bool looks_back = false;
+        Box box;
+        box.add(x + touching_ * plane_.n), box.add(x + highest_ * plane_.n);
+        faces_.visit_box(box, [&](std::uint32_t i) {
+            const SurfaceId s(i);
+            const RegionId r = scene_.surfaces()[s].region;
+            const Plane& other = region(r).plane;
+            const double down = -dot(other.n, plane_.n);
+            if (r == own_ || down == 0) return;
+            const double h = other.signed_distance(x) / down;
+            if (h <= touching_ || h > nearest.height) return;
+            if (!contains(scene_.outline(s), other.n, x + h * plane_.n)) return;
+            nearest.region = r, nearest.height = h, looks_back = down > alike;
+        });
+        if (!looks_back) return;
+        for (Opposite& known : opposite_)
+            if (known.region == nearest.region) {
+                known.height = std::max(known.height, nearest.height);
+                known.is_in_the_middle |= nearest.is_in_the_middle;
+                return;
+            }
+        opposite_.push_back(nearest);
+    }
+
+    void add_strips(const Mouth& mouth, RegionId on, double height, double width) {
+        const std::size_t first = out_.size();
+        const Plane& plane = region(on).plane;
+        const auto foot = [&](const Point& x) { return x - plane.signed_distance(x) * plane.n; };
+        double depth = 0;
+        for (const double end : ends_of_strips) {
+            const double at = end * height, strip = at - depth;
+            if (0.5 * width - at < strip) break;
+            depth = at;
+            const Vec3 across = at * mouth.inwards;
+            out_.push_back({foot(mouth.p + across), foot(mouth.q + across), height, 0, on});
+        }
+        for (std::size_t i = first; i < out_.size(); ++i) out_[i].depth = depth;
+    }
+
+    const Scene& scene_;
+    const Bvh& faces_;
+    double touching_, highest_ = 0;
+    RegionId own_;
+    const Plane& plane_;
+    std::vector<Opposite> opposite_;  ///< Of the mouth at hand.
+    std::vector<GapLine> out_;
+};
+
+}  // namespace
+
+std::vector<GapLine> find_gap_lines(const Scene& scene, const Bvh& faces, double touching) {
+    std::vector<std::vector<GapLine>> found(scene.regions().size());
+    parallel_for(found.size(), 64,
+                 [&](std::size_t r) { found[r] = GapFinder(scene, faces, touching, RegionId(r)).run(); });
+    std::vector<GapLine> out;
+    for (const std::vector<GapLine>& lines : found) out.insert(out.end(), lines.begin(), lines.end());
+    return out;
+}
+
+}  // namespace exitance
