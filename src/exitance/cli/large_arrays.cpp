@@ -1,0 +1,48 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+// Large arrays begin where a page does. So they stand alike in all processes of a node, which can have their pages in
+// common (`share_on_node`), wherever each one's heap has found room for them.
+
+namespace {
+
+void* allocate(std::size_t size, std::size_t alignment) {
+    static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    constexpr std::size_t large = std::size_t(1) << 20;  // below it they are not shared
+    if (size >= large) alignment = std::max(alignment, page);
+    for (;;) {
+        void* const found = alignment > alignof(std::max_align_t)
+                                ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                                : std::malloc(std::max<std::size_t>(size, 1));
+        if (found) return found;
+        const std::new_handler make_room = std::get_new_handler();
+        if (!make_room) throw std::bad_alloc();
+        make_room();
+    }
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return allocate(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return allocate(size, static_cast<std::size_t>(alignment));
+}
+
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
