@@ -166,12 +166,26 @@ class RoomFinder {
         return out;
     }
 
+    /// Do walls of a part lie all within it? Not so those of a pocket between polygons that run into one another, which
+    /// may be cut into many elements.
+    bool has_own_walls(const Part& part) const {
+        const auto region_of = [&](std::uint32_t i) { return tree_.region(numbering_.leaves[i]).value; };
+        std::unordered_map<std::uint32_t, std::ptrdiff_t> outside;  // how many leaves of each wall
+        for (const std::uint32_t i : part.leaves) --outside[region_of(i)];
+        for (std::uint32_t i = 0; i < flow_.area.size(); ++i)
+            if (const auto at = outside.find(region_of(i)); at != outside.end()) ++at->second;
+        const auto own =
+            std::count_if(outside.begin(), outside.end(), [](const auto& wall) { return wall.second == 0; });
+        return own >= static_cast<std::ptrdiff_t>(fewest_walls);
+    }
+
     /// Has a part its share in the area that is no ground or sky?
     bool counts(const Part& part) const {
         if (!part.may_be_room()) return false;
         if (part.area >= least_share * total_) return true;
         if (static_cast<double>(part.leaves.size()) < least_detail * static_cast<double>(flow_.area.size()))
             return false;
+        if (!has_own_walls(part)) return false;
         Box inner = inner_;
         inner.add(part.box.lo), inner.add(part.box.hi);
         return whole_.diagonal() >= far_larger * inner.diagonal();

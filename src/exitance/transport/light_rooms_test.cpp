@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
@@ -79,6 +80,29 @@ TEST(LightRooms, WhatTwoThingsCoverOfEachOtherIsNoRoom) {
     for (std::size_t i = walls; i < d.faces.size(); ++i)  // seen from outside
         std::reverse(d.faces[i].corners.begin(), d.faces[i].corners.end());
     EXPECT_EQ(rooms_of(*make_scene(std::move(d)).scene).count(), 0u);
+}
+
+/// Leaves of a tree that run into one another leave pockets, which light hardly enters; they are nobody's rooms.
+TEST(LightRooms, APocketBetweenThingsThatRunIntoOneAnotherIsNoRoom) {
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
+    add_box(d, {-3, -3, -3}, {3, 3, 3}, 0);
+    // Six boards around a cube of 10 cm, which look into it and reach 10 cm beyond it.
+    for (const int axis : {0, 1, 2})
+        for (const double side : {-0.05, 0.05}) {
+            const auto first = static_cast<std::uint32_t>(d.points.size());
+            const double turn = side < 0 ? 1 : -1;
+            for (const auto& [u, v] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+                std::array<double, 3> p{};
+                p[static_cast<std::size_t>(axis)] = side;
+                p[static_cast<std::size_t>((axis + 1) % 3)] = 0.15 * u * turn;
+                p[static_cast<std::size_t>((axis + 2) % 3)] = 0.15 * v;
+                d.points.push_back({p[0], p[1], p[2]});
+            }
+            d.faces.push_back({{first, first + 1, first + 2, first + 3}, 0, 0, 0});
+        }
+    EXPECT_EQ(rooms_of(std::move(*make_scene(std::move(d)).scene)).count(), 0u);
 }
 
 TEST(LightRooms, WhatStoppedBeforeItsRaysTellsOfNoRoomsAndNoLoss) {
