@@ -147,34 +147,50 @@ class PetscScatter final : public ValueScatter {
     VecScatter scatter_ = nullptr;
 };
 
-/// A vector's own values, for as long as they are looked at.
-class ReadValues {
+/// A vector's own values, for as long as they are looked at: to read (const Spectrum), or to write as well.
+template <class Value>
+class OwnValues {
+    static constexpr bool is_read = std::is_const_v<Value>;
+    using Number = std::conditional_t<is_read, const double, double>;
+
   public:
-    explicit ReadValues(Vec vector) : vector_(vector) { check(petsc().VecGetArrayRead(vector, &numbers_)); }
-    ~ReadValues() { check(petsc().VecRestoreArrayRead(vector_, &numbers_)); }
-    ReadValues(const ReadValues&) = delete;
-    ReadValues& operator=(const ReadValues&) = delete;
-    std::span<const Spectrum> get() const {
-        return {reinterpret_cast<const Spectrum*>(numbers_), static_cast<std::size_t>(vector_->map->n) / bands};
+    explicit OwnValues(Vec vector) : vector_(vector) {
+        if constexpr (is_read)
+            check(petsc().VecGetArrayRead(vector, &numbers_));
+        else
+            check(petsc().VecGetArray(vector, &numbers_));
+    }
+    ~OwnValues() {
+        if constexpr (is_read)
+            check(petsc().VecRestoreArrayRead(vector_, &numbers_));
+        else
+            check(petsc().VecRestoreArray(vector_, &numbers_));
+    }
+    OwnValues(const OwnValues&) = delete;
+    OwnValues& operator=(const OwnValues&) = delete;
+    std::span<Value> get() const {
+        return {reinterpret_cast<Value*>(numbers_), static_cast<std::size_t>(vector_->map->n) / bands};
     }
 
   private:
     Vec vector_;
-    const double* numbers_ = nullptr;
+    Number* numbers_ = nullptr;
 };
-class WrittenValues {
+using ReadValues = OwnValues<const Spectrum>;
+using WrittenValues = OwnValues<Spectrum>;
+
+/// Several of them, to read.
+class ReadVectors {
   public:
-    explicit WrittenValues(Vec vector) : vector_(vector) { check(petsc().VecGetArray(vector, &numbers_)); }
-    ~WrittenValues() { check(petsc().VecRestoreArray(vector_, &numbers_)); }
-    WrittenValues(const WrittenValues&) = delete;
-    WrittenValues& operator=(const WrittenValues&) = delete;
-    std::span<Spectrum> get() const {
-        return {reinterpret_cast<Spectrum*>(numbers_), static_cast<std::size_t>(vector_->map->n) / bands};
+    ReadVectors(const Vec* vectors, PetscInt count) {
+        for (PetscInt j = 0; j < count; ++j)
+            values_.push_back(held_.emplace_back(std::make_unique<ReadValues>(vectors[j]))->get());
     }
+    std::span<const std::span<const Spectrum>> get() const { return values_; }
 
   private:
-    Vec vector_;
-    double* numbers_ = nullptr;
+    std::vector<std::unique_ptr<ReadValues>> held_;
+    std::vector<std::span<const Spectrum>> values_;
 };
 
 /// What PETSc calls back for, one solve at a time.
@@ -200,10 +216,8 @@ PetscErrorCode judge(KSP, PetscInt, PetscReal residual, KSPConvergedReason* reas
 // The vector's arithmetic: PETSc's own sums depend on the number of processes, and its products on the BLAS.
 
 PetscErrorCode products(Vec x, PetscInt count, const Vec* y, PetscScalar* out) {
-    std::vector<std::unique_ptr<ReadValues>> read;
-    std::vector<std::span<const Spectrum>> values;
-    for (PetscInt j = 0; j < count; ++j) values.push_back(read.emplace_back(new ReadValues(y[j]))->get());
-    const std::vector<double> found = running->watch.vectors.products(ReadValues(x).get(), values);
+    const ReadVectors known(y, count);
+    const std::vector<double> found = running->watch.vectors.products(ReadValues(x).get(), known.get());
     std::copy(found.begin(), found.end(), out);
     return 0;
 }
@@ -223,10 +237,8 @@ PetscErrorCode scale(Vec x, PetscScalar factor) {
 }
 
 PetscErrorCode add_multiples(Vec y, PetscInt count, const PetscScalar* factors, Vec* x) {
-    std::vector<std::unique_ptr<ReadValues>> read;
-    std::vector<std::span<const Spectrum>> values;
-    for (PetscInt j = 0; j < count; ++j) values.push_back(read.emplace_back(new ReadValues(x[j]))->get());
-    running->watch.vectors.add_combination(WrittenValues(y).get(), {factors, values.size()}, values);
+    const ReadVectors added(x, count);
+    running->watch.vectors.add_combination(WrittenValues(y).get(), {factors, added.get().size()}, added.get());
     return 0;
 }
 

@@ -46,13 +46,12 @@ double surface_norm(std::span<const Spectrum> b, std::span<const double> area);
 /// - gauss_seidel: the same, each element's new value used at once, in the order of elements. One gather an iteration;
 ///   sequential by nature.
 /// - cg: conjugate gradients on the symmetric form (diag(A / rho) - A F) b = A rhs / rho, Jacobi-preconditioned;
-/// elements
-///   with rho = 0 are known (b = rhs) and leave the system. Wants A_i F_ij = A_j F_ji; each band has its own process.
-/// - gmres: GMRES(20) on (I - rho F) b = rhs, any F; all bands have one Krylov space (solve/gmres.hpp). Source:
-/// [Saad86].
+///   elements with rho = 0 are known (b = rhs) and leave the system. Wants A_i F_ij = A_j F_ji; each band has its own
+///   process.
+/// - gmres: GMRES(20) on (I - rho F) b = rhs, any F; all bands have one Krylov space (solve/gmres.hpp).
+///   Source: [Saad86].
 /// - chebyshev: Jacobi with two terms, b' = a + w (rhs + rho F b - a) from b and the step before it, a; w from a bound
-/// r
-///   on the eigenvalues of rho F, real and in [-r, r] by reciprocity. 1 / (1 - r^2)^(1/2) gathers where Jacobi takes
+///   r on the eigenvalues of rho F, real and in [-r, r] by reciprocity. 1 / (1 - r^2)^(1/2) gathers where Jacobi takes
 ///   1 / (1 - r); no inner products. Source: [Golub61].
 /// - southwell: shooting, see solve/shooting.hpp; asked for here it stands for gauss_seidel, which visits all in turn.
 SolveReport solve_radiosity(const RadiositySystem& system, Relaxation method, std::span<Spectrum> b, StopRule stop);

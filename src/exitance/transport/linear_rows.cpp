@@ -48,13 +48,14 @@ void aim(const Stage& stage, const Point& x, const Normal& n, RegionId region, c
 LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const LeafNumbering& numbering,
                        const ElementLocator& locator, RayBudget budget, std::uint64_t seed)
     : ids_(numbering.leaves) {
-    number_nodes(stage, direct.tree, budget);
-    cast(stage, direct.tree, numbering, locator, seed);
+    cast(stage, number_nodes(stage, direct.tree, budget), numbering, locator, seed);
     find_what_is_met();
 }
 
-/// Nodes of all leaves, and which rays are those of the own ones.
-void LinearRows::number_nodes(const Stage& stage, const ElementTree& tree, const RayBudget& budget) {
+/// Nodes of all leaves, and which rays are those of the own ones; where they are.
+std::vector<LinearRows::NodePlace> LinearRows::number_nodes(const Stage& stage, const ElementTree& tree,
+                                                            const RayBudget& budget) {
+    std::vector<NodePlace> places;
     std::vector<unsigned> rays;
     const double mean_area = stage.area / static_cast<double>(ids_.size());
     for (ElementId e : ids_) {
@@ -71,6 +72,7 @@ void LinearRows::number_nodes(const Stage& stage, const ElementTree& tree, const
             for (int c = 0; c < tree.patch(e).corner_count(); ++c)
                 leaf.to_corner[static_cast<std::size_t>(c)][k] = static_cast<float>(fit.corner(c)[0]);
             nodes_.push_back({.area = nodes[k].weight * tree.area(e)});
+            places.push_back({tree.patch(e).at(nodes[k].uv), tree.region(e)});
             rays.push_back(budget.rays(tree.area(e), mean_area));
             rays_ += rays.back();
         }
@@ -84,35 +86,28 @@ void LinearRows::number_nodes(const Stage& stage, const ElementTree& tree, const
     }
     hits_.resize(at);
     if (stage.rooms.portals()) counts_.assign(at, 1);
+    return places;
 }
 
-void LinearRows::cast(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+void LinearRows::cast(const Stage& stage, std::span<const NodePlace> places, const LeafNumbering& numbering,
                       const ElementLocator& locator, std::uint64_t seed) {
-    std::vector<Point> place;
-    std::vector<RegionId> region;
-    for (std::size_t i = 0; i < ids_.size(); ++i) {
-        const std::vector<WeightedPlace> nodes = leaf_nodes(tree, ids_[i]);
-        for (const WeightedPlace& node : nodes) {
-            place.push_back(tree.patch(ids_[i]).at(node.uv));
-            region.push_back(tree.region(ids_[i]));
-        }
-    }
     parallel_own_ranges(nodes_.size(), dealt_.block(), [&](std::size_t begin, std::size_t end) {
         std::vector<Vec3> directions;
         std::vector<RayHit> found;
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t first = nodes_[k].first_ray, count = nodes_[k].last_ray - first;
-            const Normal& n = stage.scene.regions()[region[k]].plane.n;
+            const auto& [place, region] = places[k];
+            const Normal& n = stage.scene.regions()[region].plane.n;
             const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::rows), k));
             directions.resize(count), found.resize(count);
             for (std::uint32_t i = 0; i < count; ++i)
-                directions[i] = met_direction(stage.scene, region[k], n, points(i, 0), points(i, 1));
+                directions[i] = met_direction(stage.scene, region, n, points(i, 0), points(i, 1));
             if (!counts_.empty())
-                aim(stage, place[k], n, region[k], points, directions, std::span(counts_).subspan(first, count));
-            stage.tracer.nearest(directions, place[k], region[k], found, Mirrored::followed);
+                aim(stage, place, n, region, points, directions, std::span(counts_).subspan(first, count));
+            stage.tracer.nearest(directions, place, region, found, Mirrored::followed);
             for (std::size_t i = 0; i < count; ++i) {
                 if (found[i].surface.is_none() || !found[i].front) continue;
-                const Point y = place_of(stage.scene, found[i], place[k], directions[i]);
+                const Point y = place_of(stage.scene, found[i], place, directions[i]);
                 const auto [element, uv] = locator.find(stage.scene.surfaces()[found[i].surface].region, y);
                 hits_[first + i] = {numbering.number[element], quantised(uv.x), quantised(uv.y)};
             }

@@ -60,8 +60,12 @@ class LinearRows final : public TransportOperator {
         std::array<std::array<float, 8>, 4> to_corner{};
     };
     using Corners = std::array<Spectrum, 4>;
-    void number_nodes(const Stage& stage, const ElementTree& tree, const RayBudget& budget);
-    void cast(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+    struct NodePlace {
+        Point x;
+        RegionId region;
+    };
+    std::vector<NodePlace> number_nodes(const Stage& stage, const ElementTree& tree, const RayBudget& budget);
+    void cast(const Stage& stage, std::span<const NodePlace> places, const LeafNumbering& numbering,
               const ElementLocator& locator, std::uint64_t seed);
     void find_what_is_met();
     /// What the leaves that are met reflect, at their corners; `values`: own and fetched ones.
