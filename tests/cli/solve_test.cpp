@@ -141,19 +141,31 @@ TEST(ProgramSolve, AnErrorThatTimeForbidsLeavesAResultAndStatusFour) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     const Finished run = run_program(
-        {"solve", write_small_room(folder), "-o", solution, "--error", "0.01", "--time-limit", "0.01", "--json"});
+        {"solve", write_small_room(folder), "-o", solution, "--error", "0.0005", "--time-limit", "1", "--json"});
     EXPECT_EQ(run.status, 4) << run.err;
-    EXPECT_FALSE(Json::parse(run.out)["converged"]);
+    const Json told = Json::parse(run.out);
+    EXPECT_FALSE(told["converged"]);
+    EXPECT_GT(told["relative_error_estimate"], 0.0005);
     EXPECT_EQ(run_program({"stats", solution}).status, 0);
 }
 
-TEST(ProgramSolve, ASignalEndsTheWorkAndTheStateSoFarIsWritten) {
+TEST(ProgramSolve, ARunWithoutAnEstimateOfItsLightWritesNothingAndHasStatusFive) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5";
+    const Finished run =
+        run_program({"solve", write_small_room(folder), "-o", solution, "--time-limit", "1e-9", "--progress", "none"});
+    EXPECT_EQ(run.status, 5) << run.err;
+    EXPECT_NE(run.err.find("time limit"), std::string::npos) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(solution));
+}
+
+TEST(ProgramSolve, ASignalEndsTheWorkAndLightThatIsThereIsWritten) {
     for (const auto& [signal, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
         const TemporaryFolder folder;
         const std::string solution = folder / "room.h5";
         RunningProgram run(
-            {"solve", write_small_room(folder), "-o", solution, "--error", "0.005", "--progress", "json"});
-        ASSERT_TRUE(run.wait_for("\"phase\""));
+            {"solve", write_small_room(folder), "-o", solution, "--error", "0.0005", "--progress", "json"});
+        ASSERT_TRUE(run.wait_for("\"certify\""));
         run.send(signal);
         EXPECT_EQ(run.finish().status, status);
         EXPECT_EQ(run_program({"stats", solution}).status, 0);

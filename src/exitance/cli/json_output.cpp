@@ -64,6 +64,13 @@ std::string statistics_json(const SolveStatistics& s) {
     Json rooms = Json::array();
     for (const RoomError& room : s.rooms)
         rooms.push_back({{"area", room.area}, {"mean", room.mean}, {"error", room.error}});
+    Json bodies = Json::array();
+    for (const BodyError& body : s.bodies)
+        bodies.push_back({{"surfaces", body.surfaces},
+                          {"area", body.area},
+                          {"mean", body.mean},
+                          {"error", value_or_null(body.error)},
+                          {"points", body.points}});
     const std::size_t elements =
         std::accumulate(s.elements_by_level.begin(), s.elements_by_level.end(), std::size_t(0));
     const auto share = [](std::size_t whole, std::size_t parts) {
@@ -88,8 +95,10 @@ std::string statistics_json(const SolveStatistics& s) {
         {"relative_error_bound", value_or_null(s.relative_error_bound)},
         {"relative_error_estimate_interpolant", value_or_null(s.relative_error_estimate_interpolant)},
         {"relative_error_estimate_worst_room", value_or_null(s.relative_error_estimate_worst_room)},
+        {"relative_error_estimate_worst_body", value_or_null(s.relative_error_estimate_worst_body)},
         {"error_p99", value_or_null(s.error_p99)},
         {"rooms", rooms},
+        {"bodies", bodies},
         {"standard_error", s.standard_error > 0 ? Json(s.standard_error) : Json(nullptr)},
         {"energy",
          {{"emitted", s.energy.emitted},

@@ -143,6 +143,18 @@ ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) 
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
 }
 
+/// Returns the failure of a run that a stop ended before there was light with an estimate of its error; none for runs
+/// of forms that have no estimate.
+std::optional<Error> no_estimate(const SolveArguments& arguments, const SolveStatistics& statistics) {
+    if (statistics.relative_error_estimate || statistics.stopped_by.empty()) return {};
+    if (arguments.classical.any() || arguments.options.task_engine) return {};
+    return Error{ErrorCode::limit,
+                 fmt::format("the {} ended the run before there was light with an estimate of its error; nothing is "
+                             "written",
+                             statistics.stopped_by),
+                 arguments.output, "allow more time or memory, or request a larger --error"};
+}
+
 /// The scene as it is solved; programs that make parts of it end by the time limit.
 CheckedScene read_scene(SolveArguments& arguments, const Stopwatch& run_time) {
     StopRequest stop;
@@ -247,6 +259,12 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
+    if (const std::optional<Error> failed = no_estimate(arguments, solution->statistics)) {
+        terminal.progress().finish();
+        close_checkpoint(checkpoint, true, terminal);
+        const ExitCode failure = terminal.fail(*failed);
+        return signal ? *signal : failure;
+    }
     const Result<LightGroups> groups = keep_light_groups(arguments, *solution, tracing.progress(), stop);
     if (!groups) return terminal.fail(groups.error());
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);

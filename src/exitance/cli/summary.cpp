@@ -31,6 +31,16 @@ std::string rooms_line(const std::vector<RoomError>& rooms) {
     return rooms.size() > most ? text + fmt::format("; and {} more", rooms.size() - most) : text;
 }
 
+/// The upper bound, and which of the two figures to use where they are far apart.
+std::string bound_line(const SolveStatistics& s) {
+    constexpr double far_apart = 2;  // a factor that users ask about
+    const std::string bound = percent(*s.relative_error_bound) + " at most, with 95% confidence";
+    if (*s.relative_error_bound <= far_apart * *s.relative_error_estimate) return bound;
+    return bound +
+           "; use the estimate: it follows the error through the scene, while the bound assumes that reflections "
+           "amplify all of it as much as any light";
+}
+
 }  // namespace
 
 std::string percent(double share) {
@@ -53,11 +63,14 @@ std::string summary(const SolveStatistics& s) {
     line("method", s.basis.empty() ? s.method : fmt::format("{}, {} basis", s.method, s.basis));
     const auto known = [](const std::optional<double>& error) { return error ? percent(*error) : "not known"; };
     line("error", s.relative_error_estimate
-                      ? fmt::format("{} of the light that probe evaluates (at most {}), {} of what export writes",
-                                    percent(*s.relative_error_estimate), known(s.relative_error_bound),
-                                    known(s.relative_error_estimate_interpolant))
+                      ? fmt::format("{} estimated (RMS of radiosity), {} in the exported mesh",
+                                    percent(*s.relative_error_estimate), known(s.relative_error_estimate_interpolant))
                   : s.stopped_by.empty() ? "not estimated"
                                          : "not known: the run was stopped before its first estimate");
+    if (s.relative_error_estimate && s.relative_error_bound) line("bound", bound_line(s));
+    if (s.bodies.size() > 1 && s.relative_error_estimate_worst_body)
+        line("bodies", fmt::format("{} error in the worst of {}", percent(*s.relative_error_estimate_worst_body),
+                                   s.bodies.size()));
     if (const auto predicted = s.figures.find("predicted_links"); predicted != s.figures.end())
         line("tasks", fmt::format("{}, {} stolen; {:.4g} links predicted", s.figures.at("tasks"),
                                   s.figures.at("stolen_tasks"), predicted->second));

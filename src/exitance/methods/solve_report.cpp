@@ -35,6 +35,7 @@ void record_certificate(const Certificate& certificate, const GlobalLight& light
     statistics.relative_error_estimate = certificate.estimate;
     statistics.relative_error_bound = certificate.bound;
     statistics.relative_error_estimate_worst_room = certificate.worst_room;
+    statistics.relative_error_estimate_worst_body = certificate.worst_body;
     statistics.error_p99 = certificate.p99;
 }
 

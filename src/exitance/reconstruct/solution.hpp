@@ -40,6 +40,18 @@ struct RoomError {
     double error = 0;  ///< and the RMS error of radiosity relative to it.
 };
 
+/// Light of a body (`find_bodies`), and how far it is off.
+struct BodyError {
+    std::size_t surfaces = 0;  ///< Number of its faces.
+    double area = 0;           ///< m^2
+    double mean = 0;           ///< Reflected radiosity, mean over its surfaces and the bands, W/m^2.
+    /// RMS error of radiosity relative to `mean` or a tenth of its room's mean, whichever is larger; none where fewer
+    /// than eight points lie on it.
+    std::optional<double> error;
+    std::size_t points = 0;  ///< At which it was measured.
+    SurfaceId first;         ///< The first of its faces.
+};
+
 /// How far the light of one input face is off.
 struct FaceError {
     double error = 0;        ///< RMS error of radiosity, relative to the mean reflected radiosity of its room.
@@ -70,6 +82,8 @@ struct SolveStatistics {
     std::optional<double> relative_error_estimate_interpolant;  ///< Of what `export` writes; likewise.
     std::vector<RoomError> rooms;                               ///< The largest first; one, where all is one room.
     std::optional<double> relative_error_estimate_worst_room;   ///< Of what `probe` evaluates.
+    std::vector<BodyError> bodies;                              ///< The largest first; none where nothing was measured.
+    std::optional<double> relative_error_estimate_worst_body;   ///< Of what `probe` evaluates.
     std::vector<FaceError> surface_errors;                      ///< One a face; none where nothing was measured.
     /// Relative RMS standard error of the light that a random method found on its elements; 0 for other methods.
     double standard_error = 0;

@@ -26,6 +26,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("relative_error_bound", s.relative_error_bound);
     visit("relative_error_estimate_interpolant", s.relative_error_estimate_interpolant);
     visit("relative_error_estimate_worst_room", s.relative_error_estimate_worst_room);
+    visit("relative_error_estimate_worst_body", s.relative_error_estimate_worst_body);
     visit("error_p99", s.error_p99);
     visit("standard_error", s.standard_error);
     visit("energy_emitted", s.energy.emitted);
@@ -91,6 +92,17 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
         file.write(group + "/rooms", rooms, 3,
                    {"m^2, W/m^2, 1", "area, mean reflected radiosity and relative error of every room"});
     }
+    if (!statistics.bodies.empty()) {
+        std::vector<double> bodies;
+        for (const BodyError& b : statistics.bodies)
+            bodies.insert(bodies.end(),
+                          {static_cast<double>(b.surfaces), b.area, b.mean, b.error.value_or(std::nan("")),
+                           static_cast<double>(b.points), static_cast<double>(b.first.value)});
+        file.write(group + "/bodies", bodies, 6,
+                   {"1, m^2, W/m^2, 1, 1, 1",
+                    "faces, area, mean reflected radiosity, relative error (NaN: not known), points and first face of "
+                    "every body"});
+    }
     if (!statistics.surface_errors.empty()) {
         std::vector<double> errors;
         for (const FaceError& e : statistics.surface_errors)
@@ -134,6 +146,19 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
         const std::vector<double> values = file.read<double>(rooms, 3);
         for (std::size_t i = 0; i + 2 < values.size(); i += 3)
             statistics.rooms.push_back({values[i], values[i + 1], values[i + 2]});
+    }
+    if (const std::string bodies = group + "/bodies"; file.has(bodies)) {
+        const std::vector<double> values = file.read<double>(bodies, 6);
+        const auto count = [](double value) {
+            return static_cast<std::size_t>(std::isfinite(value) ? std::clamp(value, 0.0, 4e9) : 0);
+        };
+        for (std::size_t i = 0; i + 5 < values.size(); i += 6) {
+            BodyError body{count(values[i]),     values[i + 1],
+                           values[i + 2],        {},
+                           count(values[i + 4]), SurfaceId(count(values[i + 5]))};
+            if (std::isfinite(values[i + 3])) body.error = values[i + 3];
+            statistics.bodies.push_back(body);
+        }
     }
     if (const std::string errors = group + "/surface_errors"; file.has(errors)) {
         const std::vector<double> values = file.read<double>(errors, 2);

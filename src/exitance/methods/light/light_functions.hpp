@@ -65,6 +65,9 @@ class DeliveredLight final : public ReflectedLight {
 
     void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
 
+    /// Reads E_dir as projected, W/m^2; its leaves are those of the projection.
+    const QuickFunction& projected() const { return direct_; }
+
   private:
     const Scene& scene_;
     QuickFunction indirect_, direct_;

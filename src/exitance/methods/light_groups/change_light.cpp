@@ -211,6 +211,7 @@ Result<void> change_light(Solution& solution, LightGroups& groups, const LightCh
             *s.relative_error_estimate = std::hypot(*s.relative_error_estimate, groups.transport.error * repaint_share);
         s.relative_error_bound.reset(), s.error_p99.reset(), s.relative_error_estimate_interpolant.reset();
         s.relative_error_estimate_worst_room.reset(), s.rooms.clear();
+        s.relative_error_estimate_worst_body.reset(), s.bodies.clear();
     }
     solution.links = {}, solution.discontinuity = {}, solution.cells = {};
     return {};

@@ -1,5 +1,7 @@
 #include "exitance/methods/solver/solver.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
@@ -24,6 +26,9 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     options.keeps_flux = gathers() && !light_->holds_direct && keeps_flux() &&
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
     options.light_in = light_in_, options.allowed_in = allowed_in_;
+    options.bounces = options_.bounces;
+    if (!bodies_) bodies_ = find_bodies(stage_.scene);
+    options.bodies = &*bodies_;
     if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
     // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
     std::optional<ElementFunction> older;
@@ -32,6 +37,11 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     const Spectrum c = solution_.direct_share;
     const Spectrum direct_weight = light_->holds_direct ? Spectrum() : Spectrum(1.0) - c;
     const DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
+    const auto misfit = [&](const HitPoint& hit) {
+        return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
+    };
+    if (!light_->holds_direct) options.projected = {&delivered.projected(), direct_weight, misfit};
+    options.check_rays = statistics().rays / 10;  // a tenth of the work so far
     SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
     if (sums_) {
         for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
@@ -50,9 +60,10 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         certificate_ = certifier.look();
     }
     add_clustering_error();
-    if (!demand || may_be_last(*demand)) certifier.tell_p99(certificate_);
+    if (!demand || may_be_last(*demand)) certifier.look_at_bodies(certificate_), certifier.tell_p99(certificate_);
     record_certificate(certificate_, *light_, solution_.indirect, statistics());
     statistics().rooms = certifier.rooms(), statistics().surface_errors = certifier.surface_errors();
+    statistics().bodies = certifier.bodies();
     if (certificate_.points == 0 && !stop_.requested()) tell_exact();
     progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
 }
@@ -77,6 +88,27 @@ void Solver::tell_clustering_error() {
     if (error > 0)
         statistics().relative_error_estimate = statistics().relative_error_bound =
             error / mean_direct_light(stage_, direct_);
+}
+
+void Solver::warn_of_bodies() {
+    constexpr double most = 3;  // times the error requested: what a small part of a scene may have
+    const BodyError* worst = nullptr;
+    std::size_t wrong = 0;
+    for (const BodyError& body : statistics().bodies) {
+        if (!body.error || *body.error <= most * options_.error_target()) continue;
+        ++wrong;
+        if (!worst || *body.error > *worst->error) worst = &body;
+    }
+    if (!worst) return;
+    const Scene& scene = stage_.scene;
+    const Surface& face = scene.surfaces()[worst->first];
+    const Point at = centroid(scene.outline(worst->first));
+    warn(
+        fmt::format("the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
+                    "more than three times the {:.3g}% requested for the whole{}; a smaller --error makes it right",
+                    scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x,
+                    at.y, at.z, 100 * *worst->error, 100 * options_.error_target(),
+                    wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
 }
 
 ErrorParts Solver::error_parts() const {

@@ -45,7 +45,7 @@ Result<Solution> Solver::run() {
     }
     if (options_.bounces != 0 && stage_.has_indirect_light()) {
         resume();
-        if (step_ != Step::output) solve_indirect_light();
+        if (step_ != Step::output) solve_indirect_light(), warn_of_bodies();
     } else if (resume(); step_ != Step::output) {
         if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
         statistics().elements = direct_.tree.size();
@@ -131,6 +131,7 @@ void Solver::warn(std::string message) {
 void Solver::tell_exact() {
     statistics().relative_error_estimate = statistics().relative_error_bound = 0;
     statistics().relative_error_estimate_worst_room = 0;
+    statistics().relative_error_estimate_worst_body = 0;
     statistics().error_p99 = 0;
     statistics().rooms = {{stage_.area, 0, 0}};
 }

@@ -108,6 +108,8 @@ class Solver {
     void add_clustering_error();
     /// Where direct light is all there is.
     void tell_clustering_error();
+    /// Warns of the body whose light is more than three times as wrong as requested.
+    void warn_of_bodies();
     /// What the estimate is made of, relative to the mean reflected light.
     ErrorParts error_parts() const;
     ErrorParts mean_error_parts() const;
@@ -147,6 +149,7 @@ class Solver {
     Step step_ = Step::project;
     bool fresh_ = true;               ///< Does the method find new light in this attempt?
     Spectrum share_;                  ///< c of that light, see find_direct_share.
+    std::optional<Bodies> bodies_;    ///< By which errors are told; found when they are first needed.
     std::vector<double> light_in_;    ///< Of every room by the mean light; empty where all is one room.
     std::vector<double> allowed_in_;  ///< What errors rooms may have, in proportion (`allowed_by_room`).
     std::string resumed_phase_;

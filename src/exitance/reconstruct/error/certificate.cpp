@@ -8,7 +8,9 @@
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/error/batch_mean.hpp"
+#include "exitance/reconstruct/error/body_errors.hpp"
 #include "exitance/reconstruct/error/error_tail.hpp"
+#include "exitance/reconstruct/error/late_paths.hpp"
 #include "exitance/reconstruct/error/mean_residuals.hpp"
 #include "exitance/reconstruct/error/residual_samples.hpp"
 #include "exitance/reconstruct/error/surface_errors.hpp"
@@ -76,6 +78,9 @@ struct Certifier::Content {
     std::vector<Spectrum>
         late;  ///< The smooth part of the error, by leaf number of the coarse mesh, as of the last one.
     Field<ElementId, std::uint8_t> narrow;  ///< Leaves of the delivered function.
+    PathTracer paths;
+    DirectCheck check;
+    CheckPlan plan;  ///< Chosen before the first look.
 
     Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
             const CertificateOptions& options_)
@@ -88,7 +93,9 @@ struct Certifier::Content {
           coarse(options.coarse ? *options.coarse : own_coarse.emplace(light.tree, stage.scene.regions().size())),
           rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
           area(leaf_areas(light.tree, light.numbering)),
-          H(rows(options.seed + 1)) {
+          H(rows(options.seed + 1)),
+          paths(stage),
+          check(stage, paths, options.projected, point_accuracy(options.error)) {
         if (stage.rooms.count() > 0) other_H.emplace(rows(hash(options.seed + 1)));
         share_on_node(std::span(rho)), share_on_node(std::span(area));
         if (mean_reflected <= 0) return;
@@ -104,8 +111,16 @@ struct Certifier::Content {
                 seed,  Dealing::by_element, RowsHeld::by_owner};
     }
     std::vector<Spectrum> light_of_rooms() const;
+    ResidualSampler sampler() const { return {stage, indirect, b, check, options, constant, coarse, light.numbering}; }
+    /// Of a room, W/m^2: what errors in it are relative to.
+    double light_of_room(std::size_t room) const {
+        return options.light_in.empty() ? mean_reflected : options.light_in[room] * mean_reflected;
+    }
+    void plan_checks(std::span<const WeightedSample> places);
     void measure_residuals();
     void tell_p99(Certificate& out);
+    void look_at_bodies(Certificate& out);
+    void check_late(Certificate& out);
     std::vector<Spectrum> mean_residuals(double first) const;
     std::vector<Spectrum> response_to(double first, const RayRows& rows) const;
     std::vector<Spectrum> late_response() const;
@@ -113,6 +128,7 @@ struct Certifier::Content {
     Certificate judge();
     void judge_rooms(Certificate& out);
     std::vector<RoomError> rooms;
+    std::vector<BodyError> bodies;  ///< The largest first.
 };
 
 /// Of every leaf of the coarse mesh, the light of its room by the mean light.
@@ -120,6 +136,22 @@ std::vector<Spectrum> Certifier::Content::light_of_rooms() const {
     std::vector<Spectrum> out;
     for (ElementId e : light.numbering.leaves) out.emplace_back(options.light_in[stage.rooms.of(light.tree, e)]);
     return out;
+}
+
+/// Chooses how hits are checked, by a pilot at some of the places of the first look.
+void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
+    constexpr std::size_t pilots = 64;
+    std::vector<PilotPlace> at;
+    const std::size_t step = std::max<std::size_t>(1, places.size() / pilots);
+    for (std::size_t k = step / 2; k < places.size(); k += step) {
+        const ElementTree::Place& place = places[k].place;
+        at.push_back(
+            {{indirect.tree.patch(place.element).at(place.uv), indirect.tree.region(place.element)}, places[k].weight});
+    }
+    // Noise as large as the error requested does no harm: that of hundreds of points is averaged. Sums have no other.
+    const double resolved = (options.summed ? 0.5 : 1) * options.error * mean_reflected;
+    const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : certificate_rays(0);
+    plan = plan_check(check, stage, b, at, hash(options.seed, 3), {rays * resolved * resolved, !options.summed});
 }
 
 /// One more look: the residual at stratified points, twice each.
@@ -130,8 +162,9 @@ void Certifier::Content::measure_residuals() {
                                                    : in_turn(options.places, options.points);
     const std::size_t before = samples.size();
     samples.resize(before + places.size());
-    const ResidualSampler sampler(stage, indirect, b, options, constant, coarse, light.numbering);
-    sampler.measure(places, seed, std::span(samples).subspan(before));
+    const ResidualSampler sampler = this->sampler();
+    if (looks == 0) plan_checks(places);
+    sampler.measure(places, plan, seed, std::span(samples).subspan(before));
     ++looks;
 }
 
@@ -282,6 +315,32 @@ Certificate Certifier::Content::judge() {
     return out;
 }
 
+/// Every body by points of its own; where there is only one, it is the whole.
+void Certifier::Content::look_at_bodies(Certificate& out) {
+    if (!options.bodies || !options.places.empty()) return;
+    if (options.bodies->all.size() == 1) {
+        const Body& body = options.bodies->all[0];
+        bodies = {{body.surfaces, body.area, mean_reflected, out.estimate, samples.size(), body.first}};
+    } else {
+        const BodyCheck body_check{stage, indirect, b, check, sampler(), *options.bodies, late, options.seed};
+        const auto light = [&](std::size_t room) { return light_of_room(room); };
+        out.rays += measure_bodies(body_check, light, options.error, options.check_rays, bodies);
+    }
+    for (const BodyError& body : bodies)
+        if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);
+}
+
+/// Adds what the coarse response misses, as far as paths tell it for certain.
+void Certifier::Content::check_late(Certificate& out) {
+    if (options.bounces >= 0 || options.summed || !options.places.empty()) return;
+    const LatePaths by_paths(stage, indirect, b, check, options.direct_in_elements);
+    const LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
+    out.rays += misfit.rays;
+    if (misfit.mean_square <= 2 * misfit.standard_error) return;
+    const double more = std::sqrt(misfit.mean_square) / mean_reflected;
+    out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
+}
+
 void Certifier::Content::tell_p99(Certificate& out) {
     constexpr double share = 0.01;  // given by the name
     constexpr unsigned most_rays = 1 << 14;
@@ -298,20 +357,20 @@ void Certifier::Content::tell_p99(Certificate& out) {
         out.p99 = error_below(points, {}, share) / mean_reflected;
         return;
     }
-    const ResidualSampler sampler(stage, indirect, b, options, constant, coarse, light.numbering);
+    const ResidualSampler sampler = this->sampler();
     const auto by_more_rays = [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
         const auto rays_at = [&](std::size_t i) { return std::min(most_rays, factor * samples[i].rays / 2); };
         for (std::size_t i : which) out.rays += 2 * rays_at(i);
         shared_ranges(
             which.size(), 1,
             [&](std::size_t begin, std::size_t end) {
-                GatherWorkspace workspace;
+                ResidualSampler::Workspace workspace;
                 for (std::size_t k = begin; k < end; ++k) {
                     const ResidualSample& s = samples[which[k]];
                     for (std::uint64_t half = 0; half < 2; ++half) {
                         const std::uint64_t key =
                             hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);
-                        error[k][half] = late[s.leaf] + sampler.by_rays(s, rays_at(which[k]), key, workspace);
+                        error[k][half] = late[s.leaf] + sampler.by_rays(s, plan, rays_at(which[k]), key, workspace);
                     }
                 }
             },
@@ -351,6 +410,16 @@ Certificate Certifier::look() {
     if (content_->mean_reflected <= 0) return {};
     content_->measure_residuals();
     return content_->judge();
+}
+
+void Certifier::look_at_bodies(Certificate& certificate) {
+    if (content_->samples.empty()) return;
+    content_->look_at_bodies(certificate);
+    content_->check_late(certificate);
+}
+
+const std::vector<BodyError>& Certifier::bodies() const {
+    return content_->bodies;
 }
 
 void Certifier::tell_p99(Certificate& certificate) {

@@ -4,8 +4,10 @@
 #include <memory>
 #include <optional>
 
+#include "exitance/reconstruct/error/direct_check.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/solution.hpp"
+#include "exitance/scene/bodies.hpp"
 #include "exitance/solve/global_light.hpp"
 
 namespace exitance {
@@ -25,6 +27,7 @@ struct CertificateOptions {
     /// average.
     bool keeps_flux = false;
     bool direct_in_elements = false;  ///< Does the delivered function hold the emitters' light too?
+    int bounces = -1;                 ///< Reflections that are counted; -1: all.
     /// Enough for a delivered function of so many leaves: where they are many, few of them may hold most of the error.
     static std::size_t points_for(std::size_t leaves) { return std::max<std::size_t>(1280, leaves / 16); }
     /// What the local pass knows of the leaves of the delivered function: points gather where it expects errors, with
@@ -42,6 +45,12 @@ struct CertificateOptions {
     std::vector<double> light_in = {};
     /// What errors rooms may have, in proportion: by which points are dealt out, and the parts of the error counted.
     std::vector<double> allowed_in = {};
+    /// The projection of direct light that `b` reads at hits; it is checked there. None where `b` reads no projection.
+    ProjectedDirect projected = {};
+    /// Rays that may be spent on bodies and on paths.
+    std::size_t check_rays = 1 << 16;
+    /// Errors are told by body, too; null: not by body.
+    const Bodies* bodies = nullptr;
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -63,7 +72,8 @@ struct Certificate {
     /// Where rooms are judged apart: the estimate of the worst one, and the root of the mean of the rooms' squares,
     /// each by what it may have, which `local` and `method` are parts of. As the estimate, where all is one room.
     double worst_room = 0, of_rooms = 0;
-    double room_uncertainty = 0;  ///< Of `worst_room`, as `uncertainty` is of `estimate`.
+    double room_uncertainty = 0;            ///< Of `worst_room`, as `uncertainty` is of `estimate`.
+    std::optional<double> worst_body = {};  ///< The estimate of the worst body, once `look_at_bodies` has found it.
     /// Of the whole and of every room.
     double largest() const { return std::max(estimate, worst_room); }
     double largest_uncertainty() const { return estimate < worst_room ? room_uncertainty : uncertainty; }
@@ -73,12 +83,15 @@ struct Certificate {
 ///
 ///     r = M + rho H B - B = rho (E_dir + H b - E_dir - E_ind),     b = B - M,
 ///
-/// at points stratified over all surfaces, denser where the error is expected and in gaps too small to count by area,
-/// and weighted accordingly. At each, two
-/// independent ray gathers over `b` give r1 and r2, so that E[r1 r2] = r^2 without the rays' noise. Error e = (I - rho
-/// H)^-1 r: its rough part is r itself, its smooth part is the response of a coarse solve to the regions' mean
-/// residuals. The bound takes the norm of (I - rho H)^-1, sqrt(C_1 C_inf) from two coarse solves with unit light, and
-/// Student's upper limit of ||r||. Where light is summed over elements, so is the residual, without noise: r1 = r2.
+/// at points stratified over all surfaces, denser where the error is expected and in gaps too small to count by
+/// area, and weighted accordingly. At each, two independent ray gathers over `b` give r1 and r2, so that
+/// E[r1 r2] = r^2 without the rays' noise. Where `b` reads a projection of direct light, a share of the hits is checked
+/// against the true direct light (`DirectCheck`), so that r does not depend on how good the projection is.
+///
+/// The error e = (I - rho H)^-1 r: its rough part is r itself, its smooth part is the response of a coarse solve to the
+/// regions' mean residuals. That response is checked by paths (`look_at_bodies`). The bound takes the norm of (I - rho
+/// H)^-1, sqrt(C_1 C_inf) from two coarse solves with unit light, and Student's upper limit of ||r||. Where light is
+/// summed over elements, so is the residual; only the check of projected light has noise there.
 /// Source: [Arvo94], part "residual"; [Lischinski94]. O(points x rays).
 class Certifier {
   public:
@@ -94,6 +107,13 @@ class Certifier {
     /// What the error is below on 99% of the area: sets `p99` of the last look's result, and counts the rays that it
     /// takes. The points whose errors seem largest are measured again, since by few rays those are mostly noise.
     void tell_p99(Certificate& certificate);
+
+    /// Measures every body by points of its own (`measure_bodies`) and sets `worst_body`. Paths check the smooth part
+    /// of the error at some of the points of the whole; what it misses is added to the estimate. Counts the rays.
+    void look_at_bodies(Certificate& certificate);
+
+    /// The error of every body, the largest body first, once `look_at_bodies` was called.
+    const std::vector<BodyError>& bodies() const;
 
     /// As of the last look: every room's error, the largest room first.
     const std::vector<RoomError>& rooms() const;

@@ -18,7 +18,6 @@ struct TowardsEnds {
 std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
                                               const Field<ElementId, std::uint8_t>& narrow,
                                               const CertificateOptions& options, std::uint64_t seed) {
-    const std::size_t count = options.points;
     const Field<ElementId, LocalPassReport::Leaf>* const known = options.leaves;
     const std::vector<ElementId> leaves = tree.leaves();
     // Where rooms are judged apart, all are looked at alike, and errors count by what is allowed there.
@@ -36,6 +35,7 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
     const double mean_error = error / area;
     const double share = calibrated::narrow_points;
     const double of_narrow = in_gaps > 0 ? share / (1 - share) * area / in_gaps : 0;
+    const std::size_t count = options.points;
     const auto density = [&](ElementId e) {
         const double seldom = stage.is_left_out(tree.region(e)) ? 1.0 / of_left_out : 1;
         const double expected = mean_error > 0 ? 0.5 + 0.5 * error_at(e) / mean_error : 1.0;
@@ -56,6 +56,24 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
         const TowardsEnds s(points(k, 1)), t(points(k, 2));
         out.push_back({{e, tree.uniform(e, s.at, t.at)},
                        share_of_all * s.share * t.share / (density(e) * static_cast<double>(count))});
+    }
+    return out;
+}
+
+std::vector<WeightedSample> places_on_body(const ElementTree& tree, std::span<const ElementId> leaves,
+                                           std::size_t count, std::uint64_t seed) {
+    double total = 0;
+    for (ElementId e : leaves) total += tree.area(e);
+    const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
+    std::vector<WeightedSample> out;
+    double before = 0;
+    std::size_t leaf = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
+        while (leaf + 1 < leaves.size() && before + tree.area(leaves[leaf]) <= wanted)
+            before += tree.area(leaves[leaf++]);
+        out.push_back(
+            {{leaves[leaf], tree.uniform(leaves[leaf], points(k, 1), points(k, 2))}, 1 / static_cast<double>(count)});
     }
     return out;
 }

@@ -149,6 +149,41 @@ TEST(Certificate, NoticesWhatFewOfManyElementsMiss) {
     EXPECT_LT(std::sqrt(square), 0.25);
 }
 
+/// A furnace whose projection of direct light is wrong by a factor, and whose delivered light agrees with that.
+struct WrongProjection {
+    static constexpr double factor = 1.2;
+    PlantedError furnace{[](const Point&) { return factor - 1; }};  // E_ind = factor rho / (1 - rho), rho = 1/2
+    ElementLocator locator{furnace.delivered.tree, furnace.scene.regions().size()};
+    PointwiseLight projected{[](RegionId, const Point&) { return Spectrum(factor); }};
+    PointwiseLight b{[this](RegionId region, const Point& y) {
+        return Spectrum(furnace.rho * (factor + mean(furnace.delivered.at(locator.find(region, y)))));
+    }};
+    /// Relative to the mean reflected radiosity rho (1 + E_ind): the error of E_ind is 0.2 of 1.
+    static constexpr double truth = (factor - 1) / 2;
+
+    double estimate(std::uint64_t seed, const ProjectedDirect& told, const SummedLight* summed = nullptr) const {
+        CertificateOptions options{.error = 0.02, .seed = seed};
+        options.projected = told, options.summed = summed;
+        return Certifier(furnace.stage, furnace.light, furnace.delivered, b, options).look().estimate;
+    }
+};
+
+TEST(Certificate, FindsAFaultOfTheProjectionThatTheDeliveredLightShares) {
+    const WrongProjection planted;
+    const ProjectedDirect told{&planted.projected, Spectrum(1.0)};
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        EXPECT_LT(planted.estimate(seed, {}), 0.01);  // unchecked, it is blind to it
+        EXPECT_NEAR(planted.estimate(seed, told), planted.truth, 0.1 * planted.truth);
+    }
+    // The same where light is summed over elements: these hold what the projection sends.
+    ElementFunction reflected = planted.furnace.delivered;
+    for (std::array<float, bands>& value : reflected.values)
+        for (float& v : value) v = static_cast<float>(planted.furnace.rho * (planted.factor + static_cast<double>(v)));
+    const SummedLight summed{{ElementGather(planted.furnace.stage, reflected)}, {}, 1e-3};
+    EXPECT_LT(planted.estimate(1, {}, &summed), 0.01);
+    EXPECT_NEAR(planted.estimate(1, told, &summed), planted.truth, 0.1 * planted.truth);
+}
+
 TEST(Certificate, FindsNoErrorInAnExactFurnace) {
     const PlantedError furnace([](const Point&) { return 0.0; });
     EXPECT_LT(furnace.certificate(1).bound, 1e-5);  // values are stored in single precision
@@ -300,6 +335,46 @@ TEST(Certificate, OfADarkRoomKnowsNothingOfNoiseInABrightOne) {
         EXPECT_GT(rooms[0].error, 0.05);
         // The bright room's noise is some percent of its light, and several times that of the dark room's.
         EXPECT_LT(rooms[1].error, 0.05);
+    }
+}
+
+/// Two furnaces apart, the second a sixtieth as large, with one error everywhere in the second alone.
+TEST(Certificate, MeasuresSmallBodiesByPointsOfTheirOwn) {
+    SceneDescription d;
+    d.materials = {{"wall", Spectrum(0.5), Spectrum(1.0)}};
+    d.groups = {"large", "small"};
+    const std::vector<std::vector<std::uint32_t>> box = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
+                                                         {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+    for (std::uint32_t k = 0; k < 2; ++k) {
+        const double x = 20 * k, size = k == 0 ? 16 : 2;
+        for (const double z : {0.0, size})
+            d.points.insert(d.points.end(), {{x, 0, z}, {x + size, 0, z}, {x + size, size, z}, {x, size, z}});
+        for (std::vector<std::uint32_t> face : box) {
+            for (std::uint32_t& corner : face) corner += 8 * k;
+            d.faces.push_back({face, 0, k, 1});
+        }
+    }
+    PlantedError planted([](const Point& p) { return p.x > 18 ? 0.2 : 0.0; }, 1, std::move(*make_scene(d).scene));
+    planted.stage.rooms = {};  // all is one room
+    const Bodies bodies = find_bodies(planted.scene);
+    ASSERT_EQ(bodies.all.size(), 2u);
+    const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
+    const PointwiseLight b(
+        [&](RegionId region, const Point& y) { return Spectrum(planted.reflected(locator, region, y)); });
+    const PointwiseLight direct([](RegionId, const Point&) { return Spectrum(1.0); });
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        CertificateOptions options{.error = 0.02, .seed = seed};
+        options.bodies = &bodies, options.projected = {&direct};
+        Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
+        Certificate found = certifier.look();
+        certifier.look_at_bodies(found);
+        ASSERT_EQ(certifier.bodies().size(), 2u);
+        EXPECT_GE(certifier.bodies()[1].points, 8u);
+        ASSERT_TRUE(found.worst_body);
+        // E_ind is 1.2 in place of 1, and its body's mean reflected radiosity is told with that: 0.1 / 1.1.
+        EXPECT_NEAR(*found.worst_body, 0.1 / 1.1, 0.15 * 0.1);
+        EXPECT_LT(certifier.bodies()[0].error.value_or(1), 0.01);
+        EXPECT_LT(found.estimate, 0.03);  // by area it hardly counts
     }
 }
 

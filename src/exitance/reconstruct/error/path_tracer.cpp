@@ -14,41 +14,54 @@ PathTracer::PathTracer(const Stage& stage) : stage_(stage) {
     }
 }
 
+std::optional<PathTracer::Vertex> PathTracer::first(const Vertex& from, double a, double b) const {
+    return follow(from, met_direction(stage_.scene, from.region, from.n, a, b), nullptr, Mirrored::followed);
+}
+
 Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream& random) const {
     Spectrum sum, throughput(1.0);
-    const Vec3 first = met_direction(stage_.scene, probe.region, probe.n, a, b);
-    std::optional<Vertex> y = follow(probe, first, nullptr, Mirrored::followed);
+    std::optional<Vertex> y = first(probe, a, b);
     while (y) {
         const Spectrum& rho = stage_.scene.material(y->region).reflectance;
         const double survival = max(rho);
         if (survival <= 0 || random.uniform() >= survival) return sum;
         throughput *= rho / survival;
-        // What leaves a diffusing pane came from either side.
-        if (const RegionId behind = stage_.scene.behind(y->region); !behind.is_none())
-            if (random.uniform() < stage_.scene.material(y->region).through) y = Vertex{y->x, -y->n, behind};
-        sum += throughput * shadow_ray(*y, random);
-        const Beams& beams = stage_.direct.beams();
-        if (!beams.empty()) sum += throughput * beams.irradiance({y->x, y->n, y->region});
-        const DistantLight& outside = stage_.scene.distant();
-        if (!outside.discs.empty()) sum += throughput * light_of_discs(*y, random);
-        const double u = random.uniform(), v = random.uniform();
-        const Vec3 on = cosine_direction(Frame(y->n), u, v);
-        bool lost = false;
-        const std::optional<Vertex> next = follow(*y, on, &lost, Mirrored::followed);
-        if (lost && !outside.domes.empty()) sum += throughput * outside.radiosity(normalized(on), false);
-        if (next && !next->mirrored) {
-            const Spectrum& exitance = stage_.scene.material(next->region).exitance;
-            if (max(exitance) > 0)
-                sum += throughput * exitance *
-                       (stage_.scene.relative_radiance(next->region).towards(y->x, next->x) *
-                        (1 - weight_of_shadow_ray(*y, *next)));
-        }
-        y = next;
+        const Step found = step(*y, random);
+        sum += throughput * found.direct;
+        y = found.next;
     }
     return sum;
 }
 
-/// Where a ray arrives; nothing when it is lost or meets a back.
+PathTracer::Step PathTracer::step(const Vertex& vertex, RandomStream& random) const {
+    Vertex y = vertex;
+    // Light that leaves a diffusing pane arrived on either side.
+    if (const RegionId behind = stage_.scene.behind(y.region); !behind.is_none())
+        if (random.uniform() < stage_.scene.material(y.region).through) y = Vertex{y.x, -y.n, behind};
+    Step out{shadow_ray(y, random), {}};
+    const Beams& beams = stage_.direct.beams();
+    if (!beams.empty()) out.direct += beams.irradiance({y.x, y.n, y.region});
+    const DistantLight& outside = stage_.scene.distant();
+    if (!outside.discs.empty()) out.direct += light_of_discs(y, random);
+    const double u = random.uniform(), v = random.uniform();
+    const Vec3 on = cosine_direction(Frame(y.n), u, v);
+    bool lost = false;
+    out.next = follow(y, on, &lost, Mirrored::followed);
+    if (lost && !outside.domes.empty()) out.direct += outside.radiosity(normalized(on), false);
+    if (out.next && !out.next->mirrored) {
+        const Spectrum& exitance = stage_.scene.material(out.next->region).exitance;
+        if (max(exitance) > 0)
+            out.direct += exitance * (stage_.scene.relative_radiance(out.next->region).towards(y.x, out.next->x) *
+                                      (1 - weight_of_shadow_ray(y, *out.next)));
+    }
+    return out;
+}
+
+double PathTracer::rays_per_step() const {
+    return 1.0 + (lights_.empty() ? 0 : 1) + static_cast<double>(stage_.scene.distant().discs.size());
+}
+
+/// Returns the vertex that a ray reaches; none if it is lost or meets a back.
 std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const Vec3& direction, bool* lost,
                                                      Mirrored mirrored) const {
     RayHit hit;

@@ -41,11 +41,12 @@ unsigned certificate_rays(double wanted) {
 }
 
 ResidualSampler::ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
-                                 const CertificateOptions& options, double constant, const ElementLocator& coarse,
-                                 const LeafNumbering& numbering)
+                                 const DirectCheck& check, const CertificateOptions& options, double constant,
+                                 const ElementLocator& coarse, const LeafNumbering& numbering)
     : stage_(stage),
       indirect_(indirect),
       b_(b),
+      check_(check),
       options_(options),
       often_(more_where_reflected_often(constant)),
       coarse_(coarse),
@@ -72,13 +73,25 @@ void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, W
     if (!sample.is_covered) sample.delivered = indirect_.at(at.place);
     if (!sample.is_covered && options_.direct_in_elements)
         sample.delivered -= stage_.clustered.at(x, n, region, point_accuracy(options_.error), w.clustered).irradiance;
+    sample.reflected = 0;
+    if (!sample.is_covered) {
+        Spectrum E = indirect_.at(at.place);
+        if (check_.has_projection()) {
+            const HitPoint here{region, x};
+            Spectrum projected;
+            check_.projected().irradiance->read(std::span(&here, 1), std::span(&projected, 1));
+            E += check_.projected().weight * projected;
+        }
+        sample.reflected = mean(stage_.scene.material(region).reflectance * E);
+    }
     sample.surface = surface_at(stage_.scene, region, x);
     if (stage_.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage_.rooms.at(region, x));
     sample.leaf = numbering_.number[coarse_.find(region, x).element];
 }
 
-/// The residual by sums over elements, without noise.
-void ResidualSampler::sum_elements(bool tells_local, ResidualSample& sample, Workspace& w) const {
+/// The residual by sums over elements; what their projected direct light misses, by two gathers of independent rays.
+void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
+                                   Workspace& w) const {
     const Point x = point(sample);
     const Normal& n = stage_.scene.regions()[sample.region].plane.n;
     const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;
@@ -89,20 +102,29 @@ void ResidualSampler::sum_elements(bool tells_local, ResidualSample& sample, Wor
         return reflectance * (arriving - sample.delivered);
     };
     sample.r1 = sample.r2 = residual(options_.summed->delivered);
-    if (!tells_local) return;
-    sample.local1 = sample.local2 = residual(options_.summed->gathered);
-    sample.tells_local = true;
+    if (!options_.summed->gathered.empty() && k % local_every == 0) {
+        sample.local1 = sample.local2 = residual(options_.summed->gathered);
+        sample.tells_local = true;
+    }
+    if (sample.is_covered || !check_.has_projection()) return;
+    for (std::uint64_t which = 1; which <= 2; ++which) {
+        const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
+        cast_gather(stage_, x, n, sample.region, rays_beside_sums, key, w.rays);
+        (which == 1 ? sample.r1 : sample.r2) += reflectance * check_.missing(plan, w.rays, key, w.check);
+    }
+    sample.rays = 2 * rays_beside_sums;
 }
 
 /// The residual by two gathers of independent rays.
-void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, ResidualSample& sample, Workspace& w) const {
+void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
+                                Workspace& w) const {
     const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;
     const unsigned rays = rays_at(sample.place.element);
     sample.tells_local = options_.gathered != nullptr;
     if (sample.is_covered) return;
     for (std::uint64_t which = 1; which <= 2; ++which) {
         const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
-        (which == 1 ? sample.r1 : sample.r2) = by_rays(sample, rays, key, w.rays);
+        (which == 1 ? sample.r1 : sample.r2) = by_rays(sample, plan, rays, key, w);
         if (options_.gathered)
             (which == 1 ? sample.local1 : sample.local2) =
                 reflectance * (read_gather(*options_.gathered, w.rays).irradiance - sample.delivered);
@@ -110,7 +132,7 @@ void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, ResidualSampl
     sample.rays = 2 * rays;
 }
 
-void ResidualSampler::measure(std::span<const WeightedSample> places, std::uint64_t seed,
+void ResidualSampler::measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
                               std::span<ResidualSample> samples) const {
     shared_ranges(
         places.size(), 8,
@@ -119,21 +141,21 @@ void ResidualSampler::measure(std::span<const WeightedSample> places, std::uint6
             for (std::size_t k = begin; k < end; ++k) {
                 locate(places[k], samples[k], w);
                 if (options_.summed)
-                    sum_elements(!options_.summed->gathered.empty() && k % local_every == 0, samples[k], w);
+                    sum_elements(seed, k, plan, samples[k], w);
                 else
-                    cast_rays(seed, k, samples[k], w);
+                    cast_rays(seed, k, plan, samples[k], w);
             }
         },
         [&](std::size_t k) -> ResidualSample& { return samples[k]; }, {"certificate"});
 }
 
-Spectrum ResidualSampler::by_rays(const ResidualSample& sample, unsigned rays, std::uint64_t key,
-                                  GatherWorkspace& workspace) const {
+Spectrum ResidualSampler::by_rays(const ResidualSample& sample, const CheckPlan& plan, unsigned rays, std::uint64_t key,
+                                  Workspace& w) const {
     if (sample.is_covered) return {};
     const Region& region = stage_.scene.regions()[sample.region];
-    cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, workspace);
-    return stage_.scene.material(sample.region).reflectance *
-           (read_gather(b_, workspace).irradiance - sample.delivered);
+    cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, w.rays);
+    const Spectrum arriving = read_gather(b_, w.rays).irradiance + check_.missing(plan, w.rays, key, w.check);
+    return stage_.scene.material(sample.region).reflectance * (arriving - sample.delivered);
 }
 
 }  // namespace exitance

@@ -2,6 +2,7 @@
 
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/reconstruct/error/certificate_places.hpp"
+#include "exitance/reconstruct/error/direct_check.hpp"
 
 namespace exitance {
 
@@ -18,6 +19,7 @@ struct ResidualSample {
     Spectrum local1, local2;  ///< Its part by the local pass, where known.
     bool tells_local = false;
     Spectrum delivered;      ///< E there, less direct light, W/m^2.
+    double reflected = 0;    ///< Radiosity there less exitance, with direct light as projected, mean over bands, W/m^2.
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
     std::uint32_t rays = 0;
 };
@@ -35,32 +37,46 @@ unsigned certificate_rays(double wanted);
 /// Measures residuals of a delivered function at points: see `Certifier`.
 class ResidualSampler {
   public:
-    /// `constant` is the factor from the residual to the bound on the error. `coarse` finds leaves that `numbering`
-    /// numbers. All but numbers must outlive it.
-    ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
-                    const CertificateOptions& options, double constant, const ElementLocator& coarse,
-                    const LeafNumbering& numbering);
-
-    /// Measures the residual at places, twice each, into as many samples. O(places x rays), parallel.
-    void measure(std::span<const WeightedSample> places, std::uint64_t seed, std::span<ResidualSample> samples) const;
-    /// The residual at a point once more, by so many rays.
-    Spectrum by_rays(const ResidualSample& sample, unsigned rays, std::uint64_t key, GatherWorkspace& workspace) const;
-
-  private:
     struct Workspace {
         GatherWorkspace rays;
         ElementGather::Workspace sums;
         ClusteredLight::Workspace clustered;
+        DirectCheck::Workspace check;
     };
+
+    /// `constant` is the factor from the residual to the bound on the error. `coarse` finds leaves that `numbering`
+    /// numbers. All but numbers must outlive it.
+    ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
+                    const DirectCheck& check, const CertificateOptions& options, double constant,
+                    const ElementLocator& coarse, const LeafNumbering& numbering);
+
+    /// Measures the residual at places, twice each, into as many samples; `plan` tells how the direct light at hits is
+    /// checked. O(places x rays), parallel.
+    void measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
+                 std::span<ResidualSample> samples) const;
+
+    /// Fills in where a sample lies and what is delivered there.
     void locate(const WeightedSample& place, ResidualSample& sample, Workspace& w) const;
-    void sum_elements(bool tells_local, ResidualSample& sample, Workspace& w) const;
-    void cast_rays(std::uint64_t seed, std::size_t k, ResidualSample& sample, Workspace& w) const;
+
+    /// The residual at a point once more, by so many rays.
+    Spectrum by_rays(const ResidualSample& sample, const CheckPlan& plan, unsigned rays, std::uint64_t key,
+                     Workspace& workspace) const;
+
+    /// Rays of each half of a sample by which projected direct light is checked where reflected light is summed.
+    static constexpr unsigned rays_beside_sums = 32;
+
+  private:
+    void sum_elements(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
+                      Workspace& w) const;
+    void cast_rays(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
+                   Workspace& w) const;
     unsigned rays_at(ElementId leaf) const;
     Point point(const ResidualSample& sample) const;
 
     const Stage& stage_;
     const ElementFunction& indirect_;
     const ReflectedLight& b_;
+    const DirectCheck& check_;
     const CertificateOptions& options_;
     double often_;  ///< More rays, where light is reflected often.
     const ElementLocator& coarse_;

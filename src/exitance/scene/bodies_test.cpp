@@ -1,0 +1,74 @@
+#include "exitance/scene/bodies.hpp"
+
+#include <gtest/gtest.h>
+
+namespace exitance {
+namespace {
+
+/// Adds a cube of `size` metres with its lower corner at `at`; every face has corners of its own.
+void add_cube(SceneDescription& d, const Point& at, double size, std::uint32_t group) {
+    const std::vector<std::vector<int>> faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                                 {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}};
+    for (const std::vector<int>& face : faces) {
+        SceneDescription::Face out{{}, 0, group, 0};
+        for (const int corner : face) {
+            out.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(at + size * Vec3{1.0 * (corner & 1), 1.0 * (corner >> 1 & 1), 1.0 * (corner >> 2)});
+        }
+        d.faces.push_back(out);
+    }
+}
+
+SceneDescription with_groups(std::vector<std::string> groups) {
+    SceneDescription d;
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = std::move(groups);
+    return d;
+}
+
+Scene made(SceneDescription d) {
+    CheckedScene checked = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(checked.scene));
+    return std::move(*checked.scene);
+}
+
+TEST(Bodies, AreFacesThatShareEdges) {
+    SceneDescription d = with_groups({"default"});
+    add_cube(d, {0, 0, 0}, 1, 0), add_cube(d, {3, 0, 0}, 2, 0);
+    const Scene scene = made(std::move(d));
+    const Bodies bodies = find_bodies(scene);
+    ASSERT_EQ(bodies.all.size(), 2u);
+    EXPECT_EQ(bodies.all[0].surfaces, 6u);
+    EXPECT_NEAR(bodies.all[0].area, 6, 1e-12);
+    EXPECT_NEAR(bodies.all[1].area, 24, 1e-12);
+    EXPECT_NEAR(norm(bodies.all[1].centre - Point{4, 1, 1}), 0, 1e-12);
+    for (SurfaceId s : scene.surfaces().ids()) EXPECT_EQ(bodies.body[s], s.value / 6);
+}
+
+TEST(Bodies, AreFacesOfOneNamedObject) {
+    SceneDescription d = with_groups({"table", "default"});
+    add_cube(d, {0, 0, 0}, 1, 0), add_cube(d, {3, 0, 0}, 1, 0), add_cube(d, {6, 0, 0}, 1, 1),
+        add_cube(d, {9, 0, 0}, 1, 1);
+    const Bodies bodies = find_bodies(made(std::move(d)));
+    ASSERT_EQ(bodies.all.size(), 3u);  // "default" is what faces without a name are called
+    EXPECT_EQ(bodies.all[0].surfaces, 12u);
+}
+
+TEST(Bodies, TheSmallestArePooledWithNeighbours) {
+    SceneDescription d = with_groups({"default"});
+    for (int i = 0; i < 20; ++i) add_cube(d, {i < 10 ? 2.0 * i : 1000 + 2.0 * i, 0, 0}, i < 10 ? 0.1 : 1, 0);
+    const Scene scene = made(std::move(d));
+    const Bodies bodies = find_bodies(scene, 11);
+    ASSERT_EQ(bodies.all.size(), 11u);
+    double area = 0;
+    std::size_t surfaces = 0;
+    for (const Body& body : bodies.all) area += body.area, surfaces += body.surfaces;
+    EXPECT_NEAR(area, 10 * 6 * 1.01, 1e-9);
+    EXPECT_EQ(surfaces, 120u);
+    // The ten small cubes are one body, and no large one was pooled with them.
+    EXPECT_EQ(bodies.all[0].surfaces, 60u);
+    EXPECT_NEAR(bodies.all[0].area, 0.6, 1e-9);
+}
+
+}  // namespace
+}  // namespace exitance
