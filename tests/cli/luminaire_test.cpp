@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "run_program.hpp"
 
@@ -32,6 +33,36 @@ TEST(ProgramLuminaire, TellsFactsAndDrawsThem) {
     EXPECT_NEAR(facts["beam_angle"]["c0_c180"], 120, 0.1);
     EXPECT_EQ(facts["opening"]["shape"], "rectangle");
     EXPECT_EQ(facts["opening"]["size"], (std::vector<double>{1.2, 0.6, 0}));
+}
+
+/// Height of what an OBJ file holds.
+double height_of(const std::string& obj) {
+    std::istringstream lines(obj);
+    double least = 1e9, most = -1e9;
+    for (std::string line; std::getline(lines, line);) {
+        double x = 0, y = 0, z = 0;
+        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3)
+            least = std::min(least, z), most = std::max(most, z);
+    }
+    return most - least;
+}
+
+TEST(ProgramLuminaire, WritesTheTrueHeightOfAThinOpeningAndTellsAMissingOne) {
+    const TemporaryFolder folder;
+    const auto run = [&](const std::string& opening) {
+        std::string text = downlight;
+        write_text(folder / "l.ies", text.replace(text.find("0.6 1.2 0"), 9, opening));
+        const Finished done = run_program({"luminaire", folder / "l.ies", "-o", folder / "l.obj"});
+        EXPECT_EQ(done.status, 0) << done.err;
+        return done;
+    };
+    for (const double height : {0.001, 0.003, 0.02}) {
+        const Finished thin = run("0.024 0.599 " + std::to_string(height));
+        EXPECT_NEAR(height_of(read_text(folder / "l.obj")), height, 1e-9);
+        EXPECT_EQ(thin.err.find("extent"), std::string::npos) << thin.err;
+    }
+    EXPECT_NE(run("0 1.2 0").err.find("no extent in some direction: 1 cm is taken"), std::string::npos);
+    EXPECT_NE(run("0 0 0").err.find("a cube of 1 mm stands for it"), std::string::npos);
 }
 
 TEST(ProgramLuminaire, SaysWhereAFileIsWrong) {

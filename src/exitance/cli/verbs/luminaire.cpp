@@ -44,6 +44,21 @@ std::string spread_json(const Angles& a) {
     return fmt::format("{{\"c0_c180\": {:.6g}, \"c90_c270\": {:.6g}}}", a.c0.whole(), a.c90.whole());
 }
 
+/// Heights of a box's luminous sides in C0 and C90, metres.
+Vec2 luminous_sides(const Opening& opening) {
+    return {opening.size.z - opening.dark_x, opening.size.z - opening.dark_y};
+}
+
+std::string opening_words(const Opening& opening) {
+    if (opening.shape == Opening::Shape::point) return "point";
+    const Vec3& size = opening.size;
+    const Vec2 sides = luminous_sides(opening);
+    return fmt::format(
+        "{}, {:.4g} m (C0) x {:.4g} m (C90) x {:.4g} m (high){}", exitance::name_of(opening.shape), size.x, size.y,
+        size.z,
+        sides.x == sides.y ? "" : fmt::format("; luminous sides {:.4g} m (C0), {:.4g} m (C90)", sides.x, sides.y));
+}
+
 std::string facts_json(const Photometry& p) {
     const double flux = p.flux();
     std::string keywords;
@@ -57,7 +72,8 @@ std::string facts_json(const Photometry& p) {
         "  \"absolute\": {},\n  \"lamps\": {},\n  \"lamp_lumens\": {},\n  \"luminaire_lumens\": {:.10g},\n"
         "  \"upward_lumens\": {},\n  \"efficiency\": {},\n  \"stated_efficiency\": {},\n  \"watts\": {},\n"
         "  \"lumens_per_watt\": {},\n  \"largest_candela\": {:.10g},\n  \"beam_angle\": {},\n  \"field_angle\": {},\n"
-        "  \"opening\": {{\"shape\": \"{}\", \"size\": [{:.6g}, {:.6g}, {:.6g}]}},\n  \"housing\": {},\n"
+        "  \"opening\": {{\"shape\": \"{}\", \"size\": [{:.6g}, {:.6g}, {:.6g}], \"luminous_sides\": [{:.6g}, "
+        "{:.6g}]}},\n  \"housing\": {},\n"
         "  \"angles\": {{\"theta\": {}, \"phi\": {}}},\n  \"keywords\": [{}\n  ],\n  \"repairs\": {},\n"
         "  \"warnings\": {}\n}}",
         json_text(p.file), json_text(p.format), name_of(p.type), p.symmetry, p.lamp_lumens ? "false" : "true", p.lamps,
@@ -66,8 +82,8 @@ std::string facts_json(const Photometry& p) {
         number_or_null(p.stated_output_ratio), p.watts > 0 ? fmt::format("{:.6g}", p.watts) : "null",
         p.watts > 0 ? fmt::format("{:.6g}", p.efficacy()) : "null", p.largest(), spread_json(angles(p, 0.5)),
         spread_json(angles(p, 0.1)), exitance::name_of(p.opening.shape), p.opening.size.x, p.opening.size.y,
-        p.opening.size.z, housing, p.theta.size(), p.phi.size(), keywords, findings_json(p, Finding::Kind::repair),
-        findings_json(p, Finding::Kind::warning));
+        p.opening.size.z, luminous_sides(p.opening).x, luminous_sides(p.opening).y, housing, p.theta.size(),
+        p.phi.size(), keywords, findings_json(p, Finding::Kind::repair), findings_json(p, Finding::Kind::warning));
 }
 
 std::string fact(const char* name, const std::string& text) {
@@ -90,13 +106,8 @@ std::string facts_text(const Photometry& p) {
     if (p.type == Photometry::Type::c)
         out += fact("upward", fmt::format("{:.1f} lm, {:.1f}%", p.flux(90, 180), 100 * p.flux(90, 180) / flux));
     if (p.watts > 0) out += fact("power", fmt::format("{:g} W, {:.1f} lm/W", p.watts, p.efficacy()));
-    const Vec3& size = p.opening.size;
     out += fact("largest intensity", fmt::format("{:.1f} cd", p.largest())) + fact("beam angle (50%)", spread(beam)) +
-           fact("field angle (10%)", spread(field)) +
-           fact("opening", p.opening.shape == Opening::Shape::point
-                               ? "point"
-                               : fmt::format("{}, {:.4g} m (C0) x {:.4g} m (C90) x {:.4g} m (high)",
-                                             exitance::name_of(p.opening.shape), size.x, size.y, size.z));
+           fact("field angle (10%)", spread(field)) + fact("opening", opening_words(p.opening));
     if (p.housing)
         out += fact("housing", fmt::format("{:.4g} x {:.4g} x {:.4g} m", p.housing->x, p.housing->y, p.housing->z));
     for (const auto& [key, text] : p.keywords)

@@ -53,10 +53,6 @@ const Luminaires::Lamp* Luminaires::lamp_of(const PlacedLuminaire& luminaire) {
     }
     findings_.insert(findings_.end(), read->findings.begin(), read->findings.end());
     know(luminaire.path, std::move(*read));
-    if (lamp.body.is_enlarged)
-        findings_.push_back({Finding::Kind::warning, luminaire.path, 0,
-                             "its opening has no extent in some direction: 1 cm is taken",
-                             "light nearer than some centimetres follows from that"});
     return &lamp;
 }
 

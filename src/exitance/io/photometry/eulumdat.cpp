@@ -333,12 +333,20 @@ void EulumdatReader::set_opening() {
     constexpr double metre = 1e-3;
     const bool round = lit_width_ == 0;
     const double length = lit_length_ * metre, width = round ? length : lit_width_ * metre;
-    const double height = *std::max_element(lit_height_.begin(), lit_height_.end()) * metre;
+    if (length_ > 0) out_.housing = Vec3{length_ * metre, (width_ > 0 ? width_ : length_) * metre, height_ * metre};
+    const auto& [c0, c90, c180, c270] = lit_height_;
+    const double side_x = std::max(c0, c180) * metre, side_y = std::max(c90, c270) * metre;
+    const double height = std::max(side_x, side_y);
     if (length == 0 && width == 0 && height == 0) return;
     out_.opening.size = {width, length, height};
+    if (!round) out_.opening.dark_x = height - side_x, out_.opening.dark_y = height - side_y;
+    if (round ? std::min({c0, c90, c180, c270}) * metre < height : c0 != c180 || c90 != c270)
+        tell(out_, Finding::Kind::warning, 18,
+             fmt::format("the luminous heights in C0, C90, C180, C270 are {:g}, {:g}, {:g}, {:g} mm", c0, c90, c180,
+                         c270),
+             "opposite sides (of a round opening all) are taken to be as high as the highest");
     out_.opening.shape =
         round ? (height > 0 ? Shape::cylinder_z : Shape::ellipse) : (height > 0 ? Shape::box : Shape::rectangle);
-    if (length_ > 0) out_.housing = Vec3{length_ * metre, (width_ > 0 ? width_ : length_) * metre, height_ * metre};
 }
 
 void EulumdatReader::check_output_ratio() {

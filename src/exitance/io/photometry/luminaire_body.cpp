@@ -12,8 +12,6 @@ using Shape = Opening::Shape;
 using Polygons = std::vector<std::vector<Point>>;
 
 constexpr double degree = pi / 180;
-constexpr double least_size = 0.01;   ///< Of what has an extent in some directions alone, metres,
-constexpr double point_size = 0.001;  ///< and of what has none.
 constexpr int sides = 24;  ///< Of a round edge: it has normals where tables of 1, 3, 5 and 15 degrees have entries.
 constexpr int bands_of_sphere = 8, sides_of_sphere = 16;
 
@@ -74,6 +72,10 @@ int turns_of(Shape shape) {
     return shape == Shape::cylinder_x ? 1 : shape == Shape::cylinder_y ? 2 : 0;
 }
 
+bool is_flat(Shape shape) {
+    return shape == Shape::rectangle || shape == Shape::ellipse;
+}
+
 bool is_cylinder(Shape shape) {
     return shape == Shape::cylinder_x || shape == Shape::cylinder_y || shape == Shape::cylinder_z;
 }
@@ -106,6 +108,35 @@ Polygons polygons_of(Shape shape, const Vec3& size) {
             p = {p.x * size.x, p.y * size.y, p.z * size.z};
         }
     return out;
+}
+
+/// Cuts the dark upper parts off the sides of a box, of which the luminous ones are left in `faces`; returns the
+/// others.
+Polygons cut_dark_sides(const Opening& opening, const Vec3& size, Polygons& faces) {
+    Polygons dark;
+    for (std::vector<Point>& face : faces) {
+        const Vec3 n = area_vector(face);
+        if (std::abs(n.z) > std::max(std::abs(n.x), std::abs(n.y))) continue;
+        const double height = std::abs(n.x) > std::abs(n.y) ? opening.dark_x : opening.dark_y;
+        if (!(height > 0)) continue;
+        const double cut = 0.5 * size.z - std::min(height, size.z);
+        std::vector<Point>& upper = dark.emplace_back(face);
+        for (Point& p : upper) p.z = std::max(p.z, cut);
+        for (Point& p : face) p.z = std::min(p.z, cut);
+    }
+    std::erase_if(faces, [](const std::vector<Point>& face) { return norm(area_vector(face)) == 0; });
+    return dark;
+}
+
+/// The size of a whole box whose sides have the areas of the luminous ones of an opening, so that it shows the same
+/// area in every direction. A pair of sides without light has a millionth of the area of the bottom: the light that
+/// goes exactly their way is lost, as that along a plane opening is.
+Vec3 box_of_same_areas(const Opening& opening, const Vec3& size) {
+    if (!(opening.dark_x > 0 || opening.dark_y > 0)) return size;
+    const double z = size.x * size.y, least = 1e-6 * z;
+    const double x = std::max(least, size.y * (size.z - opening.dark_x));
+    const double y = std::max(least, size.x * (size.z - opening.dark_y));
+    return {std::sqrt(y * z / x), std::sqrt(x * z / y), std::sqrt(x * y / z)};
 }
 
 /// Area that a convex body shows in the direction d.
@@ -167,14 +198,13 @@ void bake(const Photometry& p, const std::vector<Vec3>& areas, double step, bool
         }
 }
 
-void add_profile(const Photometry& p, Shape shape, const Vec3& size, const std::vector<Vec3>& areas,
-                 LuminaireBody& body) {
+void add_profile(const Photometry& p, const Vec3& size, const std::vector<Vec3>& areas, LuminaireBody& body) {
+    const Shape shape = p.opening.shape;
     EmissionProfile& out = body.profile;
     body.axis_x = p.axis_x, body.axis_y = p.axis_y, body.axis_z = p.axis_z;
-    const bool is_flat = shape == Shape::rectangle || shape == Shape::ellipse;
     // EmissionProfile::Body::box measures the box along the axes of the table, which are the body's in type C.
     const bool is_box = (shape == Shape::box || shape == Shape::point) && p.type == Photometry::Type::c;
-    if (!is_flat && !is_box) {
+    if (!is_flat(shape) && !is_box) {
         // Degrees, by how far the body's edges lie off the lines of the table, and how blunt they are.
         const double step = shape == Shape::cylinder_z || shape == Shape::box ? 1
                             : shape == Shape::ellipsoid                       ? 0.25
@@ -188,9 +218,9 @@ void add_profile(const Photometry& p, Shape shape, const Vec3& size, const std::
     out.axes[0] = {EmissionProfile::Angle::phi, 0, p.phi};
     out.axes[1] = {EmissionProfile::Angle::theta, 0, p.theta};
     out.values = p.candela;
-    out.body = is_flat ? EmissionProfile::Body::flat : EmissionProfile::Body::box;
-    out.size = is_box ? size : Vec3{1, 1, 1};
-    const double area = is_flat ? norm(areas[0]) : 1;
+    out.body = is_flat(shape) ? EmissionProfile::Body::flat : EmissionProfile::Body::box;
+    out.size = is_box ? box_of_same_areas(p.opening, size) : Vec3{1, 1, 1};
+    const double area = is_flat(shape) ? norm(areas[0]) : 1;
     for (double& v : out.values) v /= area;
 }
 
@@ -202,27 +232,28 @@ double LuminaireBody::flux() const {
     return sum;
 }
 
+Vec3 body_size(const Opening& opening) {
+    const double missing = opening.shape == Shape::point ? point_opening_size : strip_width;
+    const auto extent = [&](double v) { return v > 0 ? v : missing; };
+    return {extent(opening.size.x), extent(opening.size.y), is_flat(opening.shape) ? 0 : extent(opening.size.z)};
+}
+
 LuminaireBody make_luminaire_body(const Photometry& p) {
     LuminaireBody out;
-    Shape shape = p.opening.shape;
-    Vec3 size = p.opening.size;
-    const bool is_flat = shape == Shape::rectangle || shape == Shape::ellipse;
-    const auto enlarge = [&](double& v) {
-        const double least = shape == Shape::point ? point_size : least_size;
-        if (v < least / 2) v = least, out.is_enlarged = shape != Shape::point;
-    };
-    enlarge(size.x), enlarge(size.y);
-    if (!is_flat) enlarge(size.z);
-    const Polygons polygons = polygons_of(shape, size);
+    const Shape shape = p.opening.shape;
+    const Vec3 size = body_size(p.opening);
+    Polygons polygons = polygons_of(shape, size);
+    const Polygons dark = shape == Shape::box ? cut_dark_sides(p.opening, size, polygons) : Polygons();
     std::vector<Vec3> areas;
     for (const std::vector<Point>& face : polygons) areas.push_back(area_vector(face));
-    add_profile(p, shape, size, areas, out);
+    add_profile(p, size, areas, out);
     const bool is_upright = p.type == Photometry::Type::c;
     double most = 0;
     for (std::size_t i = 0; i < polygons.size(); ++i) {
         const Normal n = normalized(areas[i]);
-        const double exitance = is_flat && is_upright ? (n.z < 0 ? p.flux(0, 90) : p.flux(90, 180)) / norm(areas[i])
-                                                      : exitance_of(out.profile, out.in_frame(n));
+        const double exitance = is_flat(shape) && is_upright
+                                    ? (n.z < 0 ? p.flux(0, 90) : p.flux(90, 180)) / norm(areas[i])
+                                    : exitance_of(out.profile, out.in_frame(n));
         most = std::max(most, exitance);
         out.faces.push_back({polygons[i], exitance});
     }
@@ -231,7 +262,8 @@ LuminaireBody make_luminaire_body(const Photometry& p) {
     constexpr double negligible = 1e-7;
     for (LuminaireBody::Face& face : out.faces)
         if (face.exitance < negligible * most) face.exitance = 0;
-    if (is_flat) std::erase_if(out.faces, [](const LuminaireBody::Face& face) { return face.exitance == 0; });
+    if (is_flat(shape)) std::erase_if(out.faces, [](const LuminaireBody::Face& face) { return face.exitance == 0; });
+    for (const std::vector<Point>& face : dark) out.faces.push_back({face, 0});
     return out;
 }
 

@@ -3,8 +3,24 @@
 #include <fmt/format.h>
 
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/photometry/luminaire_body.hpp"
 
 namespace exitance {
+namespace {
+
+/// Warns of extents that the file gives as 0 and that the opening's body needs.
+void warn_of_missing_extent(Photometry& p) {
+    if (p.opening.shape == Opening::Shape::point)
+        tell(p, Finding::Kind::warning, 0,
+             fmt::format("its opening is a point: a cube of {:g} mm stands for it", 1000 * point_opening_size),
+             "UGR takes the luminaire for a small source of 0.005 m^2");
+    else if (!(body_size(p.opening) == p.opening.size))
+        tell(p, Finding::Kind::warning, 0,
+             fmt::format("its opening has no extent in some direction: {:g} cm is taken", 100 * strip_width),
+             "light nearer than some centimetres, and UGR, follow from that");
+}
+
+}  // namespace
 
 bool names_photometry(const std::string& path) {
     const std::string end = ending(path);
@@ -24,6 +40,7 @@ Result<Photometry> load_photometry(const std::string& path) {
              fmt::format("its intensities come to {:.4g} lm, more than its lamps' {:.4g} lm", out->flux(),
                          *out->lamp_lumens),
              "the intensities are taken");
+    if (out) warn_of_missing_extent(*out);
     return out;
 }
 

@@ -25,6 +25,8 @@ struct Opening {
     };
     Shape shape = Shape::point;
     Vec3 size;  ///< Along the luminaire's x, y and z axes, metres.
+    /// Heights of the dark upper parts of a box's sides towards +-x and towards +-y, metres: at most size.z.
+    double dark_x = 0, dark_y = 0;
 };
 
 /// What an opening's shape is called.

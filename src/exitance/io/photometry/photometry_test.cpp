@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "support/places.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace exitance {
 namespace {
@@ -107,6 +109,13 @@ TEST(Photometry, BeamAndFieldAnglesOfACosine) {
     EXPECT_NEAR(beam_spread(up, {1, 0, 0}, 0.5).whole(), 120, 0.01);
 }
 
+Box extent(const LuminaireBody& body) {
+    Box box;
+    for (const LuminaireBody::Face& face : body.faces)
+        for (const Point& p : face.corners) box.add(p);
+    return box;
+}
+
 /// Intensity of all faces together, far away: sum of L A cos.
 double far_intensity(const LuminaireBody& body, const Vec3& d) {
     double sum = 0;
@@ -139,12 +148,113 @@ TEST(LuminaireBody, EveryShapeHasTheFilesFluxAndIntensity) {
     }
 }
 
+TEST(LuminaireBody, OfABoxWithDarkSidesShinesWhereTheFileSays) {
+    const auto f = [](double t, double p) { return 300 + 200 * std::cos(t) * (1 + 0.3 * std::sin(t) * std::cos(p)); };
+    for (const Vec2& dark : {Vec2{0.2, 0}, Vec2{0, 0.2}, Vec2{0.15, 0}, Vec2{0, 0.05}}) {
+        Photometry p = read(ies("0.3 0.6 0.2", steps(0, 180, 10), steps(0, 360, 15), f));
+        p.opening.dark_x = dark.x, p.opening.dark_y = dark.y;
+        const LuminaireBody body = make_luminaire_body(p);
+        EXPECT_EQ(extent(body).size(), (Vec3{0.6, 0.3, 0.2})) << "dark parts keep the body closed";
+        double lit_x = 0, lit_y = 0;
+        for (const LuminaireBody::Face& face : body.faces) {
+            const Vec3 area = area_vector(face.corners);
+            if (face.exitance > 0) lit_x += std::abs(area.x), lit_y += std::abs(area.y);
+        }
+        EXPECT_NEAR(lit_x, 2 * 0.3 * (0.2 - dark.x), 1e-12);
+        EXPECT_NEAR(lit_y, 2 * 0.6 * (0.2 - dark.y), 1e-12);
+        for (const double theta : {0.2, 1.0, 1.5, 2.4})
+            for (const double phi : {0.1, 0.9, 1.4, 2.9, 4.4}) {
+                const Vec3 d = direction(theta, phi);
+                EXPECT_NEAR(far_intensity(body, d) / p.intensity(d), 1, 1e-3) << theta << ' ' << phi;
+            }
+    }
+}
+
 TEST(LuminaireBody, TypeBKeepsItsFluxWhateverItsShape) {
     const auto f = [](double v, double h) { return 1000 * std::pow(std::cos(v) * std::cos(h), 3); };
     for (const char* opening : {"0.3 0.6 0", "0.3 0.3 0.2"}) {
         const Photometry p = read(ies(opening, steps(-90, 90, 5), steps(0, 90, 5), f, "IESNA:LM-63-2002", 2));
         EXPECT_NEAR(make_luminaire_body(p).flux() / p.flux(), 1, 1e-3) << opening;
     }
+}
+
+TEST(LuminaireBody, KeepsEveryExtentThatTheFileGives) {
+    const auto even = [](double, double) { return 100.0; };
+    struct Case {
+        const char* opening;  // width, length, height, metres
+        Vec3 size;            // along C0, C90 and up
+    };
+    for (const Case& c : {Case{"0.024 0.599 0.001", {0.599, 0.024, 0.001}}, Case{"0.6 0.002 0.05", {0.002, 0.6, 0.05}},
+                          Case{"0.0004 0.3 0", {0.3, 0.0004, 0}}, Case{"0.004 0.004 0", {0.004, 0.004, 0}},
+                          Case{"0.003 1.2 0.003", {1.2, 0.003, 0.003}}}) {
+        const Box box = extent(make_luminaire_body(read(ies(c.opening, steps(0, 180, 10), {0}, even))));
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(box.size()[k], c.size[k], 1e-12) << c.opening;
+    }
+    // Round ones are polygons of the same area, about 1.2% wider than the circle at their corners.
+    for (const auto& [opening, diameter, height] : {std::tuple{"-0.066 -0.066 0.001", 0.066, 0.001},
+                                                    {"-0.003 -0.003 0.4", 0.003, 0.4},
+                                                    {"-0.002 -0.002 0", 0.002, 0.0}}) {
+        const Box box = extent(make_luminaire_body(read(ies(opening, steps(0, 180, 10), {0}, even))));
+        EXPECT_NEAR(box.size().x / diameter, 1, 0.02) << opening;
+        EXPECT_NEAR(box.size().z, height, 1e-12) << opening;
+    }
+}
+
+TEST(LuminaireBody, GivesAnExtentOnlyWhereTheFileHasNone) {
+    const auto even = [](double, double) { return 100.0; };
+    const Box line = extent(make_luminaire_body(read(ies("0 1.2 0", steps(0, 180, 10), {0}, even))));
+    EXPECT_EQ(line.size(), (Vec3{1.2, strip_width, 0}));
+    const Box wall = extent(make_luminaire_body(read(ies("0 1.2 0.3", steps(0, 180, 10), {0}, even))));
+    EXPECT_NEAR(wall.size().y, strip_width, 1e-12);
+    EXPECT_NEAR(wall.size().z, 0.3, 1e-12);
+    const Box point = extent(make_luminaire_body(read(ies("0 0 0", steps(0, 180, 10), {0}, even))));
+    EXPECT_EQ(point.size(), (Vec3{0.001, 0.001, 0.001}));
+}
+
+/// An EULUMDAT file of even light below, whose opening is 600 x 300 mm or round, with luminous heights, mm.
+std::string eulumdat(const std::string& length_and_width, const std::string& heights) {
+    return "maker\n3\n1\n1\n0\n3\n45\nreport\nlamp\nnumber\nfile\ndate\n700\n400\n100\n" + length_and_width + heights +
+           "100\n100\n1\n0\n1\n1\nLED\n1000\n3000\n80\n10\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n45\n90\n100\n100\n100\n";
+}
+
+TEST(PhotometricFile, KnowsTheLuminousHeightOfEachSide) {
+    const auto read_opening = [](const std::string& text, std::size_t warnings) {
+        const Result<Photometry> p = read_eulumdat(text, "own.ldt");
+        EXPECT_TRUE(p) << p.error().message;
+        std::size_t differ = 0;
+        for (const Finding& f : p->findings)
+            differ += f.message.find("the luminous heights in C0") != std::string::npos;
+        EXPECT_EQ(differ, warnings) << text;
+        return p->opening;
+    };
+    const Opening even = read_opening(eulumdat("600\n300\n", "50\n50\n50\n50\n"), 0);
+    EXPECT_EQ(even.size, (Vec3{0.3, 0.6, 0.05}));
+    EXPECT_EQ(even.dark_x, 0);
+    EXPECT_EQ(even.dark_y, 0);
+    const Opening ends = read_opening(eulumdat("600\n300\n", "50\n0\n50\n0\n"), 0);
+    EXPECT_EQ(ends.size.z, 0.05);
+    EXPECT_EQ(ends.dark_x, 0);
+    EXPECT_EQ(ends.dark_y, 0.05);
+    EXPECT_EQ(read_opening(eulumdat("600\n300\n", "50\n0\n10\n0\n"), 1).size.z, 0.05);
+    EXPECT_EQ(read_opening(eulumdat("600\n0\n", "50\n50\n50\n50\n"), 0).shape, Opening::Shape::cylinder_z);
+    EXPECT_EQ(read_opening(eulumdat("600\n0\n", "50\n0\n50\n50\n"), 1).size.z, 0.05);
+}
+
+TEST(PhotometricFile, WarnsOfExtentsThatItDoesNotGive) {
+    const TemporaryFolder folder;
+    const auto warnings = [&](const char* opening) {
+        std::ofstream(folder / "l.ies") << ies(opening, steps(0, 90, 10), {0}, cosine);
+        const Result<Photometry> p = load_photometry(folder / "l.ies");
+        EXPECT_TRUE(p) << opening;
+        std::string text;
+        for (const Finding& f : p->findings)
+            if (f.kind == Finding::Kind::warning) text += f.message;
+        return text;
+    };
+    EXPECT_EQ(warnings("0.024 0.599 0.001"), "");
+    EXPECT_EQ(warnings("-0.002 -0.002 0"), "");
+    EXPECT_NE(warnings("0 1.2 0").find("no extent in some direction: 1 cm"), std::string::npos);
+    EXPECT_NE(warnings("0 0 0").find("a cube of 1 mm"), std::string::npos);
 }
 
 TEST(LuminaireBody, APlaneOpeningShinesOnlyWhereTheTableDoes) {
