@@ -22,7 +22,7 @@ const std::vector<std::string> deciding{"accuracy", "links", "methods", "reconst
 /// it; methods whose numbers are those of their papers; and forecasts.
 const std::vector<std::string> apart{"reconstruct/pictures/",
                                      "reconstruct/light_maps/",
-                                     "reconstruct/glare.cpp",
+                                     "reconstruct/glare/",
                                      "reconstruct/measuring_grid.cpp",
                                      "reconstruct/working_plane.cpp",
                                      "reconstruct/surface_levels.cpp",

@@ -133,9 +133,10 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
         words.insert(words.end(), more.begin(), more.end());
         return run_program(words);
     };
-    const Finished run = report({"--unit", "lux", "--plane", "0.75", "--plane", "floor,border=0.2,spacing=0.5",
-                                 "--cylindrical", "1.2,spacing=1", "--maintenance", "0.8", "--observers", "auto",
-                                 "--observers", "0.2,1.5,1.2 1,0,0", "--tables", folder / "t"});
+    const Finished run =
+        report({"--unit", "lux", "--plane", "0.75", "--plane", "floor,border=0.2,spacing=0.5", "--cylindrical",
+                "1.2,spacing=1", "--maintenance", "0.8", "--observers", "auto", "--observers", "0.2,1.5,1.2 1,0,0",
+                "--observers", "1.9,1.5,1.2 1,0,0", "--tables", folder / "t"});
     ASSERT_EQ(run.status, 0) << run.err;
     const auto json = nlohmann::json::parse(read_text(folder / "r.json"));
     ASSERT_EQ(json["grids"].size(), 3u);
@@ -155,7 +156,7 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
         run_program({"probe", solution, "--points", "-", "--unit", "lux"},
                     "x,y,z,nx,ny,nz\n" + p[0].dump() + "," + p[1].dump() + "," + p[2].dump() + ",0,0,1\n");
     EXPECT_NEAR(plane["values"][9], 0.8 * std::stod(probe.out.substr(probe.out.rfind(',') + 1)), 1e-3 * sum);
-    ASSERT_EQ(json["observers"].size(), 5u);
+    ASSERT_EQ(json["observers"].size(), 6u);
     const auto& observer = json["observers"][4];
     ASSERT_EQ(observer["sources"].size(), 1u);
     const auto& source = observer["sources"][0];
@@ -163,6 +164,14 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
     const double term = std::pow(source["luminance"].get<double>() / source["position"].get<double>(), 2) *
                         source["solid_angle"].get<double>();
     EXPECT_NEAR(observer["ugr"], 8 * std::log10(0.25 * term / observer["background"].get<double>()), 1e-2);
+    // The sixth observer has the lamp overhead.
+    EXPECT_TRUE(json["observers"][5]["ugr"].is_null());
+    EXPECT_TRUE(json["observers"][5]["sources"].empty());
+    ASSERT_EQ(json["observers"][5]["left_out"].size(), 1u);
+    EXPECT_EQ(json["observers"][5]["left_out"][0]["name"], "lamp");
+    EXPECT_EQ(json["observers"][5]["left_out"][0]["reason"].get<std::string>().find("overhead"), 0u);
+    EXPECT_TRUE(observer["left_out"].empty());
+    EXPECT_NE(read_text(folder / "t/observers.csv").find(",large_source,left_out\n"), std::string::npos);
     const std::string table = read_text(folder / "t/planes.csv");
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
     EXPECT_TRUE(read_text(folder / "t/plane_1.svg").starts_with("<svg xmlns"));

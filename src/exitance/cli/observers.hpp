@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "exitance/core/result.hpp"
-#include "exitance/reconstruct/glare.hpp"
+#include "exitance/reconstruct/glare/glare.hpp"
 
 namespace exitance {
 

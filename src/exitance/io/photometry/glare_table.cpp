@@ -8,7 +8,7 @@
 
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
-#include "exitance/reconstruct/glare.hpp"
+#include "exitance/reconstruct/glare/glare_rules.hpp"
 
 namespace exitance {
 namespace {
@@ -115,17 +115,37 @@ double wall_light(const GlareTableRow& room, double width, double length, double
     return indirect[1];
 }
 
-/// sum of L^2 omega / p^2 over all luminaires ahead.
-double glare_sum(const Photometry& p, const std::vector<Vec3>& areas, const std::vector<double>& xs,
+/// Projected area of a luminaire's opening by direction, m^2.
+class OpeningArea {
+  public:
+    explicit OpeningArea(const Photometry& p) : is_point_(p.opening.shape == Opening::Shape::point) {
+        for (const LuminaireBody::Face& face : make_luminaire_body(p).faces)
+            if (face.exitance > 0) faces_.push_back(area_vector(face.corners));
+    }
+    double towards(const Vec3& d) const {
+        if (is_point_) return small_source_area;
+        double sum = 0;
+        for (const Vec3& face : faces_) sum += std::max(0.0, dot(face, d));
+        return sum;
+    }
+
+  private:
+    bool is_point_;
+    std::vector<Vec3> faces_;
+};
+
+/// Sum of L^2 omega / p^2 over the luminaires ahead that CIE 117 counts.
+double glare_sum(const Photometry& p, const OpeningArea& opening, const std::vector<double>& xs,
                  const std::vector<double>& ys, double width, bool crosswise) {
+    constexpr Normal view{0, 1, 0};
     double sum = 0;
     for (const double y : ys)
         for (const double x : xs) {
             const Vec3 d{x - width / 2, y, height};  // from the eye
+            if (glare_limit(view, d, true) != GlareLimit::none) continue;
             const Vec3 towards_eye = in_luminaire(normalized(Vec3() - d), crosswise);
-            double area = 0;
-            for (const Vec3& face : areas) area += std::max(0.0, dot(face, towards_eye));
-            const double intensity = p.intensity(towards_eye), index = guth_position({0, 1, 0}, d);
+            const double area = opening.towards(towards_eye);
+            const double intensity = p.intensity(towards_eye), index = guth_position(view, d);
             if (area > 0) sum += intensity * intensity / (area * dot(d, d) * index * index);
         }
     return sum;
@@ -137,7 +157,7 @@ struct DirectLightOfRoom {
     double glare = 0;                                   ///< sum of L^2 omega / p^2
 };
 
-DirectLightOfRoom direct_light(const Photometry& p, const Emission& light, const std::vector<Vec3>& areas, double width,
+DirectLightOfRoom direct_light(const Photometry& p, const Emission& light, const OpeningArea& opening, double width,
                                double length, bool crosswise) {
     const std::vector<double> xs = places(width), ys = places(length);
     const double count = static_cast<double>(xs.size() * ys.size());
@@ -148,7 +168,7 @@ DirectLightOfRoom direct_light(const Photometry& p, const Emission& light, const
         down += count * ray.flux;
     }
     out.to_walls = down - out.to_floor, out.to_ceiling = count * light.up;
-    out.glare = glare_sum(p, areas, xs, ys, width, crosswise);
+    out.glare = glare_sum(p, opening, xs, ys, width, crosswise);
     return out;
 }
 
@@ -161,14 +181,12 @@ double rating(const DirectLightOfRoom& direct, const GlareTableRow& room) {
 }  // namespace
 
 std::vector<GlareTableRow> make_glare_table(const Photometry& p) {
-    std::vector<Vec3> areas;
-    for (const LuminaireBody::Face& face : make_luminaire_body(p).faces)
-        if (face.exitance > 0) areas.push_back(area_vector(face.corners));
+    const OpeningArea opening(p);
     const Emission across = emission_of(p, true), along = emission_of(p, false);
     std::vector<std::pair<DirectLightOfRoom, DirectLightOfRoom>> direct;
     for (const auto& [x, y] : rooms)
-        direct.emplace_back(direct_light(p, across, areas, x * height, y * height, true),
-                            direct_light(p, along, areas, x * height, y * height, false));
+        direct.emplace_back(direct_light(p, across, opening, x * height, y * height, true),
+                            direct_light(p, along, opening, x * height, y * height, false));
     std::vector<GlareTableRow> out;
     for (const auto& rho : reflectances)
         for (std::size_t i = 0; i < rooms.size(); ++i) {

@@ -7,7 +7,7 @@
 
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/reconstruct/error/error_percentile.hpp"
-#include "exitance/reconstruct/glare.hpp"
+#include "exitance/reconstruct/glare/glare.hpp"
 #include "exitance/reconstruct/light_maps/light_map.hpp"
 #include "exitance/reconstruct/measuring_grid.hpp"
 #include "exitance/reconstruct/pictures/camera.hpp"

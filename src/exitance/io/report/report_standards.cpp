@@ -59,12 +59,17 @@ std::string points_csv(const ReportFigures::Grid& grid, const LightUnit& unit) {
 }
 
 std::string observers_csv(const ReportContent& content) {
-    std::string text = "name,x,y,z,dx,dy,dz,UGR,background,sources,large_source\n";
+    std::string text = "name,x,y,z,dx,dy,dz,UGR,background,sources,large_source,left_out\n";
     for (const auto& [observer, glare] : content.observers)
-        text += fmt::format("{},{},{},{},{},{},{}\n", quoted(observer.name), triple(observer.eye, ","),
+        text += fmt::format("{},{},{},{},{},{},{},{}\n", quoted(observer.name), triple(observer.eye, ","),
                             triple(observer.view, ","), cell(glare.rating()), figure(glare.background),
-                            glare.sources.size(), glare.has_large_source() ? 1 : 0);
+                            glare.sources.size(), glare.has_large_source() ? 1 : 0, glare.left_out.size());
     return text;
+}
+
+/// A rating as the page shows it: below 10 as "< 10" [CIE117], "-" where nothing counts.
+std::string rating_words(double rating) {
+    return !std::isfinite(rating) ? "-" : rating < 10 ? "&lt; 10" : fmt::format("{:.1f}", rating);
 }
 
 }  // namespace
@@ -94,18 +99,23 @@ std::string observer_json(const ObserverGlare& o) {
         sources += fmt::format("{}{{\"name\": {}, \"luminance\": {}, \"solid_angle\": {}, \"position\": {}}}",
                                sources.empty() ? "" : ", ", json_text(s.name), figure(s.luminance),
                                figure(s.solid_angle), figure(s.position));
+    std::string left_out;
+    for (const GlareSource& s : o.glare.left_out)
+        left_out += fmt::format("{}{{\"name\": {}, \"reason\": {}}}", left_out.empty() ? "" : ", ", json_text(s.name),
+                                json_text(name_of(s.limit)));
     return fmt::format(
         "{{\"name\": {}, \"eye\": [{}], \"view\": [{}], \"ugr\": {}, \"background\": {}, \"large_source\": {},\n     "
-        "\"sources\": [{}]}}",
+        "\"sources\": [{}],\n     \"left_out\": [{}]}}",
         json_text(o.observer.name), triple(o.observer.eye, ", "), triple(o.observer.view, ", "),
-        figure(o.glare.rating()), figure(o.glare.background), o.glare.has_large_source(), sources);
+        figure(o.glare.rating()), figure(o.glare.background), o.glare.has_large_source(), sources, left_out);
 }
 
 std::string observers_html(const ReportContent& content) {
     if (content.observers.empty()) return "";
     std::string html =
         "<div class=\"wide\"><table>\n<thead><tr><th class=\"text\">Observer</th><th>Eye m</th><th>Looks "
-        "along</th><th>UGR</th><th>Background cd/m²</th><th>Sources in view</th><th class=\"text\">Worst source"
+        "along</th><th>UGR</th><th>Background cd/m²</th><th>Sources that count</th><th>Left out</th><th "
+        "class=\"text\">Worst source"
         "</th></tr></thead>\n";
     bool large = false;
     for (const auto& [observer, glare] : content.observers) {
@@ -113,17 +123,19 @@ std::string observers_html(const ReportContent& content) {
         const GlareSource* worst = glare.sources.empty() ? nullptr : &glare.sources.front();
         large |= glare.has_large_source();
         html += fmt::format(
-            "<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+            "<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
             "class=\"text\">{}</td></tr>\n",
-            escaped(observer.name), triple(observer.eye, ", "), triple(observer.view, ", "),
-            std::isfinite(rating) ? fmt::format("{:.1f}", rating) : "-", figure(glare.background), glare.sources.size(),
+            escaped(observer.name), triple(observer.eye, ", "), triple(observer.view, ", "), rating_words(rating),
+            figure(glare.background), glare.sources.size(), glare.left_out.size(),
             worst ? fmt::format("{}: {} cd/m², {} sr, p {:.3g}", escaped(worst->name), figure(worst->luminance),
                                 figure(worst->solid_angle), worst->position)
                   : "none");
     }
     html +=
-        "</table></div>\n<p class=\"note\">Unified glare rating of all luminaires in view, by CIE 117; light as it is "
-        "new.</p>\n";
+        "</table></div>\n<p class=\"note\">Unified glare rating by CIE 117; light as it is new. Luminaires in front of "
+        "the observer that CIE 117 does not count are left out: those overhead (H/R beyond Guth's table, 1.7 to 1.9), "
+        "those far to the side (T/R above 3), and those above the eye that see it from more than 85 degrees from the "
+        "nadir.</p>\n";
     if (large)
         html +=
             "<p class=\"note\">A source of more than 0.1 sr is in view: that is beyond what the rating was made "

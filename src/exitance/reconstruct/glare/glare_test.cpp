@@ -1,4 +1,4 @@
-#include "exitance/reconstruct/glare.hpp"
+#include "exitance/reconstruct/glare/glare.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 namespace exitance {
 namespace {
 
-/// A room of 8 x 6 x 3 m, every surface reflecting half, with lamps of 0.2 x 0.2 m that look down from 2.7 m with 5000
-/// cd/m^2. Its indirect illuminance is 200 lx on every surface, so that 100 lm/m^2 come from everywhere.
-Solution lamp_room(const std::vector<Vec2>& lamps) {
+/// A room of 8 x 6 x 3 m, every surface reflecting half, with square lamps that look down from 2.7 m with 5000 cd/m^2,
+/// `half` of a side in metres. Its indirect illuminance is 200 lx on every surface, so that 100 lm/m^2 come from
+/// everywhere.
+Solution lamp_room(const std::vector<Vec2>& lamps, double half = 0.1) {
     SceneDescription d;
     d.photometric = true;
     d.materials = {{"wall", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(0.5), exitance_of_radiance(Spectrum(5000))}};
@@ -20,7 +21,7 @@ Solution lamp_room(const std::vector<Vec2>& lamps) {
         d.faces.push_back({f, 0, 0, 0});
     for (const Vec2& at : lamps) {
         const auto first = static_cast<std::uint32_t>(d.points.size());
-        for (const Vec2& o : {Vec2{-0.1, -0.1}, Vec2{-0.1, 0.1}, Vec2{0.1, 0.1}, Vec2{0.1, -0.1}})
+        for (const Vec2& o : {Vec2{-half, -half}, Vec2{-half, half}, Vec2{half, half}, Vec2{half, -half}})
             d.points.push_back({at.x + o.x, at.y + o.y, 2.7});
         d.faces.push_back(
             {{first, first + 1, first + 2, first + 3}, 1, static_cast<std::uint32_t>(d.groups.size()), 0});
@@ -34,20 +35,6 @@ Solution lamp_room(const std::vector<Vec2>& lamps) {
     for (auto& value : s.indirect.values) value.fill(200.0F);
     s.interpolant = s.indirect;
     return s;
-}
-
-TEST(Guth, PositionIndexIsThatOfTheTable) {
-    // CIE 117, table of position indices by T/R (aside) and H/R (above), which the formula follows within a few
-    // percent.
-    const Normal view{1, 0, 0};
-    EXPECT_NEAR(guth_position(view, {1, 0, 0}), 1, 1e-12);
-    for (const auto& [h, p] : {std::pair{0.2, 1.53}, {0.5, 2.86}, {0.8, 5.00}, {1.0, 7.00}})
-        EXPECT_NEAR(guth_position(view, {1, 0, h}), p, 0.1 * p) << h;
-    // By hand: tau 53.13, sigma 51.34 degrees.
-    EXPECT_NEAR(guth_position(view, {2, 2, 1.5}), 5.17503, 1e-4);
-    EXPECT_NEAR(guth_position(view, {2, -2, 1.5}), 5.17503, 1e-4);
-    EXPECT_NEAR(guth_position(view, {1, 0, -0.5}), 1.4, 1e-12);
-    EXPECT_NEAR(guth_position(view, {1, 0, -1}), 2.2, 1e-12);
 }
 
 TEST(Glare, OfARoomWorkedOutByHandIsThatToThePrintedDigits) {
@@ -80,6 +67,54 @@ TEST(Glare, LuminairesBehindOrTurnedAwayDoNotCount) {
     EXPECT_FALSE(std::isfinite(find_glare(light, {"", {1, 3, 1.2}, {-1, 0, 0}}, lux).rating()));
     EXPECT_EQ(find_glare(light, {"", {4, 3, 1.2}, {1, 0, 0}}, lux).sources.size(), 1u);
     EXPECT_EQ(find_glare(light, {"", {1, 3, 2.8}, {1, 0, 0}}, lux).sources.size(), 0u);  // above the lamps
+}
+
+TEST(Glare, LeavesOutWhatCie117DoesNotCountAndSaysWhy) {
+    // Seen from (1, 3, 1.2) along x, R, T and H / R of the lamps at 2.7 m: 2, 0, 0.75; 0.7, 0, 2.1; 0.5, 2, 3 (T/R 4).
+    const Solution s = lamp_room({{3, 3}, {1.7, 3}, {1.5, 5}});
+    const RadiosityFunction light(s);
+    const Glare glare = find_glare(light, {"", {1, 3, 1.2}, {1, 0, 0}}, LightUnit(UnitChoice::lux, true));
+    ASSERT_EQ(glare.sources.size(), 1u);
+    EXPECT_EQ(glare.sources[0].name, "lamp 1");
+    ASSERT_EQ(glare.left_out.size(), 2u);
+    EXPECT_EQ(glare.left_out[0].name, "lamp 2");
+    EXPECT_EQ(glare.left_out[0].limit, GlareLimit::overhead);
+    EXPECT_EQ(glare.left_out[1].limit, GlareLimit::aside);
+    // The rating is that of the lamp ahead alone.
+    const Solution one = lamp_room({{3, 3}});
+    const RadiosityFunction of_one(one);
+    EXPECT_NEAR(glare.rating(),
+                find_glare(of_one, {"", {1, 3, 1.2}, {1, 0, 0}}, LightUnit(UnitChoice::lux, true)).rating(), 0.01)
+        << "the noise of the background's rays";
+}
+
+TEST(Glare, ALuminaireJustAboveTheEyeCountsOnlyIfItReachesBelowIt) {
+    const Solution s = lamp_room({{7, 3}});
+    const RadiosityFunction light(s);
+    const LightUnit lux(UnitChoice::lux, true);
+    // 6 m away: 85 degrees from the nadir are 0.525 m.
+    EXPECT_EQ(find_glare(light, {"", {1, 3, 2.7 - 0.55}, {1, 0, 0}}, lux).sources.size(), 1u);
+    const Glare level = find_glare(light, {"", {1, 3, 2.7 - 0.5}, {1, 0, 0}}, lux);
+    EXPECT_EQ(level.sources.size(), 0u);
+    ASSERT_EQ(level.left_out.size(), 1u);
+    EXPECT_EQ(level.left_out[0].limit, GlareLimit::level);
+}
+
+TEST(Glare, ALuminaireOfThePointsSizeCountsAsASmallSource) {
+    // 1 mm wide, as a luminaire is whose file gives no extent: L^2 omega = I^2 / (0.005 m^2 r^2), not I^2 / (A r^2).
+    const LightUnit lux(UnitChoice::lux, true);
+    const auto source = [&](double half) {
+        const Solution s = lamp_room({{3, 3}}, half);
+        const RadiosityFunction light(s);
+        const Glare glare = find_glare(light, {"", {1, 3, 1.2}, {1, 0, 0}}, lux);
+        EXPECT_EQ(glare.sources.size(), 1u);
+        return glare.sources.at(0);
+    };
+    const double r2 = 2 * 2 + 1.5 * 1.5, cosine = 1.5 / std::sqrt(r2), p = 4.65672;
+    const auto intensity = [&](double half) { return 5000 * 4 * half * half * cosine; };
+    EXPECT_NEAR(source(0.0005).term() / (std::pow(intensity(0.0005), 2) / (small_source_area * r2 * p * p)), 1, 1e-3);
+    EXPECT_NEAR(source(0.02).term() / (std::pow(intensity(0.02), 2) / (4 * 0.02 * 0.02 * cosine * r2 * p * p)), 1,
+                1e-3);
 }
 
 TEST(Glare, ALightWithoutExtentCountsAsASmallSource) {

@@ -1,4 +1,4 @@
-#include "exitance/reconstruct/glare.hpp"
+#include "exitance/reconstruct/glare/glare.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,13 @@
 #include <numeric>
 
 #include "exitance/geometry/triangulation.hpp"
+#include "exitance/scene/point_opening.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr double near = 0.01;          ///< Faces of one group that are nearer to one another are one luminaire, metres.
-constexpr double small_area = 0.005;   ///< m^2, that of a source without extent.
 constexpr double largest_angle = 0.1;  ///< sr, beyond which UGR was not made.
 
 /// A part of a face that is small from the eye.
@@ -105,8 +105,10 @@ class Eye {
         for (const SurfaceId s : faces) add_face(s, out.solid_angle, sum, middle, area);
         if (!(out.solid_angle > 0)) return out;
         out.name = scene_.groups()[scene_.surfaces()[faces[0]].group];
+        const Vec3 d = middle / area - observer_.eye;
+        if (is_point(area)) out.solid_angle = small_source_area / dot(d, d);
         out.luminance = sum / out.solid_angle;
-        out.position = guth_position(observer_.view, middle / area - observer_.eye);
+        place(d, hangs_above(faces), out);
         return out;
     }
 
@@ -120,13 +122,32 @@ class Eye {
         if (blocked) return out;
         const Spectrum passing = through_panes(scene_, observer_.eye, lamp.position);
         out.name = lamp.name;
-        out.luminance = lux_(passing * lamp.intensity) * lamp.share_towards(-1 * normalized(d)) / small_area;
-        out.solid_angle = small_area / dot(d, d);
-        out.position = guth_position(observer_.view, d);
+        out.luminance = lux_(passing * lamp.intensity) * lamp.share_towards(-1 * normalized(d)) / small_source_area;
+        out.solid_angle = small_source_area / dot(d, d);
+        place(d, d.z > 0, out);
         return out;
     }
 
   private:
+    /// Is that the visible area of a cube that stands for a luminaire without extent?
+    static bool is_point(double area) {
+        constexpr double rounding = 1e-6;
+        return area <= 3 * point_opening_size * point_opening_size * (1 + rounding);  // three of its faces
+    }
+
+    /// Do all corners of the faces lie above the height of the eye?
+    bool hangs_above(const std::vector<SurfaceId>& faces) const {
+        return std::all_of(faces.begin(), faces.end(), [&](SurfaceId s) {
+            const std::span<const Point> outline = scene_.outline(s);
+            return std::all_of(outline.begin(), outline.end(), [&](const Point& p) { return p.z > observer_.eye.z; });
+        });
+    }
+
+    void place(const Vec3& d, bool hangs_above, GlareSource& out) const {
+        out.position = guth_position(observer_.view, d);
+        out.limit = glare_limit(observer_.view, d, hangs_above);
+    }
+
     void add_face(SurfaceId s, double& angle, double& sum, Vec3& middle, double& area) const {
         const Surface& surface = scene_.surfaces()[s];
         const std::span<const Point> outline = scene_.outline(s);
@@ -174,21 +195,6 @@ double indirect_at_eye(const RadiosityFunction& light, const Observer& observer,
 
 }  // namespace
 
-double guth_position(const Normal& view, const Vec3& d) {
-    const bool is_upright = std::abs(view.z) > 0.999999;
-    const Normal right = normalized(cross(view, is_upright ? Vec3{0, 1, 0} : Vec3{0, 0, 1}));
-    const Normal up = cross(right, view);
-    const double ahead = dot(d, view), aside = std::abs(dot(d, right)), above = dot(d, up);
-    const double off = std::hypot(aside, above);
-    if (above < 0) {
-        const double r = off / std::max(ahead, 1e-9 * off);
-        return 1 + (r < 0.6 ? 0.8 : 1.2) * r;
-    }
-    const double sigma = std::atan2(off, ahead) * 180 / pi, tau = std::atan2(aside, above) * 180 / pi;
-    return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2 * tau / 9)) * 1e-3 * sigma +
-                    (21 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
-}
-
 double Glare::rating() const {
     double sum = 0;
     for (const GlareSource& source : sources) sum += source.term();
@@ -205,12 +211,14 @@ Glare find_glare(const RadiosityFunction& light, const Observer& observer, const
     const Eye eye(light, observer, lux);
     Glare out;
     const auto add = [&](GlareSource source) {
-        if (source.term() > 0) out.sources.push_back(std::move(source));
+        if (source.term() > 0)
+            (source.limit == GlareLimit::none ? out.sources : out.left_out).push_back(std::move(source));
     };
     for (const std::vector<SurfaceId>& faces : luminaires(scene)) add(eye.source(faces));
     for (const PunctualLight& lamp : scene.lights()) add(eye.source(lamp));
-    std::stable_sort(out.sources.begin(), out.sources.end(),
-                     [](const GlareSource& a, const GlareSource& b) { return a.term() > b.term(); });
+    for (std::vector<GlareSource>* sources : {&out.sources, &out.left_out})
+        std::stable_sort(sources->begin(), sources->end(),
+                         [](const GlareSource& a, const GlareSource& b) { return a.term() > b.term(); });
     out.background = indirect_at_eye(light, observer, lux) / pi;
     return out;
 }
