@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "cli/small_scene.hpp"
@@ -55,7 +56,47 @@ const std::vector<std::string> statistics_keys{"method",
                                                "initial_links",
                                                "coefficient_memory_bytes"};
 
+/// A black floor below a lamp of 1 m^2, its bands as given, turned by an angle that is no multiple of 90 degrees.
+std::string write_lamp(const TemporaryFolder& folder, const std::string& radiance) {
+    write_text(folder / "lamp.obj",
+               "mtllib lamp.mtl\nv 0 0 0\nv 4 3 0\nv 1 7 0\nv -3 4 0\nusemtl floor\nf 1 2 3 4\n"
+               "v 0.5 3 2\nv 1.1 3.8 2\nv 1.9 3.2 2\nv 1.3 2.4 2\ng lamp\nusemtl lamp\nf 5 6 7 8\n");
+    write_text(folder / "lamp.mtl", "newmtl floor\nKd 0 0 0\nnewmtl lamp\nKd 0 0 0\nKe " + radiance + "\n");
+    return folder / "lamp.obj";
+}
+
 }  // namespace
+
+TEST(ProgramSolve, EnergyIsOneNumberInTheUnitOfTheScene) {
+    // M = pi L over 1 m^2: lm by the weights of the bands, W by their mean.
+    constexpr double pi = 3.14159265358979;
+    struct Case {
+        std::string radiance, quantity;
+        double emitted;
+        std::string unit;
+    };
+    for (const Case& c : {Case{"1000 1000 1000", "photometric", 1000 * pi, "lm"},
+                          {"1000 1000 1000", "radiometric", 1000 * pi, "W"},
+                          {"1000 500 200", "photometric", (265 + 335 + 13) * pi, "lm"},
+                          {"1000 500 200", "radiometric", 1700.0 / 3 * pi, "W"}}) {
+        const TemporaryFolder folder;
+        const std::string solution = folder / "s.h5";
+        const Finished run = run_program({"solve", write_lamp(folder, c.radiance), "-o", solution, "--quantity",
+                                          c.quantity, "--json", "--progress", "none"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        const Json energy = Json::parse(run.out)["energy"];
+        EXPECT_NEAR(energy["emitted"].get<double>() / c.emitted, 1, 1e-6) << c.radiance << c.unit;
+        EXPECT_EQ(energy["unit"], c.unit);
+        EXPECT_NEAR((energy["absorbed"].get<double>() + energy["escaped"].get<double>()) / c.emitted, 1, 0.02)
+            << "escaped light is known by few rays";
+        EXPECT_EQ(Json::parse(run_program({"stats", solution, "--json"}).out)["energy"], energy);
+        const std::string text = run_program({"stats", solution}).out;
+        EXPECT_TRUE(std::regex_search(text, std::regex("energy +[0-9.]+ " + c.unit + " emitted, "))) << text;
+        ASSERT_EQ(run_program({"report", solution, "-o", folder / "r.html", "--size", "16x10", "-q"}).status, 0);
+        const std::string page = read_text(folder / "r.html");
+        EXPECT_TRUE(std::regex_search(page, std::regex("<td>Emitted</td><td>[0-9.]+ " + c.unit))) << c.unit;
+    }
+}
 
 TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     const TemporaryFolder folder;
@@ -64,7 +105,7 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     ASSERT_EQ(run.status, 0) << run.err;
     const Json json = Json::parse(run.out);
     EXPECT_EQ(keys(json), statistics_keys);
-    EXPECT_EQ(keys(json["energy"]), (std::vector<std::string>{"emitted", "absorbed", "escaped", "defect"}));
+    EXPECT_EQ(keys(json["energy"]), (std::vector<std::string>{"emitted", "absorbed", "escaped", "defect", "unit"}));
     EXPECT_EQ(keys(json["seconds"]),
               (std::vector<std::string>{"total", "read", "mesh", "direct", "link", "visibility", "form_factors",
                                         "solve", "gather", "certify", "reconstruct", "write"}));

@@ -10,9 +10,10 @@ namespace exitance {
 
 /// A room of 2 m x 1 m x 1 m: its floor cut into two faces, a luminous strip in its ceiling, and a free-standing
 /// triangle seen from both sides; a spot, parallel light and a camera. Eleven faces on lines 10 to 20, four materials,
-/// three groups.
-inline Scene sample_scene() {
+/// three groups. `photometric`: its light is in lumens.
+inline Scene sample_scene(bool photometric = false) {
     SceneDescription d;
+    d.photometric = photometric;
     d.file = "sample room.obj";
     const auto grey = [](double r, double g, double b) {
         Spectrum s(g);
@@ -85,9 +86,9 @@ inline ElementFunction sample_function(const Scene& scene, std::uint64_t seed, i
     return f;
 }
 
-inline Solution sample_solution(int cuts = 40) {
+inline Solution sample_solution(int cuts = 40, bool photometric = false) {
     Solution s;
-    s.scene = sample_scene();
+    s.scene = sample_scene(photometric);
     s.indirect = sample_function(s.scene, 1, cuts / 2);
     s.direct_share[0] = 0.9;
     s.interpolant = sample_function(s.scene, 2, cuts);

@@ -4,7 +4,7 @@ export type Triple = [number, number, number];
 export type Layer = 'exported' | 'method' | 'raw';
 
 export interface Facts {
-    file: string; photometric: boolean; surfaces: number; elements: number; method: string; basis: string;
+    file: string; photometric: boolean; weights: Triple; surfaces: number; elements: number; method: string; basis: string;
     materials: {name: string; reflectance: Triple; exitance: Triple}[]; groups: string[];
     exposure: number; camera: {eye: Triple; target: Triple; fov: number}; box: [Triple, Triple];
     parts: Record<Layer, number>; error: number | null; links: number;

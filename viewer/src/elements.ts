@@ -166,7 +166,7 @@ export class Elements {
                 if (Math.max(...m.exitance) > 0) continue;
                 let sum = 0;
                 const rho = this.shading.reflectances[materials[v]];
-                for (let c = 0; c < 3; ++c) sum += (radiosity ? rho[c] : 1) * E[3 * v + c] / 3;
+                for (let c = 0; c < 3; ++c) sum += (radiosity ? rho[c] : 1) * this.facts.weights[c] * E[3 * v + c];
                 values.push(sum);
             }
             if (values.length > 200000) break;

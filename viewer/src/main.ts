@@ -149,7 +149,7 @@ async function add_end(point: THREE.Vector3, normal: THREE.Vector3): Promise<voi
     const profile = await load_line([...a.point.toArray(), ...b.point.toArray(), ...b.normal.toArray()], panes.change) as Profile;
     const unit = facts.photometric ? 'lx' : 'W/m²';
     by_id('point').textContent = `light along ${profile.length.toPrecision(4)} m: ${Math.min(...profile.values).toPrecision(4)} to ` +
-        `${Math.max(...profile.values).toPrecision(4)} ${unit}, mean of the bands`;
+        `${Math.max(...profile.values).toPrecision(4)} ${unit}, ${facts.photometric ? 'bands weighted as the eye does' : 'mean of the bands'}`;
     csv = profile_csv(profile, a.point, b.point, unit);
     show_plot(profile, unit);
 }

@@ -56,6 +56,7 @@ vec3 toned(vec3 light) {
 uniform int shown;      // 0 picture, 1 radiosity, 2 irradiance
 uniform bool isolux;
 uniform int step_count;
+uniform vec3 weights;   // of red, green and blue in one number
 uniform float steps[${most_steps}];
 uniform vec3 colours[${most_steps}];
 vec3 valued(vec3 colour, float value) {
@@ -86,7 +87,7 @@ void main() {
     vec3 colour = srgb(min(toned(B), 1.0));
 #endif
 #ifdef VALUES
-    colour = valued(colour, dot(shown == 1 ? B : E, vec3(1.0 / 3.0)));
+    colour = valued(colour, dot(shown == 1 ? B : E, weights));
 #endif
     gl_FragColor = vec4(gl_FrontFacing ? colour : srgb(vec3(0.02)), 1.0);
 }`;
@@ -101,7 +102,7 @@ void main() {
     vec2 E = texture2D(rest, at).rg;
     vec3 colour = srgb(min(B.a * min(toned(B.rgb), 1.0) + 0.02 * E.g, 1.0));
 #ifdef VALUES
-    if (B.a > 0.0) colour = valued(colour, shown == 1 ? dot(B.rgb, vec3(1.0 / 3.0)) : E.r);
+    if (B.a > 0.0) colour = valued(colour, shown == 1 ? dot(B.rgb, weights) : E.r);
 #endif
     gl_FragColor = vec4(colour, B.a + E.g > 0.0 ? 1.0 : 0.0);
 }`;
@@ -161,7 +162,7 @@ export class Shading {
         this.uniforms = {materials: {value: this.table}, material_count: {value: this.table.image.width},
             factors: {value: this.factors}, factor_count: {value: facts.groups.length + 1}, shown: {value: 0},
             curve: {value: 0}, scale: {value: facts.exposure}, isolux: {value: false}, step_count: {value: 2},
-            steps: {value: new Float32Array(most_steps)},
+            steps: {value: new Float32Array(most_steps)}, weights: {value: new THREE.Vector3(...facts.weights)},
             colours: {value: Array.from({length: most_steps}, () => new THREE.Vector3())},
             classes: {value: class_colours.map(([, c]) => new THREE.Vector3(...c).divideScalar(255))},
             light: {value: null}, rest: {value: null}};

@@ -60,7 +60,7 @@ Json seconds_of(const SolveStatistics& s) {
 
 }  // namespace
 
-std::string statistics_json(const SolveStatistics& s) {
+std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
     Json rooms = Json::array();
     for (const RoomError& room : s.rooms)
         rooms.push_back({{"area", room.area}, {"mean", room.mean}, {"error", room.error}});
@@ -104,7 +104,8 @@ std::string statistics_json(const SolveStatistics& s) {
          {{"emitted", s.energy.emitted},
           {"absorbed", s.energy.absorbed},
           {"escaped", s.energy.escaped},
-          {"defect", s.energy.defect}}},
+          {"defect", s.energy.defect},
+          {"unit", own.power()}}},
         {"seconds", seconds_of(s)},
         {"peak_memory_bytes", s.peak_memory_bytes},
         {"link_memory_bytes", s.link_memory_bytes},
@@ -126,7 +127,7 @@ std::string statistics_json(const SolveStatistics& s) {
 }
 
 std::string statistics_json(const Solution& solution) {
-    Json json = Json::parse(statistics_json(solution.statistics));
+    Json json = Json::parse(statistics_json(solution.statistics, own_unit(solution.scene.is_photometric())));
     const Json options = Json::parse(solution.options, nullptr, false);
     const Json* facts = nullptr;
     if (options.is_object() && options.contains("classical")) {

@@ -10,6 +10,7 @@
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/reconstruct/error/compare.hpp"
 #include "exitance/reconstruct/solution.hpp"
+#include "exitance/scene/photometric_units.hpp"
 #include "exitance/solve/solve_options.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 
@@ -19,7 +20,7 @@ namespace exitance {
 /// order of the keys are part of the program's interface.
 
 /// What a report page holds of `stats --json`.
-std::string statistics_json(const SolveStatistics& statistics);
+std::string statistics_json(const SolveStatistics& statistics, const LightUnit& own);
 
 /// What the viewer's page can change: `groups [{name, factor}]`, `materials [{name, reflectance}]`; empty lists where
 /// no groups are kept.

@@ -110,9 +110,13 @@ Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene
     return {};
 }
 
-/// What is told of a solution that has been written stays of it: statistics, options and the like. The rest makes room.
+/// Frees the memory of a solution that has been written, except for what is printed of it: statistics, their unit,
+/// options and the like.
 void drop_light(Solution& solution) {
-    solution.scene = {}, solution.indirect = {}, solution.interpolant = {};
+    const bool photometric = solution.scene.is_photometric();
+    solution.scene = {};
+    solution.scene.declare_photometric(photometric);
+    solution.indirect = {}, solution.interpolant = {};
     solution.links = {}, solution.discontinuity = {}, solution.layers = {}, solution.cells = {};
     release_freed_memory();
 }
@@ -218,7 +222,7 @@ void tell(const SolveArguments& arguments, const Solution& solution, Terminal& t
     if (arguments.json) {
         terminal.print(statistics_json(solution));
     } else if (!arguments.quiet) {
-        terminal.print(summary(solution.statistics));
+        terminal.print(summary(solution));
     }
 }
 

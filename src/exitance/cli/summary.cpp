@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "exitance/scene/photometric_units.hpp"
+
 namespace exitance {
 namespace {
 
@@ -22,12 +24,12 @@ std::string seconds_line(const std::map<std::string, double>& seconds) {
 }
 
 /// The largest rooms.
-std::string rooms_line(const std::vector<RoomError>& rooms) {
+std::string rooms_line(const std::vector<RoomError>& rooms, const LightUnit& unit) {
     constexpr std::size_t most = 4;
     std::string text;
     for (std::size_t i = 0; i < std::min(most, rooms.size()); ++i)
-        text += fmt::format("{}{:.4g} m^2: {:.3g} W/m^2, error {}", i > 0 ? "; " : "", rooms[i].area, rooms[i].mean,
-                            percent(rooms[i].error));
+        text += fmt::format("{}{:.4g} m^2: {:.3g} {}, error {}", i > 0 ? "; " : "", rooms[i].area, rooms[i].mean,
+                            unit.radiosity(), percent(rooms[i].error));
     return rooms.size() > most ? text + fmt::format("; and {} more", rooms.size() - most) : text;
 }
 
@@ -55,7 +57,9 @@ std::string bytes(std::size_t count) {
     return fmt::format("{:.3g} {}", value, units[unit]);
 }
 
-std::string summary(const SolveStatistics& s) {
+std::string summary(const Solution& solution) {
+    const SolveStatistics& s = solution.statistics;
+    const LightUnit unit = own_unit(solution.scene.is_photometric());
     std::string text;
     const auto line = [&](std::string_view name, const std::string& value) {
         text += fmt::format("{:<10} {}\n", name, value);
@@ -74,7 +78,7 @@ std::string summary(const SolveStatistics& s) {
     if (const auto predicted = s.figures.find("predicted_links"); predicted != s.figures.end())
         line("tasks", fmt::format("{}, {} stolen; {:.4g} links predicted", s.figures.at("tasks"),
                                   s.figures.at("stolen_tasks"), predicted->second));
-    if (s.rooms.size() > 1) line("rooms", rooms_line(s.rooms));
+    if (s.rooms.size() > 1) line("rooms", rooms_line(s.rooms, unit));
     line("reached", s.converged ? "yes" : s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by));
     line("elements", fmt::format("{} ({} leaves) on {} surfaces", s.elements, s.leaf_elements, s.surfaces));
     line("transport", fmt::format("{} links ({}), {} form factors, {} rays", s.links, bytes(s.link_memory_bytes),
@@ -93,9 +97,11 @@ std::string summary(const SolveStatistics& s) {
     const std::string apart = percent(s.energy.defect);
     const auto found = s.figures.find("energy_defect_before");
     const std::string before = found != s.figures.end() ? percent(found->second) : apart;
-    line("energy", fmt::format("{:.6g} emitted, {:.6g} absorbed, {}{} apart{}", s.energy.emitted, s.energy.absorbed,
-                               s.energy.escaped > 0 ? fmt::format("{:.4g} escaped, ", s.energy.escaped) : "", apart,
-                               before != apart ? fmt::format(" ({} before light was scaled)", before) : ""));
+    line("energy",
+         fmt::format("{:.6g} {} emitted, {:.6g} {} absorbed, {}{} apart{}", s.energy.emitted, unit.power(),
+                     s.energy.absorbed, unit.power(),
+                     s.energy.escaped > 0 ? fmt::format("{:.4g} {} escaped, ", s.energy.escaped, unit.power()) : "",
+                     apart, before != apart ? fmt::format(" ({} before light was scaled)", before) : ""));
     const auto processes = s.figures.find("processes");
     line("time", fmt::format("{} on {} thread{}{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s",
                              processes != s.figures.end() ? fmt::format(" of {} processes each", processes->second)

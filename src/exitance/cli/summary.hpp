@@ -8,7 +8,7 @@
 namespace exitance {
 
 /// What a solve took and what it reached, for people: what `solve` and `stats` print.
-std::string summary(const SolveStatistics& statistics);
+std::string summary(const Solution& solution);
 
 /// What `solve --dry-run` prints.
 std::string summary(const Forecast& forecast);

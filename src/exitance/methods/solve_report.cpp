@@ -43,7 +43,7 @@ std::string describe(const Certificate& certificate, const GlobalLight& light, c
                      const LocalPassReport& gathered) {
     const double scale = certificate.mean_reflected > 0 ? 100 / certificate.mean_reflected : 0;
     return fmt::format(
-        "{} elements solved on, {} gathered on; mean reflected radiosity {:.4g} W/m^2; error estimate {:.3f}%, "
+        "{} elements solved on, {} gathered on; mean reflected radiosity {:.4g}; error estimate {:.3f}%, "
         "bound {:.3f}%, residual {:.3f}%, error constant {:.2f}; method {:.3f}%, rays' noise {:.3f}%, "
         "interpolation {:.3f}%, both as measured {:.3f}%; rays {} + {} + {}",
         light.numbering.leaves.size(), delivered.tree.leaves().size(), certificate.mean_reflected,

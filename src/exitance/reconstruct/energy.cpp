@@ -1,18 +1,14 @@
 #include "exitance/reconstruct/energy.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
-
-double sum(const Spectrum& s) {
-    return std::accumulate(s.value.begin(), s.value.end(), 0.0);
-}
 
 /// Light of emitters is lost where a pane mirrors it.
 bool is_lost(const Stage& stage, const Point& x, const Vec3& w, RegionId region, Mirrored mirrored) {
@@ -41,7 +37,7 @@ double directed_loss(const Stage& stage, const Piece& piece) {
 /// Power that leaves a surface diffusely, and where: from an element, or else from a patch.
 struct Leaving {
     RegionId region;
-    double power = 0;  ///< W, all bands.
+    double power = 0;  ///< W or lm.
     const ElementTree* tree = nullptr;
     ElementId element;
     Patch patch;
@@ -125,30 +121,31 @@ void for_arriving(const Solution& solution, const DirectProjection& direct, cons
 
 EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage) {
     const Scene& scene = solution.scene;
+    const LightUnit total = own_unit(scene.is_photometric());
     EnergyBalance out;
     for (const Region& region : scene.regions())
-        out.emitted += region.area * sum(scene.materials()[region.material].exitance);
-    for (const PunctualLight& light : scene.lights()) out.emitted += sum(light.power());
+        out.emitted += region.area * total(scene.materials()[region.material].exitance);
+    for (const PunctualLight& light : scene.lights()) out.emitted += total(light.power());
     // Parallel light and that of the sky come from outside: what meets a surface counts as emitted.
-    for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * sum(direct.fit[e].parallel);
+    for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * total(direct.fit[e].parallel);
     for_arriving(solution, direct, [&](double area, const Spectrum& E, const Leaving& at) {
-        out.absorbed += area * sum((Spectrum(1.0) - scene.material(at.region).reflectance) * E);
+        out.absorbed += area * total((Spectrum(1.0) - scene.material(at.region).reflectance) * E);
     });
     out.escaped = escaping(stage, [&](const auto& visit) {
         for (const auto& [region, patch] : stage.pieces) {
             const Material& material = scene.material(region);
             if (material.emits() && !material.is_directed())
-                visit(Leaving{region, patch.area() * sum(material.exitance), nullptr, {}, patch, Mirrored::lost});
+                visit(Leaving{region, patch.area() * total(material.exitance), nullptr, {}, patch, Mirrored::lost});
         }
         for_arriving(solution, direct, [&](double area, const Spectrum& E, Leaving at) {
-            at.power = area * sum(scene.material(at.region).reflectance * E);
+            at.power = area * total(scene.material(at.region).reflectance * E);
             visit(at);
         });
     });
     for (const Piece& piece : stage.pieces)
         if (scene.material(piece.region).is_directed())
             out.escaped +=
-                directed_loss(stage, piece) * piece.patch.area() * sum(scene.material(piece.region).exitance);
+                directed_loss(stage, piece) * piece.patch.area() * total(scene.material(piece.region).exitance);
     out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
     return out;
 }
@@ -162,18 +159,20 @@ double mean_direct_light(const Stage& stage, const DirectProjection& direct) {
 EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage) {
     const Scene& scene = solution.scene;
     const ElementTree& tree = solution.interpolant.tree;
+    const LightUnit total = own_unit(scene.is_photometric());
     EnergyBalance out;
     for (const Region& region : scene.regions())
-        out.emitted += region.area * sum(scene.materials()[region.material].exitance);
-    for (const PunctualLight& light : scene.lights()) out.emitted += sum(light.power());
+        out.emitted += region.area * total(scene.materials()[region.material].exitance);
+    for (const PunctualLight& light : scene.lights()) out.emitted += total(light.power());
     const auto arriving = [&](ElementId e) { return solution.interpolant.at({e, tree.centre(e)}); };
     for (const ElementId e : tree.leaves())
-        out.absorbed += tree.area(e) * sum((Spectrum(1.0) - scene.material(tree.region(e)).reflectance) * arriving(e));
+        out.absorbed +=
+            tree.area(e) * total((Spectrum(1.0) - scene.material(tree.region(e)).reflectance) * arriving(e));
     out.escaped = escaping(stage, [&](const auto& visit) {
         for (const ElementId e : tree.leaves()) {
             const Material& material = scene.material(tree.region(e));
             visit(Leaving{tree.region(e),
-                          tree.area(e) * sum(material.exitance + material.reflectance * arriving(e)),
+                          tree.area(e) * total(material.exitance + material.reflectance * arriving(e)),
                           &tree,
                           e,
                           {}});

@@ -25,7 +25,7 @@ struct ElementFunction {
     Spectrum at(ElementTree::Place place) const;
 };
 
-/// Emitted flux, what became of it, and how far the two are apart, W (or lm), summed over the bands.
+/// Emitted flux, what became of it, and how far the two are apart: all bands as one number, by `own_unit` of the scene.
 struct EnergyBalance {
     double emitted = 0;   ///< int M dA
     double absorbed = 0;  ///< int (1 - rho) E dA

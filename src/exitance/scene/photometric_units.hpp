@@ -9,46 +9,58 @@ namespace exitance {
 /// lm/W of white light, as Radiance has it (WHTEFFICACY): what turns lumens into watts of three equal bands.
 inline constexpr double daylight_efficacy = 179;
 
-/// How much each of three bands in watts counts for the eye: Radiance's weights of R, G, B, 0.265, 0.670, 0.065, whose
-/// sum is 1. In builds of other bands all count alike.
-inline double radiance_weighted_mean(const Spectrum& watts) {
-    if constexpr (bands == 3) return 0.265 * watts[0] + 0.670 * watts[1] + 0.065 * watts[2];
-    return mean(watts);
+/// Weights by which the bands make one luminous number, summing to 1: Radiance's 0.265, 0.670, 0.065 of R, G, B. In
+/// builds of other than three bands, whose bands have no names, all weigh alike.
+constexpr Spectrum luminous_weights() {
+    Spectrum out(1.0 / static_cast<double>(bands));
+    if constexpr (bands == 3) out[0] = 0.265, out[1] = 0.670, out[2] = 0.065;
+    return out;
 }
 
-/// What makes lm/m^2 (lx) of light.
-struct LuminousWeights {
-    bool photometric = false;  ///< Light is in lumens as it stands; its bands are weighed as those of linear sRGB.
-    double efficacy = daylight_efficacy;  ///< lm/W otherwise.
-
-    double operator()(const Spectrum& light) const {
-        return photometric ? luminous_mean(light) : efficacy * radiance_weighted_mean(light);
-    }
-};
+/// The sum of the bands by `luminous_weights()`.
+constexpr double luminous_sum(const Spectrum& light) {
+    const Spectrum weights = luminous_weights();
+    double sum = 0;
+    for (std::size_t b = 0; b < bands; ++b) sum += weights[b] * light[b];
+    return sum;
+}
 
 /// In what unit light is told: that of the scene, or another.
 enum class UnitChoice : std::uint8_t { scene, watt, lux };
 
-/// Light as one number: E in lx or W/m^2, M and B in lm/m^2 or W/m^2, by what the scene's own light is in. Light that
-/// is in lumens is not converted to lumens again.
+/// Light of all bands as one number: E in lx or W/m^2, M and B in lm/m^2 or W/m^2, power in lm or W. This is the one
+/// definition of a total over bands: watts are the mean of the bands, lumens the sum by `luminous_weights()` (of watts
+/// times the efficacy). Light that is in lumens is not converted to lumens again.
 class LightUnit {
   public:
     LightUnit() = default;
+    /// `photometric`: the scene's light is in lumens.
     LightUnit(UnitChoice choice, bool photometric, double efficacy = daylight_efficacy)
         : is_lux_(choice == UnitChoice::lux || (choice == UnitChoice::scene && photometric)),
-          weights_{photometric, efficacy} {}
+          is_photometric_(photometric),
+          efficacy_(efficacy) {}
 
     bool is_lux() const { return is_lux_; }
     /// Does the efficacy have a part in it?
-    bool is_converted() const { return is_lux_ != weights_.photometric; }
+    bool is_converted() const { return is_lux_ != is_photometric_; }
+    const char* power() const { return is_lux_ ? "lm" : "W"; }
+    const char* irradiance() const { return is_lux_ ? "lx" : "W/m^2"; }
+    const char* radiosity() const { return is_lux_ ? "lm/m^2" : "W/m^2"; }
+    const char* radiance() const { return is_lux_ ? "cd/m^2" : "W/(m^2 sr)"; }
+
     double operator()(const Spectrum& light) const {
-        if (is_lux_) return weights_(light);
-        return weights_.photometric ? luminous_mean(light) / weights_.efficacy : mean(light);
+        if (is_lux_) return (is_photometric_ ? 1 : efficacy_) * luminous_sum(light);
+        return is_photometric_ ? luminous_sum(light) / efficacy_ : mean(light);
     }
 
   private:
-    bool is_lux_ = false;
-    LuminousWeights weights_;
+    bool is_lux_ = false, is_photometric_ = false;
+    double efficacy_ = daylight_efficacy;
 };
+
+/// The unit that a scene's own light is in.
+inline LightUnit own_unit(bool photometric) {
+    return {UnitChoice::scene, photometric};
+}
 
 }  // namespace exitance

@@ -24,5 +24,34 @@ TEST(LightUnit, LumensAreNotConvertedTwice) {
     EXPECT_FALSE(LightUnit(UnitChoice::scene, false).is_lux());
 }
 
+/// Light whose bands differ.
+Spectrum coloured() {
+    Spectrum light;
+    for (std::size_t b = 0; b < bands; ++b) light[b] = 100 * static_cast<double>(b + 1);
+    return light;
+}
+
+TEST(LightUnit, WeightsOfTheBandsSumToOneWhateverTheirNumber) {
+    EXPECT_NEAR(luminous_sum(Spectrum(1)), 1, 1e-12);
+    if constexpr (bands != 3) {
+        EXPECT_NEAR(luminous_sum(coloured()), mean(coloured()), 1e-10) << "all weigh alike";
+    }
+}
+
+TEST(LightUnit, ATotalIsTheMeanOfWattsAndTheWeightedSumOfLumens) {
+    const double weighted = bands == 3 ? 0.265 * 100 + 0.670 * 200 + 0.065 * 300 : mean(coloured());
+    EXPECT_NEAR(own_unit(false)(coloured()), mean(coloured()), 1e-10);
+    EXPECT_NEAR(own_unit(true)(coloured()), weighted, 1e-10);
+    EXPECT_STREQ(own_unit(false).power(), "W");
+    EXPECT_STREQ(own_unit(true).power(), "lm");
+}
+
+TEST(LightUnit, WattsAndLumensOfOneLightAreThatLightInBothUnits) {
+    // A scene in lumens whose bands are 179 times those of one in watts has its lux and, but for the colour, its watts.
+    const Spectrum watts = coloured(), lumens = daylight_efficacy * coloured();
+    EXPECT_NEAR(LightUnit(UnitChoice::lux, true)(lumens), LightUnit(UnitChoice::lux, false)(watts), 1e-8);
+    EXPECT_NEAR(LightUnit(UnitChoice::watt, true)(daylight_efficacy * Spectrum(2)), 2, 1e-12);
+}
+
 }  // namespace
 }  // namespace exitance

@@ -39,7 +39,7 @@ ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     if (arguments.json)
         terminal.print(statistics_json(*solution));
     else if (!arguments.quiet)
-        terminal.print(summary(solution->statistics));
+        terminal.print(summary(*solution));
     return ExitCode::done;
 }
 

@@ -66,7 +66,8 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
 }
 
 /// The picture for people, and the words that go with it.
-Image develop(const RenderArguments& arguments, const Picture& picture, ImageTexts& texts, Terminal& terminal) {
+Image develop(const RenderArguments& arguments, const Picture& picture, const LightUnit& own, ImageTexts& texts,
+              Terminal& terminal) {
     if (arguments.false_colour) {
         const ColourScale scale = make_colour_scale(picture, *arguments.false_colour, arguments.scale);
         return false_colour_image(picture, *arguments.false_colour, scale);
@@ -76,8 +77,9 @@ Image develop(const RenderArguments& arguments, const Picture& picture, ImageTex
     tones.scale = arguments.exposure_scale.value_or(automatic_exposure(picture) * std::exp2(arguments.exposure));
     const std::string stops =
         arguments.exposure_scale ? "" : fmt::format("{:+.4g} stops above automatic; ", arguments.exposure);
-    texts.emplace_back("Exposure", fmt::format("{}radiosity in W/m^2 times {:.6g}, then a {} curve", stops, tones.scale,
-                                               tones.curve == ToneCurve::filmic ? "filmic" : "linear"));
+    texts.emplace_back(
+        "Exposure", fmt::format("{}radiosity in {} times {:.6g}, then a {} curve", stops, own.radiosity(), tones.scale,
+                                tones.curve == ToneCurve::filmic ? "filmic" : "linear"));
     if (!arguments.exposure_scale) terminal.note(fmt::format("--exposure {:.4g}x", tones.scale));
     return display_image(picture, tones);
 }
@@ -94,16 +96,17 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     const SixNodeMesh& mesh = light.solution().discontinuity;
     const Scene& scene = light.solution().scene;
     const LightUnit unit = unit_of(arguments.unit, scene, terminal);
-    const bool is_converted = arguments.unit.choice != UnitChoice::scene;
-    const Picture shown = is_converted ? in_unit(picture, unit) : picture;
+    // Watts as the scene has them keep their bands: a false colour may show their mean or what the eye makes of them.
+    const bool is_one_number = arguments.unit.choice != UnitChoice::scene || unit.is_lux();
+    const Picture shown = is_one_number ? in_unit(picture, unit) : picture;
     MeshView view;
     std::vector<KeyEntry> key;
     if (!mesh.empty() && (!arguments.mesh.empty() || arguments.shadow_classes))
         view = view_mesh(mesh, scene, light.stage().tracer, camera, arguments.size);
     if (arguments.shadow_classes) key = shadow_class_key();
-    Image image = arguments.shadow_classes
-                      ? shadow_class_image(mesh, scene, view)
-                      : develop(arguments, arguments.false_colour ? shown : picture, texts, terminal);
+    Image image = arguments.shadow_classes ? shadow_class_image(mesh, scene, view)
+                                           : develop(arguments, arguments.false_colour ? shown : picture,
+                                                     own_unit(scene.is_photometric()), texts, terminal);
     if (!arguments.mesh.empty() && !mesh.empty()) {
         draw_ordered_edges(image, mesh_edges(mesh, view));
         for (const KeyEntry& entry : edge_order_key()) key.push_back(entry);
@@ -120,10 +123,12 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     return write_png(arguments.output, image, texts);
 }
 
-Result<void> write_linear(const RenderArguments& arguments, const Camera& camera, const Picture& picture) {
-    const ImageFacts facts{{"software", "exitance"},
-                           {"camera", describe(camera)},
-                           {"units", "R, G, B: radiance in W/(m^2 sr); irradiance: W/m^2"}};
+Result<void> write_linear(const RenderArguments& arguments, const LightUnit& own, const Camera& camera,
+                          const Picture& picture) {
+    const ImageFacts facts{
+        {"software", "exitance"},
+        {"camera", describe(camera)},
+        {"units", fmt::format("R, G, B: radiance in {}; irradiance: {}", own.radiance(), own.irradiance())}};
     const LinearImage image = linear_image(picture);
     return ending(arguments.output) == ".exr" ? write_exr(arguments.output, image, facts)
                                               : write_hdr(arguments.output, image, facts);
@@ -131,8 +136,9 @@ Result<void> write_linear(const RenderArguments& arguments, const Camera& camera
 
 Result<void> write_picture(const RenderArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                            const Picture& picture, Terminal& terminal) {
-    return ending(arguments.output) == ".png" ? write_display(arguments, light, camera, picture, terminal)
-                                              : write_linear(arguments, camera, picture);
+    return ending(arguments.output) == ".png"
+               ? write_display(arguments, light, camera, picture, terminal)
+               : write_linear(arguments, own_unit(light.solution().scene.is_photometric()), camera, picture);
 }
 
 /// "walk.png" as "walk.0012.png".

@@ -124,7 +124,7 @@ std::optional<Error> find_misuse(const ReportArguments& arguments) {
 Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction& light, ReportContent& content,
                       Terminal& terminal, const StopRequest& stop) {
     const Scene& scene = light.solution().scene;
-    content.statistics = statistics_json(light.solution().statistics);
+    content.statistics = statistics_json(light.solution().statistics, own_unit(scene.is_photometric()));
     std::vector<Camera> cameras;
     for (const RenderArguments& view : views(arguments, scene)) {
         Result<Camera> camera = choose_camera(view, light);

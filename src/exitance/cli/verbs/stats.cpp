@@ -9,7 +9,7 @@ namespace exitance {
 ExitCode run(const StatsArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
-    terminal.print(arguments.json ? statistics_json(*solution) : summary(solution->statistics));
+    terminal.print(arguments.json ? statistics_json(*solution) : summary(*solution));
     return ExitCode::done;
 }
 

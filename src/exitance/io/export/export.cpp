@@ -7,6 +7,7 @@ namespace exitance {
 
 Result<void> write_vtkhdf_file(const Solution& solution, const std::string& path) {
     Hdf5Writer file(path);
+    if (solution.scene.is_photometric()) file.use_lumens();
     write_vtkhdf(file, solution);
     return file.commit();
 }

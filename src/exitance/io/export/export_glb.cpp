@@ -10,6 +10,7 @@
 #include "exitance/io/export/glb_container.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
@@ -177,14 +178,14 @@ std::string make_json(const Scene& scene, const Triangles& triangles, const Tone
                               a * array_bytes, array_bytes));
     Lists::add(views, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
                                   attributes * array_bytes, index_bytes));
+    const LightUnit unit = own_unit(scene.is_photometric());
     std::string json = fmt::format(
-        "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"W/m^2\","
-        "\"radianceUnit\":\"W/(m^2 "
-        "sr)\",\"exposure\":{},\"white\":{}}}}},{}\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}],"
+        "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"{}\","
+        "\"radianceUnit\":\"{}\",\"exposure\":{},\"white\":{}}}}},{}\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}],"
         "\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],\"bufferViews\":[{}],{}"
         "\"buffers\":[{{\"byteLength\":{}}}]}}",
-        EXITANCE_VERSION, tone.scale, tone.white, extensions_json(scene, placed), scene_nodes, lists.nodes,
-        lists.meshes, materials, lists.accessors, views,
+        EXITANCE_VERSION, unit.radiosity(), unit.radiance(), tone.scale, tone.white, extensions_json(scene, placed),
+        scene_nodes, lists.nodes, lists.meshes, materials, lists.accessors, views,
         placed.cameras.empty() ? "" : fmt::format("\"cameras\":[{}],", placed.cameras),
         attributes * array_bytes + index_bytes);
     json.resize((json.size() + 3) / 4 * 4, ' ');

@@ -8,6 +8,7 @@
 #include "exitance/io/export/export_formats.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
@@ -68,9 +69,9 @@ Result<void> write_obj(const Solution& solution, const std::string& path) {
     };
     const std::size_t full = 1 << 16;
     fmt::format_to(out,
-                   "# leaves of an exitance solution; metres, Z up; colours: sRGB of the radiosity in W/m^2, "
+                   "# leaves of an exitance solution; metres, Z up; colours: sRGB of the radiosity in {}, "
                    "tone-mapped by {:.6g}\nmtllib {}\n",
-                   tone.scale, mtl.substr(mtl.rfind('/') + 1));
+                   own_unit(solution.scene.is_photometric()).radiosity(), tone.scale, mtl.substr(mtl.rfind('/') + 1));
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         Spectrum light;
         for (std::size_t b = 0; b < bands; ++b) light[b] = static_cast<double>(mesh.radiosity[i][b]);

@@ -3,6 +3,7 @@
 #include "exitance/io/export/element_mesh.hpp"
 #include "exitance/io/export/export_formats.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
@@ -74,11 +75,12 @@ Result<void> write_vtu(const Solution& solution, const std::string& path) {
 
     Result<AtomicFile> file = AtomicFile::create(path);
     if (!file) return file.error();
-    file->write(
-        "<?xml version=\"1.0\"?>\n<!-- exitance: points in metres, radiosity and irradiance in W/m^2 -->\n<VTKFile "
-        "type=\"UnstructuredGrid\" version=\"1.0\" "
-        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
-        std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" + std::to_string(mesh.size()) + "\">\n");
+    file->write(std::string("<?xml version=\"1.0\"?>\n<!-- exitance: points in metres, radiosity and irradiance in ") +
+                own_unit(solution.scene.is_photometric()).radiosity() +
+                " -->\n<VTKFile "
+                "type=\"UnstructuredGrid\" version=\"1.0\" "
+                "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
+                std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" + std::to_string(mesh.size()) + "\">\n");
     file->write("<PointData Vectors=\"radiosity\">\n");
     write_array(*file, "radiosity", numbers_of(mesh.radiosity), bands);
     write_array(*file, "irradiance", numbers_of(mesh.irradiance), bands);

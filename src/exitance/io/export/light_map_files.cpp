@@ -10,6 +10,7 @@
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/pictures/png.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
@@ -87,13 +88,18 @@ std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart) {
         triple(chart.du), triple(chart.dv), triple(scene.surfaces()[s].normal));
 }
 
+const char* unit_of(const Scene& scene, LightMapQuantity quantity) {
+    const LightUnit own = own_unit(scene.is_photometric());
+    return quantity == LightMapQuantity::irradiance ? own.irradiance() : own.radiosity();
+}
+
 std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantity quantity, const ToneMap& tones,
                      std::span<const std::string> groups) {
     std::string text = fmt::format(
-        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"W/m^2\",\n"
+        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"{}\",\n"
         "  \"texels_per_metre\": {},\n  \"padding\": {},\n  \"model\": \"scene.glb\",\n  \"exposure\": {},\n  "
         "\"maps\": [",
-        EXITANCE_VERSION, name_of(quantity), light.density, light.padding, tones.scale);
+        EXITANCE_VERSION, name_of(quantity), unit_of(scene, quantity), light.density, light.padding, tones.scale);
     for (std::size_t m = 0; m < light.maps.size(); ++m)
         text += fmt::format("{}\n    {{\"file\": \"{}.exr\", \"preview\": \"{}.png\", \"width\": {}, \"height\": {}}}",
                             m > 0 ? "," : "", map_stem(m), map_stem(m), light.maps[m].size.width,
@@ -117,15 +123,16 @@ std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantit
 Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::optional<std::size_t> group,
                             const LightMapFormat& format, const std::string& folder) {
     const ToneMap tones = preview_tones(scene, light, format.quantity);
-    const std::string unit = fmt::format("R, G, B: {} in W/m^2", name_of(format.quantity));
+    const std::string unit =
+        fmt::format("R, G, B: {} in {}", name_of(format.quantity), unit_of(scene, format.quantity));
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
         const std::string stem = folder + "/" + map_stem(m, group);
         const LinearImage image = numbers(scene, light, m, format.quantity);
         const ImageFacts facts{{"software", "exitance"}, {"units", unit}};
         if (const Result<void> written = write_exr(stem + ".exr", image, facts, format.precision); !written)
             return written;
-        const std::string exposure =
-            fmt::format("{} in W/m^2 times {:.6g}, then a filmic curve", name_of(format.quantity), tones.scale);
+        const std::string exposure = fmt::format("{} in {} times {:.6g}, then a filmic curve", name_of(format.quantity),
+                                                 unit_of(scene, format.quantity), tones.scale);
         const ImageTexts texts{{"Software", "exitance"}, {"Exposure", exposure}};
         const Result<void> written = write_png(stem + ".png", preview(scene, light, m, format.quantity, tones), texts);
         if (!written) return written;

@@ -6,6 +6,7 @@
 
 #include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
@@ -20,6 +21,19 @@ json numbers(const Point& p) {
 }
 json numbers(const Spectrum& s) {
     return red_green_blue(s);
+}
+
+/// The weights of red, green and blue in one number of light in the scene's unit. Colours made of other than three
+/// bands weigh alike.
+json colour_weights(const Scene& scene) {
+    if constexpr (bands != 3) return {1.0 / 3, 1.0 / 3, 1.0 / 3};
+    json out = json::array();
+    for (std::size_t b = 0; b < bands; ++b) {
+        Spectrum one;
+        one[b] = 1;
+        out.push_back(own_unit(scene.is_photometric())(one));
+    }
+    return out;
 }
 
 /// What is linked to the element that holds a point, or to one that it is part of.
@@ -58,6 +72,7 @@ std::string viewer_scene_json(const Solution& solution, const Camera& camera) {
     const Box& box = solution.scene.box();
     json out{{"file", solution.scene.file()},
              {"photometric", solution.scene.is_photometric()},
+             {"weights", colour_weights(solution.scene)},
              {"surfaces", solution.scene.surfaces().size()},
              {"elements", solution.statistics.leaf_elements},
              {"method", solution.statistics.method},
@@ -110,10 +125,11 @@ std::string viewer_line_json(const RadiosityFunction& light, const Point& from, 
         const double t = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
         points.push_back({from + t * (to - from), n});
     }
+    const LightUnit own = own_unit(light.solution().scene.is_photometric());
     json values = json::array(), delivered = json::array(), raw = json::array();
-    for (const Light& l : light.at(points)) values.push_back(mean(l.irradiance));
-    for (const Light& l : light.interpolant_at(points)) delivered.push_back(mean(l.irradiance));
-    for (const Spectrum& e : viewer_raw_at(light, points)) raw.push_back(mean(e));
+    for (const Light& l : light.at(points)) values.push_back(own(l.irradiance));
+    for (const Light& l : light.interpolant_at(points)) delivered.push_back(own(l.irradiance));
+    for (const Spectrum& e : viewer_raw_at(light, points)) raw.push_back(own(e));
     return json{{"length", norm(to - from)},
                 {"values", std::move(values)},
                 {"delivered", std::move(delivered)},

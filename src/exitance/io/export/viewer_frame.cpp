@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-std::string viewer_frame(const Picture& picture) {
+std::string viewer_frame(const Picture& picture, const LightUnit& own) {
     const auto [width, height] = picture.size;
     std::vector<float> light, rest;
     light.reserve(4 * picture.pixels.size()), rest.reserve(2 * picture.pixels.size());
@@ -17,7 +17,7 @@ std::string viewer_frame(const Picture& picture) {
                                                 static_cast<std::size_t>(x)];
             for (const double c : red_green_blue(pixel.radiosity)) light.push_back(static_cast<float>(c));
             light.push_back(pixel.front);
-            rest.push_back(static_cast<float>(mean(pixel.irradiance))), rest.push_back(pixel.back);
+            rest.push_back(static_cast<float>(own(pixel.irradiance))), rest.push_back(pixel.back);
         }
     }
     const std::vector<std::uint32_t> size{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/scene/photometric_units.hpp"
+
 namespace exitance {
 namespace {
 
@@ -149,9 +151,9 @@ double value_of(const Pixel& pixel, Quantity quantity) {
         case Quantity::irradiance:
             return mean(pixel.irradiance);
         case Quantity::luminance:
-            return luminous_mean(radiance_of_exitance(pixel.radiosity));
+            return luminous_sum(radiance_of_exitance(pixel.radiosity));
         case Quantity::illuminance:
-            return luminous_mean(pixel.irradiance);
+            return luminous_sum(pixel.irradiance);
     }
     return 0;
 }

@@ -177,12 +177,13 @@ std::string error_part(const ReportContent& content) {
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
-std::string energy_part(const EnergyBalance& energy) {
-    std::string rows = fact("Emitted", figure(energy.emitted) + " W (all bands)");
-    rows += fact("Absorbed", figure(energy.absorbed) + " W");
-    rows += fact("Difference", percent(energy.defect) +
-                                   " of what is emitted: what the solution is off, and what escapes "
-                                   "where the scene is open");
+std::string energy_part(const EnergyBalance& energy, const LightUnit& own) {
+    const auto power = [&](double value) {
+        return fmt::format("{} {}{}", figure(value), own.power(), own.is_lux() ? "" : " (mean of the bands)");
+    };
+    std::string rows = fact("Emitted", power(energy.emitted)) + fact("Absorbed", power(energy.absorbed));
+    if (energy.escaped > 0) rows += fact("Escaped", power(energy.escaped) + ", where the scene is open");
+    rows += fact("Difference", percent(energy.defect) + " of the emitted power");
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
@@ -238,7 +239,8 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
         section("glare", "Glare", observers_html(content)) +
         section("materials", "Materials", materials(content, figures)) +
         section("surfaces", "Surfaces", surfaces(content, figures)) +
-        section("energy", "Energy balance", energy_part(s.energy)) + section("error", "Error", error_part(content)) +
+        section("energy", "Energy balance", energy_part(s.energy, own_unit(content.solution->scene.is_photometric()))) +
+        section("error", "Error", error_part(content)) +
         section("method", "Method and what it took", method_part(content)) +
         section("warnings", "Warnings", warnings(s)) +
         fmt::format("<p class=\"note\">Made by exitance {}.</p>\n<script type=\"application/json\" id=\"numbers\">\n",

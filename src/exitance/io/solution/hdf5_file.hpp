@@ -31,7 +31,7 @@ constexpr Hdf5Type hdf5_type() {
 
 /// What a data set says about itself, as attributes.
 struct Hdf5Label {
-    const char* units;      ///< "m", "W/m^2", or "1" for pure numbers.
+    const char* units;      ///< "m", "W/m^2" (see `Hdf5Writer::use_lumens`), or "1" for pure numbers.
     const char* long_name;  ///< A few words.
 };
 
@@ -45,6 +45,9 @@ class Hdf5Writer {
     Hdf5Writer(const Hdf5Writer&) = delete;
     Hdf5Writer& operator=(const Hdf5Writer&) = delete;
     ~Hdf5Writer();
+
+    /// Light is in lumens: from here on labels say lm where their units say W.
+    void use_lumens() { in_lumens_ = true; }
 
     /// Groups are made before what goes into them. Names are paths from the root, "exitance/scene".
     void make_group(const std::string& name);
@@ -106,6 +109,7 @@ class Hdf5Writer {
     Result<AtomicFile> output_;
     std::int64_t file_ = -1;  ///< The library's handle.
     std::string failure_;
+    bool in_lumens_ = false;
 };
 
 /// An HDF5 file that is read, and not trusted: sizes are compared with what the file really holds before anything is

@@ -113,7 +113,10 @@ std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_typ
 }
 
 void Hdf5Writer::describe(const std::string& name, Hdf5Label label) {
-    set_attribute(name, "units", std::string_view(label.units));
+    std::string units = label.units;
+    if (in_lumens_)
+        for (std::size_t at = 0; (at = units.find("W/", at)) != std::string::npos; at += 3) units.replace(at, 1, "lm");
+    set_attribute(name, "units", std::string_view(units));
     set_attribute(name, "long_name", std::string_view(label.long_name));
 }
 

@@ -12,6 +12,7 @@ constexpr std::int64_t format = 1;  ///< Raised when older programs could not re
 
 Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups) {
     Hdf5Writer file(path);
+    if (solution.scene.is_photometric()) file.use_lumens();
     write_vtkhdf(file, solution);
     file.make_group("exitance");
     file.set_attribute("exitance", "format", format);
@@ -31,7 +32,7 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     if (!solution.cells.cells.empty()) write_cells(file, "exitance/growing_cells", solution.cells);
     if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
     if (groups && !groups->empty()) write_light_groups(file, "exitance/groups", *groups);
-    write_statistics(file, "exitance/statistics", solution.statistics);
+    write_statistics(file, "exitance/statistics", solution.statistics, own_unit(solution.scene.is_photometric()));
     return file.commit();
 }
 

@@ -121,6 +121,33 @@ TEST_F(SolutionFiles, BringASolutionBackBitForBit) {
     EXPECT_EQ(s.statistics.energy.defect, t->statistics.energy.defect);
 }
 
+TEST_F(SolutionFiles, SayTheUnitOfEnergyAndOfLight) {
+    for (const bool photometric : {false, true}) {
+        const Solution s = sample_solution(40, photometric);
+        ASSERT_TRUE(write_solution(path("s.h5"), s));
+        const Result<Solution> t = load_solution(path("s.h5"));
+        ASSERT_TRUE(t) << t.error().message;
+        EXPECT_EQ(t->statistics.energy.emitted, s.statistics.energy.emitted);
+        Result<Hdf5Reader> file = Hdf5Reader::open(path("s.h5"));
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_EQ(file->text_attribute("exitance/statistics", "energy_unit"), photometric ? "lm" : "W");
+        EXPECT_EQ(file->text_attribute("VTKHDF/PointData/radiosity", "units"), photometric ? "lm/m^2" : "W/m^2");
+    }
+}
+
+TEST_F(SolutionFiles, OfOlderProgramsHoldTheEnergyOfAllBandsTogether) {
+    Hdf5Writer out(path("old.h5"));
+    out.make_group("statistics");
+    out.set_attribute("statistics", "energy_emitted", 9.0 * bands);
+    out.set_attribute("statistics", "energy_defect", 0.25);
+    ASSERT_TRUE(out.commit());
+    Result<Hdf5Reader> in = Hdf5Reader::open(path("old.h5"));
+    ASSERT_TRUE(in) << in.error().message;
+    const SolveStatistics statistics = read_statistics(*in, "statistics");
+    EXPECT_DOUBLE_EQ(statistics.energy.emitted, 9);
+    EXPECT_EQ(statistics.energy.defect, 0.25);
+}
+
 TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
     Solution s = sample_solution();
     SixNodeMesh& mesh = s.discontinuity;

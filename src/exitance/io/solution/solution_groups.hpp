@@ -6,6 +6,7 @@
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/methods/light_groups/light_groups.hpp"
 #include "exitance/reconstruct/solution.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 
@@ -60,8 +61,11 @@ CellLight read_cells(Hdf5Reader& file, const std::string& group);
 void write_light_groups(Hdf5Writer& file, const std::string& group, const LightGroups& groups);
 LightGroups read_light_groups(Hdf5Reader& file, const std::string& group, const Solution& solution);
 
-/// Everything that may differ from run to run.
-void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics);
+/// Everything that may differ from run to run. `own`: the unit of the scene's light.
+void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics,
+                      const LightUnit& own);
+/// The energy of an older file, which is the sum of the bands, is divided
+/// by their number: exactly that of a scene in watts, and of one in lumens whose light has no colour.
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);
 
 /// The group /VTKHDF that ParaView opens: the leaves of the interpolant as polygons, each with points of its own,

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/scene/photometric_units.hpp"
+
 namespace exitance {
 namespace {
+
+constexpr const char* energy_unit = "energy_unit";
 
 /// Every figure by its name in the file, for writing and for reading.
 template <class Statistics, class Visit>
@@ -56,7 +60,8 @@ void for_counts(Counts& c, const Visit& visit) {
 
 }  // namespace
 
-void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics) {
+void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics,
+                      const LightUnit& own) {
     file.make_group(group);
     for_figures(statistics, [&]<class T>(const char* name, const T& value) {
         if constexpr (std::is_same_v<T, std::optional<double>>) {
@@ -76,6 +81,7 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
         });
         file.set_attribute(of_mesh, "mean_radius_ratio", counts->mean_radius_ratio);
     }
+    file.set_attribute(group, energy_unit, std::string_view(own.power()));
     file.make_group(group + "/seconds");
     for (const auto& [phase, seconds] : statistics.seconds)
         file.set_attribute(group + "/seconds", phase.c_str(), seconds);
@@ -125,6 +131,9 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
         else if (const auto whole = file.integer_attribute(group, name))
             value = static_cast<T>(*whole);
     });
+    if (!file.text_attribute(group, energy_unit))
+        for (double* sum : {&statistics.energy.emitted, &statistics.energy.absorbed, &statistics.energy.escaped})
+            *sum /= static_cast<double>(bands);  // older files hold the sum of the bands
     if (const std::string of_mesh = group + "/discontinuity"; file.has(of_mesh)) {
         DiscontinuityCounts& counts = statistics.discontinuity.emplace();
         for_counts(counts, [&](const char* name, std::size_t& count) {

@@ -7,6 +7,7 @@
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
 #include "exitance/scene/locator.hpp"
+#include "exitance/scene/photometric_units.hpp"
 #include "exitance/transport/ray_rows.hpp"
 #include "exitance/visibility/glazed_part.hpp"
 
@@ -56,12 +57,10 @@ class MatrixMaker {
     /// rho E of every leaf by every patch.
     std::size_t solve() {
         const std::size_t n = rows_.size(), m = patches_.size();
-        const Spectrum weights = luminous_weights();
         std::vector<float> rho(n), fresh(n * m);
         for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t b = 0; b < bands; ++b)
-                rho[i] += static_cast<float>(weights[b] *
-                                             stage_.scene.material(tree_.region(numbering_.leaves[i])).reflectance[b]);
+            rho[i] =
+                static_cast<float>(luminous_sum(stage_.scene.material(tree_.region(numbering_.leaves[i])).reflectance));
         reflected_.assign(n * m, 0);
         for (std::size_t sweep = 1; sweep <= most_sweeps; ++sweep) {
             parallel_for(n, 16, [&](std::size_t i) {
@@ -240,14 +239,6 @@ Receiver receiver_of(const Stage& stage, const Locator& locator, const ProbePoin
 }
 
 }  // namespace
-
-Spectrum luminous_weights() {
-    if (bands != 3) return Spectrum(1.0 / static_cast<double>(bands));
-    Spectrum out;
-    const std::array<double, 3> rgb{0.265, 0.670, 0.065};
-    for (std::size_t b = 0; b < bands; ++b) out[b] = rgb[b % 3];
-    return out;
-}
 
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
                                     const DaylightOptions& options, Progress& progress) {

@@ -16,8 +16,8 @@ struct DaylightOptions {
     std::uint64_t seed = 1;
 };
 
-/// Light of every patch of the sky at every sensor, lx of 1 cd/m^2 (or W/m^2 of 1 W/(m^2 sr)), bands weighted as the
-/// eye does: by 0.265, 0.670 and 0.065 where they are red, green and blue.
+/// Light of every patch of the sky at every sensor, lx of 1 cd/m^2 (or W/m^2 of 1 W/(m^2 sr)), bands weighted by
+/// `luminous_weights()`.
 struct DaylightMatrix {
     std::size_t patches = 0;
     std::vector<float> direct;     ///< Row by sensor: from the sky itself, and through glass.
@@ -38,8 +38,5 @@ struct DaylightMatrix {
 /// scene    its light from outside is replaced
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
                                     const DaylightOptions& options, Progress& progress);
-
-/// How the eye weighs bands: sums to 1.
-Spectrum luminous_weights();
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/direct/beams.hpp"
 #include "exitance/methods/daylight/sensor_places.hpp"
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
@@ -81,7 +82,6 @@ DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> senso
     const std::vector<Receiver> at = sensor_places(scene, occluders, sensors);
     std::vector<float> all(n * m);  // direct and reflected
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = matrix.direct[k] + matrix.reflected[k];
-    const Spectrum weights = luminous_weights();
     parallel_for(hours.size(), 8, [&](std::size_t h) {
         const HourLight light = light_of(hours[h], patches, site);
         if (light.is_dark) return;
@@ -99,8 +99,7 @@ DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> senso
             const auto is_seen = [&](const auto& part) { return matrix.direct[i * m + part.first] > 0; };
             if (light.direct > 0 && dot(light.sun, at[i].n) > 0 &&
                 std::any_of(light.of_sun.begin(), light.of_sun.end(), is_seen)) {
-                const Spectrum E = beams.irradiance(at[i]);
-                for (std::size_t b = 0; b < bands; ++b) straight += weights[b] * E[b];
+                straight = luminous_sum(beams.irradiance(at[i]));
             }
             for (const auto& [patch, L] : light.of_sun) reflected += double(matrix.reflected[i * m + patch]) * L;
             out.sun[h * n + i] = static_cast<float>(straight);

@@ -1,7 +1,8 @@
 #include "exitance/methods/light/unscaled_light.hpp"
 
 #include <cmath>
-#include <numeric>
+
+#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 
@@ -47,7 +48,7 @@ double energy_defect_before(const EnergyBalance& energy, const Solution& solutio
     for (ElementId e : tree.leaves())
         absorb(tree.region(e), tree.area(e),
                (Spectrum(1.0) - unscaled.indirect) * solution.indirect.at({e, tree.centre(e)}));
-    const double more = std::accumulate(added.value.begin(), added.value.end(), 0.0);
+    const double more = own_unit(solution.scene.is_photometric())(added);
     return std::abs(energy.emitted - (energy.absorbed - more) - energy.escaped) / energy.emitted;
 }
 

@@ -47,6 +47,17 @@ TEST(UnscaledLight, IsAsFarFromBalanceAsWhatScalingMadeGood) {
     EXPECT_NEAR(before(0.99, 1.02), 0.005, 1e-12) << "they make up for each other";
 }
 
+TEST(UnscaledLight, IsJudgedInTheUnitOfTheBalance) {
+    // Too much indirect light in one band counts by that band's weight: a third in watts.
+    if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
+    const Furnace furnace;
+    const EnergyBalance energy = energy_balance(furnace.solution, furnace.direct, furnace.stage);
+    Spectrum less(1);
+    less[0] = 0.98;
+    const UnscaledShare share{Spectrum(1), less};
+    EXPECT_NEAR(energy_defect_before(energy, furnace.solution, furnace.direct, share), 0.01 / 3, 1e-12);
+}
+
 TEST(UnscaledLight, SendsLessByWhatDirectLightAndReturnsAreLess) {
     const Furnace furnace;
     const auto sent = [&](double direct, double returned, double c) {

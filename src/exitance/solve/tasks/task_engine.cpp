@@ -63,7 +63,7 @@ TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double o
         report_.serial += iteration.serial;
         if (options_.record) record(iteration);
         progress.advance(report_.converged ? 1 : std::min(0.9, options_.change / report_.change),
-                         fmt::format("iteration {}, total radiosity {:.6g} W", report_.iterations, total));
+                         fmt::format("iteration {}, total radiosity {:.6g}", report_.iterations, total));
     }
     report_.wall = clock.seconds();
     count();
