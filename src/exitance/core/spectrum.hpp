@@ -85,10 +85,4 @@ inline bool is_finite(const Spectrum& s) {
     return std::all_of(s.value.begin(), s.value.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// The mean of the bands as the eye weighs them: weights of linear sRGB, 0.2126, 0.7152, 0.0722, when there are three.
-inline double luminous_mean(const Spectrum& s) {
-    if constexpr (bands == 3) return 0.2126 * s[0] + 0.7152 * s[1] + 0.0722 * s[2];
-    return mean(s);
-}
-
 }  // namespace exitance
