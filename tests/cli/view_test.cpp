@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "cli/small_scene.hpp"
+#include "exitance/io/export/viewer_data.hpp"
 #include "exitance/io/export/viewer_frame.hpp"
 #include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/solution/solution_file.hpp"
@@ -135,16 +136,27 @@ TEST(ViewerData, AFrameHoldsThePictureFromTheBottomUp) {
     PictureOptions options;
     options.camera = {{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70}, options.size = {7, 5};
     const Picture picture = take_picture(light, options, quiet, StopRequest());
-    const std::string frame = viewer_frame(picture);
-    ASSERT_EQ(frame.size(), 12 + 4u * 6 * 35);
-    ASSERT_TRUE(frame.starts_with("EXF1"));
-    std::vector<float> numbers(6 * 35);
-    std::memcpy(numbers.data(), frame.data() + 12, 4 * numbers.size());
-    const Pixel& lowest = picture.pixels[28];
-    EXPECT_GT(lowest.front, 0);
-    EXPECT_EQ(numbers[0], static_cast<float>(lowest.radiosity[0]));
-    EXPECT_EQ(numbers[3], lowest.front);
-    EXPECT_EQ(numbers[4 * 35], static_cast<float>(mean(lowest.irradiance)));
+    for (const bool photometric : {false, true}) {
+        const LightUnit own = own_unit(photometric);
+        const std::string frame = viewer_frame(picture, own);
+        ASSERT_EQ(frame.size(), 12 + 4u * 6 * 35);
+        ASSERT_TRUE(frame.starts_with("EXF1"));
+        std::vector<float> numbers(6 * 35);
+        std::memcpy(numbers.data(), frame.data() + 12, 4 * numbers.size());
+        const Pixel& lowest = picture.pixels[28];
+        EXPECT_GT(lowest.front, 0);
+        EXPECT_EQ(numbers[0], static_cast<float>(lowest.radiosity[0]));
+        EXPECT_EQ(numbers[3], lowest.front);
+        EXPECT_EQ(numbers[4 * 35], static_cast<float>(own(lowest.irradiance)));
+    }
+}
+
+TEST(ViewerData, SaysHowColoursMakeOneNumberOfTheScenesUnit) {
+    if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
+    const Camera camera{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70};
+    const auto facts = [&](bool photometric) { return viewer_scene_json(sample_solution(40, photometric), camera); };
+    EXPECT_NE(facts(true).find("\"weights\":[0.265,0.67,0.065]"), std::string::npos) << facts(true);
+    EXPECT_NE(facts(false).find("\"weights\":[0.333"), std::string::npos) << facts(false);
 }
 
 TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
