@@ -25,7 +25,7 @@ constexpr double luminous_sum(const Spectrum& light) {
     return sum;
 }
 
-/// In what unit light is told: that of the scene, or another.
+/// The unit in which light is printed: that of the scene, or another.
 enum class UnitChoice : std::uint8_t { scene, watt, lux };
 
 /// Light of all bands as one number: E in lx or W/m^2, M and B in lm/m^2 or W/m^2, power in lm or W. This is the one
@@ -41,7 +41,7 @@ class LightUnit {
           efficacy_(efficacy) {}
 
     bool is_lux() const { return is_lux_; }
-    /// Does the efficacy have a part in it?
+    /// True if the efficacy converts between watts and lumens.
     bool is_converted() const { return is_lux_ != is_photometric_; }
     const char* power() const { return is_lux_ ? "lm" : "W"; }
     const char* irradiance() const { return is_lux_ ? "lx" : "W/m^2"; }

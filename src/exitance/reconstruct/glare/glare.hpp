@@ -30,7 +30,7 @@ struct GlareSource {
 ///
 ///     UGR = 8 log10(0.25 / L_b  sum L^2 omega / p^2),   L_b = E_indirect at the eye / pi.      [CIE117]
 struct Glare {
-    double background = 0;             ///< L_b, cd/m^2
+    double background = 0;              ///< L_b, cd/m^2
     std::vector<GlareSource> sources;   ///< Those that count, the worst first.
     std::vector<GlareSource> left_out;  ///< Those in front of the observer that a limit of CIE 117 leaves out.
     /// Not finite where nothing counts, or all behind it is black.
