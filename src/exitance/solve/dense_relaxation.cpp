@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "exitance/core/parallel.hpp"
+#include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
 namespace {
@@ -29,7 +30,7 @@ SolveReport sweep_until(const RadiositySystem& s, std::span<Spectrum> b, const S
         report.residual = surface_norm(residual_of(s, b), s.area) / scale;
         report.converged = report.residual <= stop.residual;
         report.interrupted = !report.converged && stop.request && stop.request->requested();
-        if (report.converged || report.interrupted) break;
+        if (report.converged || report.interrupted || !(report.residual < hopeless_residual)) break;
     }
     return report;
 }

@@ -32,12 +32,11 @@ CellFunction::CellFunction(const CellLight& light) : light_(&light) {
 /// By |x - w|^2, for cells that face alike; where none do, the nearest of all. O(cells), seldom called.
 std::uint32_t CellFunction::nearest(const Point& x, const Normal& n) const {
     std::uint32_t best = 0;
-    double least = HUGE_VAL;
+    std::pair<bool, double> least{true, HUGE_VAL};  // does it face another way; squared distance
     for (std::uint32_t c = 0; c < light_->cells.size(); ++c) {
         const CellLight::Cell& cell = light_->cells[c];
-        constexpr double turned = 1e6;  // metres^2 on top: another side of things comes last
-        const double distance = squared_norm(x - cell.at) + (dot(n, cell.n) > 0.5 ? 0 : turned);
-        if (distance < least) least = distance, best = c;
+        const std::pair<bool, double> own{dot(n, cell.n) <= 0.5, squared_norm(x - cell.at)};
+        if (own < least) least = own, best = c;
     }
     return best;
 }

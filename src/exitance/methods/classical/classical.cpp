@@ -8,6 +8,7 @@
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
+#include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
 
@@ -159,7 +160,14 @@ void record(const ClassicalInput& input, Method method, const ClassicalLight& li
     s.iterations = light.report.iterations, s.residual = light.report.residual;
     s.link_memory_bytes = light.link_memory_bytes;
     s.stopped_by = light.stopped_by;
-    if (light.report.interrupted) s.stopped_by = input.stop.interrupted() ? "interrupt" : "time limit";
+    if (light.report.interrupted) {
+        s.stopped_by = input.stop.interrupted() ? "interrupt" : "time limit";
+    } else if (has_diverged(light.report)) {
+        s.stopped_by = "divergence";
+        s.warnings.emplace_back(divergence_warning);
+    } else if (!light.report.converged && !input.options.max_iterations && s.stopped_by.empty()) {
+        s.stopped_by = "iterations";
+    }
     s.converged = s.stopped_by.empty();
     facts.direct = name_in(classical_direct_names, input.classical.direct.value_or(ClassicalDirect::apart));
     const bool linked = method == Method::hierarchical || method == Method::wavelet;

@@ -5,6 +5,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/classical/classical_input.hpp"
 #include "exitance/methods/classical/interaction_kernel.hpp"
+#include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
 namespace {
@@ -382,7 +383,7 @@ ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis
             return so_far;
         });
         light.report.interrupted = input.stop.requested();
-        if (light.report.interrupted || elements.out_of_memory()) break;
+        if (light.report.interrupted || !(change < hopeless_residual) || elements.out_of_memory()) break;
         if (input.options.max_iterations && light.report.iterations >= *input.options.max_iterations) break;
         if (cut || change > input.knobs.residual) continue;
         if (grid >= grids) break;

@@ -25,10 +25,10 @@ constexpr double slope_ridge = 1e-2;    ///< Of linear maps, by the spread of sa
 
 }  // namespace
 
-double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Normal& n_y) {
+double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Normal& n_y, double in_plane) {
     const Vec3 w = y - x;
     const double r2 = squared_norm(w), a = dot(w, n_x), b = -dot(w, n_y);
-    return a > 0 && b > 0 ? a * b / (pi * r2 * r2) : 0;
+    return a > in_plane && b > in_plane ? a * b / (pi * r2 * r2) : 0;
 }
 
 KernelNetwork::KernelNetwork(const Stage& stage, const SurfacePool& pool, const KernelNetworkOptions& options,
@@ -69,7 +69,7 @@ std::uint32_t KernelNetwork::draw_source(double u) const {
 }
 
 double KernelNetwork::kernel(const Sample& s) const {
-    return point_kernel(pool_[s.x].at, pool_[s.x].n, pool_[s.y].at, pool_[s.y].n);
+    return point_kernel(pool_[s.x].at, pool_[s.x].n, pool_[s.y].at, pool_[s.y].n, pool_.in_plane());
 }
 Spectrum KernelNetwork::flow(const Sample& s) const {
     double G = s.visible ? kernel(s) : 0;

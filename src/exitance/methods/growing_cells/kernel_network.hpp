@@ -31,8 +31,9 @@ struct KernelNetworkOptions {
     std::uint64_t seed = 1;
 };
 
-/// cos cos / (pi r^2), 1/m^2; 0 where the two do not face each other.
-double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Normal& n_y);
+/// cos cos / (pi r^2), 1/m^2; 0 where the two do not face each other: where either lies no more than `in_plane` metres
+/// in front of the other's plane.
+double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Normal& n_y, double in_plane = 0);
 
 /// A network of dimension four over rays (x, y): grows where its answers err, on samples that are drawn anew there.
 /// Source: Bohn's scheme of 2002 as docs/growing_cells.md tells it. Deterministic: samples are drawn and traced in

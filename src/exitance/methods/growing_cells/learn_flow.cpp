@@ -9,6 +9,7 @@
 #include "exitance/mesh/growing_cells/gaussian_integrals.hpp"
 #include "exitance/methods/growing_cells/cells_method.hpp"
 #include "exitance/methods/growing_cells/least_squares.hpp"
+#include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
 namespace {
@@ -21,10 +22,13 @@ constexpr double alike = 0.9;               ///< Cosine of normals that count as
 /// Gaussians integrated over the scene's polygons: exact at their borders.
 class PolygonIntegrals {
   public:
-    explicit PolygonIntegrals(const Stage& stage) {
+    PolygonIntegrals(const Stage& stage, double in_plane) : in_plane_(in_plane) {
         std::vector<Box> boxes;
         for (const Piece& piece : stage.lit_pieces()) {
-            Polygon p{{}, stage.scene.regions()[piece.region].plane.n, stage.scene.material(piece.region).emits()};
+            Polygon p{{},
+                      stage.scene.regions()[piece.region].plane.n,
+                      piece.region,
+                      stage.scene.material(piece.region).emits()};
             Box box;
             for (int i = 0; i < piece.patch.corner_count(); ++i)
                 p.corners.push_back(piece.patch.corner(i)), box.add(p.corners.back());
@@ -36,6 +40,7 @@ class PolygonIntegrals {
     struct Polygon {
         std::vector<Point> corners;
         Normal n;
+        RegionId region;
         bool emits;
     };
     const std::vector<Polygon>& polygons() const { return polygons_; }
@@ -58,15 +63,18 @@ class PolygonIntegrals {
         return sum;
     }
 
-    /// Do a cell and a polygon face each other, as pairs of samples do?
-    bool face_each_other(const CellLight::Cell& cell, std::uint32_t i) const {
+    /// Do a cell and a polygon face each other, as pairs of samples do? A cell never faces its own surface, on which
+    /// it lies but for rounding, nor what lies in one plane with it.
+    bool face_each_other(const CellLight::Cell& cell, const std::vector<RegionId>& own, std::uint32_t i) const {
         const Polygon& p = polygons_[i];
-        if (dot(p.n, cell.at - p.corners[0]) <= 0) return false;
+        if (std::binary_search(own.begin(), own.end(), p.region)) return false;
+        if (dot(p.n, cell.at - p.corners[0]) <= in_plane_) return false;
         return std::any_of(p.corners.begin(), p.corners.end(),
-                           [&](const Point& corner) { return dot(cell.n, corner - cell.at) > 0; });
+                           [&](const Point& corner) { return dot(cell.n, corner - cell.at) > in_plane_; });
     }
 
   private:
+    double in_plane_;  ///< As `SurfacePool` has it, metres.
     std::vector<Polygon> polygons_;
     Bvh tree_;
 };
@@ -90,7 +98,8 @@ std::vector<double> mass_matrix(const std::vector<CellLight::Cell>& cells, const
 
 /// rhs_q = sum_o v_o I_q(o_x) J_q(o_y): I_q = int Phi_q(x) exp(-|x - o_x|^2 / d_o^2), J_q the same of y alone over all
 /// sources of the network's kind that q faces.
-std::vector<Spectrum> arriving(const std::vector<CellLight::Cell>& cells, const KernelNetwork& kernel,
+std::vector<Spectrum> arriving(const std::vector<CellLight::Cell>& cells,
+                               const std::vector<std::vector<RegionId>>& own_regions, const KernelNetwork& kernel,
                                const PolygonIntegrals& integrals, bool of_emitters) {
     const GrowingCells& network = kernel.cells();
     const std::vector<GrowingCells::Unit> units = network.units();
@@ -104,7 +113,7 @@ std::vector<Spectrum> arriving(const std::vector<CellLight::Cell>& cells, const 
     parallel_for(cells.size(), 4, [&](std::size_t q) {
         const CellLight::Cell& cell = cells[q];
         std::vector<std::uint8_t> faces(integrals.polygons().size());
-        for (std::uint32_t i = 0; i < faces.size(); ++i) faces[i] = integrals.face_each_other(cell, i);
+        for (std::uint32_t i = 0; i < faces.size(); ++i) faces[i] = integrals.face_each_other(cell, own_regions[q], i);
         for (std::size_t i = 0; i < units.size(); ++i) {
             const Gaussian both = product({cell.at, cell.width}, {kernel.place_x(units[i]), network.width(units[i])});
             if (both.amplitude < negligible) continue;
@@ -185,14 +194,15 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     out.light.cells = network.cells;
     out.light.triangles = network.triangles;
     if (!has_light) return out;
-    const PolygonIntegrals integrals(stage);
+    const PolygonIntegrals integrals(stage, pool.in_plane());
     const std::vector<double> G = mass_matrix(out.light.cells, integrals);
     emitted.fit();
-    const std::vector<Spectrum> first = arriving(out.light.cells, emitted, integrals, true);
+    const std::vector<Spectrum> first = arriving(out.light.cells, network.own_regions, emitted, integrals, true);
     solve_outputs(G, first, out.light.cells);
     input.progress.phase("solve");
     const std::size_t most_rounds = std::min(most_reflections, input.knobs.max_iterations);
     std::vector<Spectrum> B(pool.size());
+    GrowthWatch watch;
     for (std::size_t round = 0; round < most_rounds && !input.stop.requested(); ++round) {
         std::vector<Spectrum> next = reflected_radiosity(stage, pool, out.light);
         double change = 0, all = 0;
@@ -206,11 +216,15 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
         constexpr double settled = 2e-3;
         out.report.converged = out.report.residual < std::max(settled, input.knobs.residual);
         if (out.report.converged) break;
+        if (watch.grows(std::max(std::abs(change), settled * all))) {
+            out.report.residual = 1;  // has_diverged
+            break;
+        }
         reflected.renew(B);
         if (round == 0 && !reflected.grow(units / 2, input.stop, &input.progress)) break;
         if (round > 0) reflected.learn_more(10 * units, input.stop);
         reflected.fit();
-        std::vector<Spectrum> rhs = arriving(out.light.cells, reflected, integrals, false);
+        std::vector<Spectrum> rhs = arriving(out.light.cells, network.own_regions, reflected, integrals, false);
         for (std::size_t q = 0; q < rhs.size(); ++q) rhs[q] += first[q];
         solve_outputs(G, rhs, out.light.cells);
     }

@@ -7,6 +7,7 @@
 #include "exitance/core/random.hpp"
 #include "exitance/mesh/growing_cells/cell_function.hpp"
 #include "exitance/methods/growing_cells/cells_method.hpp"
+#include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
 namespace {
@@ -85,7 +86,7 @@ Sent send(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& net
     const auto factor = [&](const PoolPoint& y, double area) {
         const Vec3 w = y.at - receiver.at;
         const double r2 = squared_norm(w), a = dot(w, receiver.n), b = -dot(w, y.n);
-        return a > 0 && b > 0 ? area * a * b / (r2 * (pi * r2 + area)) : 0;
+        return a > pool.in_plane() && b > pool.in_plane() ? area * a * b / (r2 * (pi * r2 + area)) : 0;
     };
     const CellLight::Cell& source = network.cells[q];
     const double reach = near * (source.width + receiver.width);
@@ -227,9 +228,9 @@ class PassedToCells {
     std::vector<std::vector<Share>> behind_;
 };
 
-/// E = E_1 + T E_1 + T^2 E_1 + ...: one reflection after the other.
-SolveReport reflect(const CellTransport& T, std::vector<Spectrum>& E, double residual, std::size_t most,
-                    const StopRequest& stop) {
+/// E = E_1 + T E_1 + T^2 E_1 + ...: one reflection after the other. `area`: of the cells, m^2.
+SolveReport reflect(const CellTransport& T, std::span<const double> area, std::vector<Spectrum>& E, double residual,
+                    std::size_t most, const StopRequest& stop) {
     const std::size_t n = T.size;
     std::vector<Spectrum> last = T.first, next(n);
     E = T.first;
@@ -238,7 +239,14 @@ SolveReport reflect(const CellTransport& T, std::vector<Spectrum>& E, double res
         for (const Spectrum& s : v) sum += squared(s);
         return std::sqrt(sum);
     };
+    const auto flux = [&](const std::vector<Spectrum>& v) {
+        double sum = 0;
+        for (std::size_t c = 0; c < n; ++c) sum += area[c] * mean(v[c]);
+        return sum;
+    };
     const double whole = size(E);
+    GrowthWatch watch;
+    watch.grows(flux(E));
     SolveReport report{.iterations = 0, .residual = 1, .converged = !(whole > 0)};
     if (report.converged) report.residual = 0;
     while (!report.converged && report.iterations < most && !stop.requested()) {
@@ -252,8 +260,10 @@ SolveReport reflect(const CellTransport& T, std::vector<Spectrum>& E, double res
         ++report.iterations;
         report.residual = size(last) / whole;
         report.converged = report.residual <= residual;
-        if (!(report.residual < 1e6))
-            break;  // a matrix that reflects more than it gets, as far too few units may make it
+        if (watch.grows(flux(last))) {  // as far too few units may make it
+            report.converged = false, report.residual = std::max(1.0, report.residual);  // has_diverged
+            break;
+        }
     }
     return report;
 }
@@ -318,8 +328,8 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
         input.progress.phase("solve");
         CellTransport T = make_transport(stage, pool, network, nodes, kernel, input.options.seed);
         if (!passed.empty()) passed.meet(T);
-        out.report =
-            reflect(T, E, input.knobs.residual, std::min(most_reflections, input.knobs.max_iterations), input.stop);
+        out.report = reflect(T, network.area, E, input.knobs.residual,
+                             std::min(most_reflections, input.knobs.max_iterations), input.stop);
         out.kernels += T.kernels, out.rays += T.rays;
         out.memory_bytes = T.matrix.size() * sizeof(Spectrum);
         for (std::size_t i = 0; i < pool.size(); ++i) {

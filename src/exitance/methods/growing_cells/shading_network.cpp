@@ -87,6 +87,19 @@ GrowingCells grow_units(const SurfacePool& pool, const std::function<std::uint32
     return cells;
 }
 
+/// Regions of the points that are nearest to each cell and face as it does: those of a wall beside a fold do not count.
+std::vector<std::vector<RegionId>> find_own_regions(const SurfacePool& pool, const ShadingNetwork& network) {
+    std::vector<std::vector<RegionId>> out(network.cells.size());
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const std::uint32_t c = network.cell_of[i];
+        if (dot(pool[i].n, network.cells[c].n) < straddling) continue;
+        std::vector<RegionId>& own = out[c];
+        const auto at = std::lower_bound(own.begin(), own.end(), pool[i].region);
+        if (at == own.end() || *at != pool[i].region) own.insert(at, pool[i].region);
+    }
+    return out;
+}
+
 }  // namespace
 
 ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw,
@@ -124,6 +137,7 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
     });
     out.area.assign(out.cells.size(), 0);
     for (const std::uint32_t c : out.cell_of) out.area[c] += pool.area_each();
+    out.own_regions = find_own_regions(pool, out);
     const std::vector<GrowingCells::Unit> simplices = cells.complex().simplices();
     for (std::size_t i = 0; i + 2 < simplices.size(); i += 3) {
         const std::array<std::uint32_t, 3> t{number[simplices[i]], number[simplices[i + 1]], number[simplices[i + 2]]};

@@ -14,6 +14,8 @@ struct ShadingNetwork {
     std::vector<CellLight::Cell> cells;  ///< At the mean place of what each has won, facing as that does.
     std::vector<double> area;            ///< Of the surface that is nearest to a cell, m^2,
     std::vector<std::uint32_t> cell_of;  ///< and by point of the pool, which cell that is.
+    /// By cell: the regions that it lies in and faces as, in ascending order. They never light it.
+    std::vector<std::vector<RegionId>> own_regions;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 

@@ -18,7 +18,8 @@ double coordinate(const PoolPoint& p, std::size_t axis, double normal_scale) {
 
 }  // namespace
 
-SurfacePool::SurfacePool(const Stage& stage, std::size_t count, std::uint64_t seed) {
+SurfacePool::SurfacePool(const Stage& stage, std::size_t count, std::uint64_t seed)
+    : in_plane_(1e-5 * stage.scene.size()) {
     const std::vector<Piece> pieces = stage.lit_pieces();
     for (const Piece& piece : pieces) area_ += piece.patch.area();
     const std::size_t n = std::bit_ceil(std::max<std::size_t>(count, 1));

@@ -29,6 +29,10 @@ class SurfacePool {
     double area() const { return area_; }                                             ///< m^2
     double area_each() const { return area_ / static_cast<double>(points_.size()); }  ///< m^2
 
+    /// Height over a plane up to which a point lies in it, metres: coordinates in files are rounded, and those of
+    /// turned scenes are no exact multiples of anything. As `Locator` has it.
+    double in_plane() const { return in_plane_; }
+
     /// A point of the block around point i whose area is about pi width^2, by a number in [0, 1).
     std::uint32_t near(std::uint32_t i, double width, double u) const;
 
@@ -36,7 +40,7 @@ class SurfacePool {
     void sort(std::size_t first, std::size_t count, double normal_scale);
 
     std::vector<PoolPoint> points_;
-    double area_ = 0;
+    double area_ = 0, in_plane_ = 0;
 };
 
 }  // namespace exitance

@@ -16,6 +16,7 @@
 #include "exitance/reconstruct/continuous.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/direct_share.hpp"
+#include "exitance/solve/growth_watch.hpp"
 #include "exitance/transport/distributed.hpp"
 #include "exitance/transport/narrow_places.hpp"
 
@@ -28,6 +29,7 @@ void Solver::solve_indirect_light() {
         attempt();
         if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
         if (!demand || has_reached(*demand)) {
+            if (has_diverged(light_->report)) return stop_early("divergence");
             if (statistics().stopped_by.empty() || demand)
                 statistics().converged = true, statistics().stopped_by.clear();
             return;

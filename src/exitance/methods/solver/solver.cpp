@@ -10,6 +10,7 @@
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/solve_archive.hpp"
+#include "exitance/solve/growth_watch.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
@@ -46,6 +47,7 @@ Result<Solution> Solver::run() {
     if (options_.bounces != 0 && stage_.has_indirect_light()) {
         resume();
         if (step_ != Step::output) solve_indirect_light(), warn_of_bodies();
+        if (light_ && has_diverged(light_->report)) warn(divergence_warning);
     } else if (resume(); step_ != Step::output) {
         if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
         statistics().elements = direct_.tree.size();

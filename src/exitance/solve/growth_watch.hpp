@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "exitance/solve/relaxation.hpp"
+
+namespace exitance {
+
+/// Watches the fluxes of a light's reflections, which have to fall: with reflectances below 1 every reflection holds
+/// less light than the one before it, whatever the scene. Where they grow instead, the transport creates light (rows of
+/// F that sum to more than 1), and the series has no limit.
+class GrowthWatch {
+  public:
+    /// Adds the flux of the next reflection, any unit, not below 0. Returns true if the series grows: the flux rose
+    /// `max_rises` times in a row (discretisation may cause one or two), is `max_ratio` times the first, or not finite.
+    bool grows(double flux) {
+        constexpr int max_rises = 3;
+        constexpr double max_ratio = 10;
+        rises_ = flux > last_ ? rises_ + 1 : 0;
+        if (first_ == 0) first_ = flux;
+        last_ = flux;
+        return rises_ >= max_rises || !std::isfinite(flux) || flux > max_ratio * first_;
+    }
+
+  private:
+    double first_ = 0, last_ = std::numeric_limits<double>::max();
+    int rises_ = 0;
+};
+
+/// Residual, relative to the light that enters, above which a relaxation is given up: it starts at 1 at most, and
+/// over-relaxed sweeps let it rise by less.
+inline constexpr double hopeless_residual = 10;
+
+/// True if a solve ended with a residual of at least 1, no better than darkness. A series that grows is ended so.
+inline bool has_diverged(const SolveReport& report) {
+    return !report.converged && !report.interrupted && !(report.residual < 1);
+}
+
+/// Warning of a solution whose solve has diverged.
+inline constexpr const char* divergence_warning =
+    "the light grows with every reflection instead of settling, so it is wrong: the method's transport creates light "
+    "here (use smaller elements or more units, or another method)";
+
+}  // namespace exitance
