@@ -134,29 +134,36 @@ double PatchTransfer::form_factor(ElementId receiver, ElementId source, Workspac
     return F > 0 ? F * visible_share(receiver, source, w) : 0;
 }
 
-void PatchTransfer::column(std::span<const ElementId> receivers, ElementId source, std::span<float> out) const {
+void PatchTransfer::column(std::span<const ElementId> receivers, ElementId source, std::span<float> out,
+                           std::span<double> precise) const {
     const std::vector<Point> outline = tree_.outline(source);
     const std::array<Point, 4> quad = {outline[0], outline[1], outline[2], outline.back()};
-    parallel_ranges(
-        receivers.size(), 64,
-        [&](std::size_t begin, std::size_t end) {
-            Workspace w;
-            for (std::size_t i = begin; i < end; ++i) {
-                out[i] = 0;
-                if (!faces(receivers[i], source)) continue;
-                w.facing.push_back(i);
-                w.batch.add(centres_[receivers[i].value], stage_.scene.regions()[tree_.region(receivers[i])].plane.n);
-            }
-            w.F.resize(w.facing.size());
-            points_to_quad(w.batch, quad, w.F);
-            w.form_factors += w.facing.size();
-            for (std::size_t k = 0; k < w.facing.size(); ++k)
-                if (w.F[k] > 0)
-                    out[w.facing[k]] = static_cast<float>(w.F[k] * visible_share(receivers[w.facing[k]], source, w));
-            count(w);
-            note_source(tree_.region(source).value);
-        },
-        {"column", [&](std::size_t i) { return tree_.region(receivers[i]).value; }});
+    parallel_ranges(receivers.size(), 64,
+                    [&](std::size_t begin, std::size_t end) {
+                        Workspace w;
+                        for (std::size_t i = begin; i < end; ++i) {
+                            out[i] = 0;
+                            if (!precise.empty()) precise[i] = 0;
+                            if (!faces(receivers[i], source)) continue;
+                            w.facing.push_back(i);
+                            w.batch.add(centres_[receivers[i].value],
+                                        stage_.scene.regions()[tree_.region(receivers[i])].plane.n);
+                        }
+                        w.F.resize(w.facing.size());
+                        points_to_quad(w.batch, quad, w.F);
+                        w.form_factors += w.facing.size();
+                        for (std::size_t k = 0; k < w.facing.size(); ++k) {
+                            const std::size_t i = w.facing[k];
+                            const double F = precise.empty() ? 0 : form_factor_in_the_open(receivers[i], source);
+                            if (!(w.F[k] > 0) && !(F > 0)) continue;
+                            const double share = visible_share(receivers[i], source, w);
+                            out[i] = static_cast<float>(w.F[k] * share);
+                            if (!precise.empty()) precise[i] = F * share;
+                        }
+                        count(w);
+                        note_source(tree_.region(source).value);
+                    },
+                    {"column", [&](std::size_t i) { return tree_.region(receivers[i]).value; }});
 }
 
 DenseTransport::DenseTransport(const PatchTransfer& transfer, const LeafNumbering& numbering, const PatchLevel& level,

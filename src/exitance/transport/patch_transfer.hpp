@@ -62,8 +62,10 @@ class PatchTransfer {
     /// F_ij from receiver i to source j, occlusion included: E_i = sum_j F_ij B_j.
     double form_factor(ElementId receiver, ElementId source, Workspace& workspace) const;
 
-    /// F_ij for every receiver in turn and one source. Counts go to `rays` and `form_factors`.
-    void column(std::span<const ElementId> receivers, ElementId source, std::span<float> out) const;
+    /// F_ij for every receiver in turn and one source. Counts go to `rays` and `form_factors`. `precise`, if not empty:
+    /// the same numbers as `form_factor` computes them.
+    void column(std::span<const ElementId> receivers, ElementId source, std::span<float> out,
+                std::span<double> precise = {}) const;
 
     /// The share of `samples` rays between the two that meet nothing.
     double visible_share(ElementId receiver, ElementId source, Workspace& workspace) const;

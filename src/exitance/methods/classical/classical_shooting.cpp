@@ -6,8 +6,8 @@
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/methods/classical/classical_input.hpp"
+#include "exitance/methods/classical/corner_steps.hpp"
 #include "exitance/methods/classical/element_vertices.hpp"
-#include "exitance/methods/classical/vertex_averages.hpp"
 #include "exitance/solve/shooting.hpp"
 #include "exitance/transport/hemicube_rows.hpp"
 #include "exitance/transport/patch_transfer.hpp"
@@ -19,34 +19,11 @@ constexpr std::size_t default_visibility_samples = 16;
 constexpr unsigned default_hemicube_cells = 64;
 constexpr std::size_t column_memory = std::size_t{1} << 29;  // bytes of columns that are kept for later shots
 constexpr double default_least_share = 1.0 / 65536;          // of the scene's area: no element is cut smaller
+constexpr double vertex_rounding = 1e-6;  // of the scene's size: nearer corners of a region are one vertex
 
 class Shooting {
   public:
-    Shooting(const ClassicalInput& input, bool substructuring)
-        : input_(input),
-          at_vertices_(input.classical.receivers == ShootingReceivers::vertex),
-          tree_(constant_mesh(input)),
-          patches_(tree_.leaves()),
-          transfer_(nullptr) {
-        for (std::size_t p = 0; p < patches_.size(); ++p) {
-            patch_of_element_.resize(std::max<std::size_t>(patch_of_element_.size(), patches_[p].value + 1));
-            patch_of_element_[patches_[p]] = static_cast<std::uint32_t>(p);
-            patch_area_.push_back(tree_.area(patches_[p]));
-        }
-        patch_of_element_.resize(tree_.size());
-        if (substructuring)
-            for (ElementId patch : patches_) cut(patch);
-        transfer_ =
-            std::make_unique<PatchTransfer>(input.stage, tree_, static_cast<unsigned>(samples()), input.options.seed);
-        sent_.resize(patches_.size());
-        number_leaves();
-        direct_.assign(numbering_.leaves.size(), {});
-        if (!input.carries()) direct_ = mean_direct_light(input, tree_, numbering_.leaves);
-        irradiance_.assign(numbering_.leaves.size(), {});
-        unshot_ = first_light();
-        first_power_ = unshot_power(unshot_, patch_area_);
-        make_rows();
-    }
+    Shooting(const ClassicalInput& input, bool substructuring);
 
     SolveReport run();
     double unshot_share() const;
@@ -55,18 +32,23 @@ class Shooting {
   private:
     std::size_t samples() const { return input_.options.visibility_samples.value_or(default_visibility_samples); }
     void cut(ElementId e);
-    void number_leaves();
+    void add_receivers(std::size_t first_element);
+    void drop_receiver(std::size_t i);
     std::vector<Spectrum> first_light() const;
     void make_rows();
     std::span<const float> column(std::size_t patch);
-    void vertex_column(std::size_t patch);
+    std::span<const float> vertex_column(std::size_t patch);
+    void fill_column(std::size_t patch, std::size_t first);
+    void keep_end(std::vector<float>& kept, std::span<const float> column);
     float factor_at(std::size_t vertex, std::size_t patch) const;
+    void add_vertices(std::span<const ElementId> elements);
     std::size_t refine();
-    void gather_anew(std::span<const std::uint32_t> fresh);
+    void gather_anew(std::size_t first);
+    void gather_anew_at_middles(std::size_t first);
     SolveReport shoot_once();
     ElementFunction irradiance() const;
     Spectrum ambient() const;
-    Spectrum mean_at_vertices(std::size_t leaf) const;
+    Spectrum mean_at_vertices(std::size_t receiver) const;
 
     const ClassicalInput& input_;
     bool at_vertices_;
@@ -76,17 +58,50 @@ class Shooting {
     std::unique_ptr<PatchTransfer> transfer_;
     std::optional<HemicubeRows> hemicubes_;
     std::optional<RayRows> ray_rows_;
-    LeafNumbering numbering_;
-    std::vector<double> patch_area_, area_;
+    std::vector<double> patch_area_;
+    std::vector<Spectrum> sent_, unshot_;  ///< By patch.
+    // By receiver: the leaves in the order of their ids, among them elements that have been cut since, whose area and
+    // form factors are 0. Receivers keep their numbers, new ones come last.
+    std::vector<ElementId> receivers_;
+    std::vector<double> area_;
     std::vector<std::uint32_t> patch_of_;
-    std::vector<Spectrum> sent_, unshot_, reflectance_, direct_, irradiance_, at_vertex_;
+    std::vector<Spectrum> reflectance_, direct_, irradiance_;
+    std::size_t leaf_count_ = 0;
+    CornerSteps steps_;  ///< Of receivers, where they are refined.
     ElementVertices vertices_;
-    std::vector<float> column_, vertex_factors_;
-    std::vector<std::vector<float>> kept_, kept_at_vertices_;
+    std::vector<Spectrum> at_vertex_;
+    std::vector<float> column_, vertex_column_;                ///< The last ones computed.
+    std::size_t vertex_column_of_ = ~std::size_t(0);           ///< Patch of the latter, or none.
+    std::vector<std::vector<float>> kept_, kept_at_vertices_;  ///< By patch; may end before the newest receivers.
     std::size_t kept_bytes_ = 0, shots_ = 0;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
     double first_power_ = 0;
 };
+
+Shooting::Shooting(const ClassicalInput& input, bool substructuring)
+    : input_(input),
+      at_vertices_(input.classical.receivers == ShootingReceivers::vertex),
+      tree_(constant_mesh(input)),
+      patches_(tree_.leaves()),
+      patch_of_element_(tree_.size()),
+      sent_(patches_.size()),
+      steps_(vertex_rounding * input.stage.scene.size()),
+      kept_(patches_.size()),
+      kept_at_vertices_(patches_.size()) {
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+        patch_of_element_[patches_[p]] = static_cast<std::uint32_t>(p);
+        patch_area_.push_back(tree_.area(patches_[p]));
+    }
+    if (substructuring)
+        for (ElementId patch : patches_) cut(patch);
+    transfer_ =
+        std::make_unique<PatchTransfer>(input.stage, tree_, static_cast<unsigned>(samples()), input.options.seed);
+    add_receivers(0);
+    if (!input.carries()) direct_ = mean_direct_light(input, tree_, receivers_);
+    unshot_ = first_light();
+    first_power_ = unshot_power(unshot_, patch_area_);
+    make_rows();
+}
 
 /// Into four; cells, which contacts have cut off, across their longest extents.
 void Shooting::cut(ElementId e) {
@@ -100,23 +115,50 @@ void Shooting::cut(ElementId e) {
     patch_of_element_.resize(tree_.size(), patch);
 }
 
-void Shooting::number_leaves() {
-    numbering_ = LeafNumbering(tree_);
-    area_ = leaf_areas(tree_, numbering_);
-    reflectance_ = leaf_reflectances(input_.stage.scene, tree_, numbering_);
-    patch_of_.clear();
-    for (ElementId e : numbering_.leaves) patch_of_.push_back(patch_of_element_[e]);
-    kept_.assign(patches_.size(), {}), kept_at_vertices_.assign(patches_.size(), {});
-    kept_bytes_ = 0;
-    if (!at_vertices_) return;
-    vertices_.update(input_.stage, tree_, numbering_.leaves);
-    const std::size_t before = at_vertex_.size();
+/// Makes receivers of the leaves from this element on.
+void Shooting::add_receivers(std::size_t first_element) {
+    const std::size_t first = receivers_.size();
+    for (std::size_t i = first_element; i < tree_.size(); ++i) {
+        const ElementId e(i);
+        if (!tree_.is_leaf(e)) continue;
+        receivers_.push_back(e);
+        area_.push_back(tree_.area(e));
+        patch_of_.push_back(patch_of_element_[e]);
+        reflectance_.push_back(input_.material(tree_, e).reflectance);
+        if (input_.classical.refine_gradient) steps_.add(tree_.region(e), tree_.patch(e));
+    }
+    direct_.resize(receivers_.size()), irradiance_.resize(receivers_.size());
+    leaf_count_ += receivers_.size() - first;
+    if (at_vertices_) add_vertices(std::span(receivers_).subspan(first));
+}
+
+/// Of an element that has been cut.
+void Shooting::drop_receiver(std::size_t i) {
+    area_[i] = 0;
+    direct_[i] = irradiance_[i] = {};
+    steps_.remove(i);
+    --leaf_count_;
+    for (std::vector<float>& kept : kept_)
+        if (i < kept.size()) kept[i] = 0;
+}
+
+/// New vertices gather what all patches have sent.
+void Shooting::add_vertices(std::span<const ElementId> elements) {
+    const std::size_t before = vertices_.at.size();
+    vertices_.add(input_.stage, tree_, elements);
+    const std::size_t fresh = vertices_.at.size() - before;
     at_vertex_.resize(vertices_.at.size());
-    parallel_for(at_vertex_.size() - before, 4, [&](std::size_t i) {
-        for (std::size_t p = 0; p < patches_.size(); ++p)
-            if (squared(sent_[p]) > 0)
-                at_vertex_[before + i] += static_cast<double>(factor_at(before + i, p)) * sent_[p];
-    });
+    vertex_column_.resize(vertices_.at.size());
+    vertex_column_of_ = ~std::size_t(0);
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+        if (!(squared(sent_[p]) > 0)) continue;
+        parallel_for(fresh, 16, [&](std::size_t i) {
+            const std::size_t v = before + i;
+            vertex_column_[v] = factor_at(v, p);
+            at_vertex_[v] += static_cast<double>(vertex_column_[v]) * sent_[p];
+        });
+        if (kept_at_vertices_[p].size() == before) keep_end(kept_at_vertices_[p], vertex_column_);
+    }
 }
 
 /// What patches have to send at first: what they emit, or reflect of the direct light.
@@ -132,16 +174,17 @@ std::vector<Spectrum> Shooting::first_light() const {
 void Shooting::make_rows() {
     if (!input_.options.form_factors || input_.options.form_factors == FormFactorKind::analytic) return;
     const ElementLocator locator(tree_, input_.stage.scene.regions().size());
+    const LeafNumbering numbering(tree_);
     const SolveOptions& o = input_.options;
     if (o.form_factors == FormFactorKind::hemicube) {
         const auto cells =
             static_cast<unsigned>(std::min<std::size_t>(1024, o.hemicube_cells.value_or(default_hemicube_cells)));
-        hemicubes_.emplace(input_.stage, tree_, numbering_, locator, 2 * ((cells + 1) / 2));
+        hemicubes_.emplace(input_.stage, tree_, numbering, locator, 2 * ((cells + 1) / 2));
         return;
     }
     RayBudget budget = input_.knobs.solve_rays;
     if (o.visibility_samples) budget.average = static_cast<double>(samples());
-    ray_rows_.emplace(input_.stage, tree_, numbering_, locator, budget, o.seed);
+    ray_rows_.emplace(input_.stage, tree_, numbering, locator, budget, o.seed);
 }
 
 /// Exactly towards the polygon, times the share of rays from the vertex that meet nothing [Wallace89].
@@ -169,25 +212,34 @@ float Shooting::factor_at(std::size_t v, std::size_t p) const {
     return static_cast<float>(F * static_cast<double>(free) / static_cast<double>(count));
 }
 
-void Shooting::vertex_column(std::size_t patch) {
-    vertex_factors_.resize(vertices_.at.size());
-    parallel_for(vertices_.at.size(), 16, [&](std::size_t v) { vertex_factors_[v] = factor_at(v, patch); });
-    for (std::size_t i = 0; i < numbering_.leaves.size(); ++i) {
-        const std::vector<std::uint32_t>& around = vertices_.of_leaf[i];
-        column_[i] = 0;
-        for (std::uint32_t v : around) column_[i] += vertex_factors_[v] / static_cast<float>(around.size());
-    }
+/// Appends to what is kept of a column the rest of it, if that fits into memory.
+void Shooting::keep_end(std::vector<float>& kept, std::span<const float> column) {
+    const std::span<const float> end = column.subspan(kept.size());
+    if (kept_bytes_ + end.size_bytes() > column_memory) return;
+    kept_bytes_ += end.size_bytes();
+    kept.insert(kept.end(), end.begin(), end.end());
 }
 
-std::span<const float> Shooting::column(std::size_t patch) {
-    const std::size_t n = numbering_.leaves.size();
-    if (kept_[patch].size() == n) {
-        if (at_vertices_) vertex_factors_ = kept_at_vertices_[patch];
-        return kept_[patch];
-    }
-    column_.assign(n, 0);
+/// Form factors from all vertices to a patch.
+std::span<const float> Shooting::vertex_column(std::size_t patch) {
+    std::vector<float>& kept = kept_at_vertices_[patch];
+    const std::size_t first = kept.size(), count = vertices_.at.size();
+    if (first == count) return kept;
+    if (vertex_column_of_ == patch) return vertex_column_;
+    vertex_column_of_ = patch;
+    vertex_column_.resize(count);
+    std::copy(kept.begin(), kept.end(), vertex_column_.begin());
+    parallel_for(count - first, 16, [&](std::size_t i) { vertex_column_[first + i] = factor_at(first + i, patch); });
+    keep_end(kept, vertex_column_);
+    return vertex_column_;
+}
+
+/// Computes the entries of `column_` from this receiver on.
+void Shooting::fill_column(std::size_t patch, std::size_t first) {
+    const std::size_t n = receivers_.size();
+    std::fill(column_.begin() + static_cast<std::ptrdiff_t>(first), column_.end(), 0.0f);
     if (hemicubes_) {
-        for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t i = first; i < n; ++i)
             column_[i] = static_cast<float>(hemicubes_->form_factor(patch, i) * patch_area_[patch] / area_[i]);
     } else if (ray_rows_) {
         const auto hits = ray_rows_->hits(patch);
@@ -195,15 +247,32 @@ std::span<const float> Shooting::column(std::size_t patch) {
             if (hit != RayRows::missed)
                 column_[hit] += static_cast<float>(patch_area_[patch] / area_[hit] / static_cast<double>(hits.size()));
     } else if (at_vertices_) {
-        vertex_column(patch);
+        const std::span<const float> factors = vertex_column(patch);
+        for (std::size_t i = first; i < n; ++i) {
+            if (!tree_.is_leaf(receivers_[i])) continue;
+            const std::vector<std::uint32_t>& around = vertices_.of_element[i];
+            for (std::uint32_t v : around) column_[i] += factors[v] / static_cast<float>(around.size());
+        }
     } else {
-        transfer_->column(numbering_.leaves, patches_[patch], column_);
+        std::vector<std::size_t> numbers;
+        std::vector<ElementId> leaves;
+        for (std::size_t i = first; i < n; ++i)
+            if (tree_.is_leaf(receivers_[i])) numbers.push_back(i), leaves.push_back(receivers_[i]);
+        std::vector<float> factors(leaves.size());
+        transfer_->column(leaves, patches_[patch], factors);
+        for (std::size_t k = 0; k < numbers.size(); ++k) column_[numbers[k]] = factors[k];
     }
-    const std::size_t bytes = sizeof(float) * (n + (at_vertices_ ? vertex_factors_.size() : 0));
-    if (kept_bytes_ + bytes > column_memory) return column_;
-    kept_bytes_ += bytes;
-    if (at_vertices_) kept_at_vertices_[patch] = vertex_factors_;
-    return kept_[patch] = column_;
+}
+
+/// Form factors from all receivers to a patch. Entries that are kept are not computed again.
+std::span<const float> Shooting::column(std::size_t patch) {
+    std::vector<float>& kept = kept_[patch];
+    if (kept.size() == receivers_.size()) return kept;
+    column_.resize(receivers_.size());
+    std::copy(kept.begin(), kept.end(), column_.begin());
+    fill_column(patch, kept.size());
+    keep_end(kept, column_);
+    return column_;
 }
 
 /// One shot, of the patch with most to send.
@@ -222,76 +291,60 @@ SolveReport Shooting::shoot_once() {
     if (shooter == patches_.size()) return report;
     const Spectrum sent = before[shooter] - unshot_[shooter];
     sent_[shooter] += sent;
-    if (at_vertices_)
-        for (std::size_t v = 0; v < at_vertex_.size(); ++v)
-            at_vertex_[v] += static_cast<double>(vertex_factors_[v]) * sent;
+    if (at_vertices_) {
+        const std::span<const float> factors = vertex_column(shooter);
+        for (std::size_t v = 0; v < at_vertex_.size(); ++v) at_vertex_[v] += static_cast<double>(factors[v]) * sent;
+    }
     return report;
 }
 
-/// Elements across which radiosity changes by more than asked for are cut, and gather anew what all patches have sent.
-/// Returns how many.
+/// Elements across which radiosity changes by more than the gradient requested are cut, and their parts gather anew
+/// what all patches have sent. Returns how many. O(receivers), and a form factor for every new receiver and patch.
 std::size_t Shooting::refine() {
     const double least = input_.options.min_area.value_or(default_least_share * input_.stage.area);
-    std::vector<Spectrum> b(irradiance_.size());
-    for (std::size_t i = 0; i < b.size(); ++i) b[i] = reflectance_[i] * (direct_[i] + irradiance_[i]);
-    // On black surfaces what arrives is what there is to follow.
+    std::vector<Spectrum> b(receivers_.size());
+    for (std::size_t i = 0; i < b.size(); ++i) {
+        b[i] = direct_[i] + irradiance_[i];
+        // Black surfaces reflect nothing: their irradiance is followed.
+        if (max(reflectance_[i]) > 0) b[i] = reflectance_[i] * b[i];
+    }
+    steps_.average(b);
+    std::vector<std::size_t> steep;
     for (std::size_t i = 0; i < b.size(); ++i)
-        if (max(reflectance_[i]) == 0) b[i] = direct_[i] + irradiance_[i];
-    const ElementFunction f =
-        averaged_at_vertices(constant_function(tree_, numbering_.leaves, b), 1e-6 * input_.stage.scene.size());
-    std::vector<ElementId> steep;
-    for (ElementId e : numbering_.leaves) {
-        const Patch& patch = tree_.patch(e);
-        if (tree_.area(e) / 4 < least) continue;
-        Spectrum lo(HUGE_VAL), hi(-HUGE_VAL);
-        for (int k = 0; k < patch.corner_count(); ++k) {
-            const Spectrum v = f.at({e, patch.corner_uv(k)});
-            for (std::size_t band = 0; band < bands; ++band)
-                lo[band] = std::min(lo[band], v[band]), hi[band] = std::max(hi[band], v[band]);
-        }
-        if (max(hi - lo) > *input_.classical.refine_gradient) steep.push_back(e);
-    }
+        if (tree_.is_leaf(receivers_[i]) && area_[i] / 4 >= least &&
+            steps_.largest_step(i) > *input_.classical.refine_gradient)
+            steep.push_back(i);
     if (steep.empty()) return 0;
-    Field<ElementId, std::uint32_t> old(tree_.size());
-    for (std::size_t i = 0; i < numbering_.leaves.size(); ++i)
-        old[numbering_.leaves[i]] = static_cast<std::uint32_t>(i);
-    const std::size_t size = tree_.size();
-    for (ElementId e : steep) cut(e);
+    const std::size_t elements = tree_.size(), first = receivers_.size();
+    for (std::size_t i : steep) cut(receivers_[i]), drop_receiver(i);
     transfer_->update_places();
-    const std::vector<Spectrum> old_irradiance = irradiance_, old_direct = direct_;
-    number_leaves();
-    irradiance_.assign(numbering_.leaves.size(), {}), direct_ = irradiance_;
-    std::vector<std::uint32_t> fresh;
-    for (std::uint32_t i = 0; i < numbering_.leaves.size(); ++i) {
-        const ElementId e = numbering_.leaves[i];
-        if (e.value >= size)
-            fresh.push_back(i);
-        else
-            irradiance_[i] = old_irradiance[old[e]], direct_[i] = old_direct[old[e]];
-    }
-    gather_anew(fresh);
+    add_receivers(elements);
+    gather_anew(first);
     return steep.size();
 }
 
-void Shooting::gather_anew(std::span<const std::uint32_t> fresh) {
-    std::vector<ElementId> elements;
-    for (std::uint32_t i : fresh) elements.push_back(numbering_.leaves[i]);
+/// Direct light of the receivers from this one on, and what all patches have sent to them.
+void Shooting::gather_anew(std::size_t first) {
+    const std::span<const ElementId> fresh = std::span(receivers_).subspan(first);
     if (!input_.carries()) {
-        const std::vector<Spectrum> exact = mean_direct_light(input_, tree_, elements);
-        for (std::size_t k = 0; k < fresh.size(); ++k) direct_[fresh[k]] = exact[k];
+        const std::vector<Spectrum> exact = mean_direct_light(input_, tree_, fresh);
+        std::copy(exact.begin(), exact.end(), direct_.begin() + static_cast<std::ptrdiff_t>(first));
     }
-    parallel_for(fresh.size(), 4, [&](std::size_t k) {
-        const std::uint32_t i = fresh[k];
-        if (at_vertices_) {
-            irradiance_[i] = mean_at_vertices(i);
-            return;
-        }
-        PatchTransfer::Workspace workspace;
-        for (std::size_t p = 0; p < patches_.size(); ++p)
-            if (squared(sent_[p]) > 0)
-                irradiance_[i] += transfer_->form_factor(elements[k], patches_[p], workspace) * sent_[p];
-        transfer_->count(workspace);
-    });
+    if (!at_vertices_) return gather_anew_at_middles(first);
+    for (std::size_t i = first; i < receivers_.size(); ++i) irradiance_[i] = mean_at_vertices(i);
+}
+
+void Shooting::gather_anew_at_middles(std::size_t first) {
+    const std::span<const ElementId> fresh = std::span(receivers_).subspan(first);
+    std::vector<double> factors(fresh.size());
+    column_.resize(receivers_.size());
+    const std::span<float> column = std::span(column_).subspan(first);
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+        if (!(squared(sent_[p]) > 0)) continue;
+        transfer_->column(fresh, patches_[p], column, factors);
+        for (std::size_t k = 0; k < fresh.size(); ++k) irradiance_[first + k] += factors[k] * sent_[p];
+        if (kept_[p].size() == first) keep_end(kept_[p], column_);
+    }
 }
 
 /// Of the power that there was at first.
@@ -330,9 +383,9 @@ SolveReport Shooting::run() {
     return report;
 }
 
-/// Of what has arrived around a leaf.
-Spectrum Shooting::mean_at_vertices(std::size_t leaf) const {
-    const std::vector<std::uint32_t>& around = vertices_.of_leaf[leaf];
+/// Mean irradiance of the vertices around a receiver.
+Spectrum Shooting::mean_at_vertices(std::size_t receiver) const {
+    const std::vector<std::uint32_t>& around = vertices_.of_element[receiver];
     Spectrum sum;
     for (std::uint32_t v : around) sum += at_vertex_[v];
     return sum / static_cast<double>(around.size());
@@ -351,32 +404,34 @@ Spectrum Shooting::ambient() const {
 
 ElementFunction Shooting::irradiance() const {
     const Spectrum more = input_.classical.ambient ? ambient() : Spectrum();
-    std::vector<Spectrum> E = irradiance_;
-    for (Spectrum& value : E) value += more;
-    if (!at_vertices_) return constant_function(tree_, numbering_.leaves, E);
     ElementFunction out;
     out.tree = tree_;
     out.first_value.resize(tree_.size(), 0);
-    for (std::size_t i = 0; i < numbering_.leaves.size(); ++i) {
-        out.first_value[numbering_.leaves[i]] = static_cast<std::uint32_t>(out.values.size());
+    for (std::size_t i = 0; i < receivers_.size(); ++i) {
+        const ElementId leaf = receivers_[i];
+        if (!tree_.is_leaf(leaf)) continue;
+        out.first_value[leaf] = static_cast<std::uint32_t>(out.values.size());
+        if (!at_vertices_) {
+            for (int k = 0; k < 4; ++k) out.add_value(irradiance_[i] + more);
+            continue;
+        }
         // The corners of a cell are not those of its frame: it is delivered as its mean.
-        const ElementId leaf = numbering_.leaves[i];
         for (int k = 0; k < tree_.patch(leaf).corner_count(); ++k)
-            out.add_value(more + (tree_.is_cell(leaf) ? mean_at_vertices(i)
-                                                      : at_vertex_[vertices_.of_leaf[i][static_cast<std::size_t>(k)]]));
+            out.add_value(more + (tree_.is_cell(leaf)
+                                      ? mean_at_vertices(i)
+                                      : at_vertex_[vertices_.of_element[i][static_cast<std::size_t>(k)]]));
     }
     return out;
 }
 
 void Shooting::report(ClassicalLight& light) const {
     light.irradiance = irradiance();
-    light.elements = tree_.size(), light.leaf_elements = numbering_.leaves.size();
+    light.elements = tree_.size(), light.leaf_elements = leaf_count_;
     light.rays =
         transfer_->rays() + rays_ + (hemicubes_ ? hemicubes_->rays() : 0) + (ray_rows_ ? ray_rows_->rays() : 0);
     light.form_factors = transfer_->form_factors() + form_factors_;
     light.link_memory_bytes = kept_bytes_;
-    light.coefficient_memory_bytes =
-        sizeof(Spectrum) * (2 * patches_.size() + 2 * numbering_.leaves.size() + at_vertex_.size());
+    light.coefficient_memory_bytes = sizeof(Spectrum) * (2 * patches_.size() + 2 * leaf_count_ + at_vertex_.size());
 }
 
 }  // namespace

@@ -200,6 +200,23 @@ TEST(Classical, RefinementCutsWhereLightChangesDuringShootingOrAfter) {
     EXPECT_NE(elements[0], elements[1]);
 }
 
+TEST(Classical, RefinementDuringShootingComputesNoFormFactorTwice) {
+    // A light above a floor that it alone lights: every element of the floor meets each patch of the light once.
+    const Scene scene = built_scene("blocker", {{"h", "0.7"}});
+    ClassicalOptions c = raw;
+    c.refine_gradient = 0.5;
+    const SolveOptions o{.method = Method::substructuring, .mesh_size = 0.5, .min_area = 1e-3};
+    std::size_t rays[2], elements[2];
+    for (RefineWhen when : {RefineWhen::during, RefineWhen::after}) {
+        c.refine = when;
+        const SolveStatistics s = solve(scene, o, c).solution.statistics;
+        const auto i = static_cast<std::size_t>(when == RefineWhen::after);
+        rays[i] = s.rays, elements[i] = s.leaf_elements;
+    }
+    const double by_elements = static_cast<double>(elements[0]) / static_cast<double>(elements[1]);
+    EXPECT_NEAR(static_cast<double>(rays[0]) / static_cast<double>(rays[1]), by_elements, 0.15 * by_elements);
+}
+
 TEST(Classical, ShootingCutsPatchesThatContactsHaveCut) {
     // Boxes stand on the floor: their outlines cut it into cells, which are no parallelograms.
     const Scene scene = built_scene("cornell");

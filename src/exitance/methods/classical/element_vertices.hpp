@@ -11,14 +11,14 @@
 
 namespace exitance {
 
-/// Vertices of elements as [Wallace89] has them: one for all leaves of a region that have a corner there.
+/// Vertices of elements as [Wallace89] has them: one for all elements of a region that have a corner there.
 struct ElementVertices {
-    std::vector<Point> at;  ///< Drawn a little into the elements, so that what stands on a border is no blocker.
+    std::vector<Point> at;  ///< Drawn a little into the elements, so that surfaces on a border do not block.
     std::vector<RegionId> region;
-    std::vector<std::vector<std::uint32_t>> of_leaf;  ///< Numbers of the vertices around what a leaf covers.
+    std::vector<std::vector<std::uint32_t>> of_element;  ///< Vertices around each element, in the order of `add`.
 
-    /// Adds the vertices that only these leaves have; the others keep their numbers.
-    void update(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves);
+    /// Adds elements, and the vertices that none of the earlier ones has.
+    void add(const Stage& stage, const ElementTree& tree, std::span<const ElementId> elements);
 
   private:
     std::map<std::tuple<std::uint32_t, long long, long long, long long>, std::uint32_t> known_;  ///< By region, place.
