@@ -150,10 +150,14 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
     return out;
 }
 
-double mean_direct_light(const Stage& stage, const DirectProjection& direct) {
-    double flux = 0;
-    for (ElementId e : direct.tree.leaves()) flux += direct.tree.area(e) * mean(direct.fit[e].mean);
-    return flux / stage.area;
+DirectMeans mean_direct_light(const Stage& stage, const DirectProjection& direct) {
+    DirectMeans out;
+    for (ElementId e : direct.tree.leaves()) {
+        const double share = direct.tree.area(e) / stage.area;
+        out.arriving += share * mean(direct.fit[e].mean);
+        out.reflected += share * mean(stage.scene.material(direct.tree.region(e)).reflectance * direct.fit[e].mean);
+    }
+    return out;
 }
 
 EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage) {

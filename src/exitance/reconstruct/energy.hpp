@@ -16,7 +16,14 @@ EnergyBalance energy_balance(const Solution& solution, const Stage& stage);
 /// The same of what is exported, which holds all light; of scenes that no light comes to from outside.
 EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage);
 
-/// Mean over all surfaces and bands of E_dir, W/m^2.
-double mean_direct_light(const Stage& stage, const DirectProjection& direct);
+/// Means over all surfaces and bands, W/m^2.
+struct DirectMeans {
+    double arriving = 0;   ///< Of E_dir,
+    double reflected = 0;  ///< and of rho E_dir.
+
+    /// The mean that errors of direct light alone are relative to: of B - M, or of E if nothing reflects.
+    double of_errors() const { return reflected > 0 ? reflected : arriving; }
+};
+DirectMeans mean_direct_light(const Stage& stage, const DirectProjection& direct);
 
 }  // namespace exitance

@@ -8,6 +8,7 @@
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/reconstruct/continuous.hpp"
+#include "exitance/reconstruct/error/interpolant_error.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
@@ -45,16 +46,20 @@ class Interpolation {
                 [&](std::size_t i) -> Fit& { return fitted_[active[i]]; },
                 {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
             locator_.reset();  // it makes room for what comes next
-            report.error = error();
+            double misfit = error();
             report.interrupted = stop.requested();
             const bool last =
                 round == options_.max_depth || report.interrupted || out_.tree.size() > options_.max_elements;
-            if (report.error <= options_.tolerance || last) {
+            if (misfit <= options_.tolerance || last) {
                 ElementFunction continuous = join(stop);
-                report.error = error();
-                if (report.error <= options_.tolerance || last) return continuous;
+                misfit = error();
+                if (misfit <= options_.tolerance || last) {
+                    if (!stop.requested()) report.error = measured_error(continuous);
+                    report.interrupted |= stop.requested();
+                    return continuous;
+                }
             }
-            active = split_largest(report.error);
+            active = split_largest(misfit);
         }
     }
 
@@ -165,6 +170,13 @@ class Interpolation {
         return stage_.rooms.weight(out_.tree, e) / (light * light);
     }
 
+    double measured_error(const ElementFunction& continuous) const {
+        std::vector<InterpolatedLeaf> leaves;
+        for (ElementId e : out_.tree.leaves()) leaves.push_back({e, fitted_[e].misfit_squared});
+        return interpolant_error(stage_, continuous, leaves, {indirect_, direct_weight_}, options_.seed);
+    }
+
+    /// By the fits' own misfits.
     double error() const {
         double sum = 0;
         for (ElementId e : out_.tree.leaves()) sum += out_.tree.area(e) * fitted_[e].misfit_squared;

@@ -11,10 +11,11 @@ struct InterpolantOptions {
     int max_depth = 12;    ///< Rounds of cutting.
     std::size_t max_elements = 2'000'000;
     std::span<const double> light_in = {};  ///< As in LocalPassDemand: errors are allowed in proportion.
+    std::uint64_t seed = 1;                 ///< Of the places at which the error is measured.
 };
 
 struct InterpolantReport {
-    double error = 0;  ///< Estimated RMS over all surfaces of rho (E_dir + E_ind - interpolant), W/m^2.
+    double error = 0;  ///< Of the interpolant, measured as `interpolant_error` does; 0 if interrupted. W/m^2
     bool interrupted = false;
 };
 

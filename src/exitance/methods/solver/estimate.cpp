@@ -87,7 +87,7 @@ void Solver::tell_clustering_error() {
     const double error = clustering_error(stage_, direct_, point_accuracy(1));
     if (error > 0)
         statistics().relative_error_estimate = statistics().relative_error_bound =
-            error / mean_direct_light(stage_, direct_);
+            error / mean_direct_light(stage_, direct_).of_errors();
 }
 
 void Solver::warn_of_bodies() {

@@ -47,15 +47,18 @@ void Solver::make_output_mesh() {
         solution_.interpolant = solution_.indirect;
         statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
     } else {
-        // Where nothing reflects, E itself is what errors are relative to.
-        const double scale =
-            certificate_.mean_reflected > 0 ? certificate_.mean_reflected : mean_direct_light(stage_, direct_);
+        const DirectMeans means = mean_direct_light(stage_, direct_);
+        const double scale = certificate_.mean_reflected > 0 ? certificate_.mean_reflected : means.of_errors();
+        // Fits weigh errors by `light_weight`, which is not 1 on black surfaces.
+        const bool is_black = !(means.reflected > 0) && !(certificate_.mean_reflected > 0);
+        const double counted = is_black ? scale * mean(light_weight(Material{})) : scale;
         InterpolantReport report;
         solution_.interpolant = make_interpolant(
             stage_, direct_, solution_.indirect, solution_.direct_share,
             {.tolerance =
-                 options_.error_interpolant.value_or(calibrated::interpolant_error * options_.error_target()) * scale,
-             .light_in = light_in_},
+                 options_.error_interpolant.value_or(calibrated::interpolant_error * options_.error_target()) * counted,
+             .light_in = light_in_,
+             .seed = options_.seed},
             report, stop_);
         const double own = scale > 0 ? report.error / scale : 0;
         if (statistics().relative_error_estimate && !report.interrupted)
