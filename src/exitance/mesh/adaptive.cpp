@@ -28,10 +28,11 @@ IdRange<ElementId> refine_element(ElementTree& tree, ElementId leaf, Cut only) {
     }
     const Patch& patch = tree.patch(leaf);
     const double a = norm(patch.a), b = norm(patch.b);
+    constexpr double long_ratio = 1.5 * (1 + 1e-6);  // 3 : 2 is not long, however coordinates are rounded
     tree.split(leaf, only != Cut::none     ? only
                      : patch.is_triangle() ? Cut::both
-                     : a > 1.5 * b         ? Cut::u
-                     : b > 1.5 * a         ? Cut::v
+                     : a > long_ratio * b  ? Cut::u
+                     : b > long_ratio * a  ? Cut::v
                                            : Cut::both);
     return tree.children(leaf);
 }

@@ -6,6 +6,13 @@
 namespace exitance {
 namespace {
 
+/// True if a length is above a limit by more than coordinates in files are rounded by, so that a scene is cut alike
+/// however it is turned where lengths are multiples of the mesh size.
+bool exceeds(double length, double limit) {
+    constexpr double rounding = 1e-6;  // of the limit
+    return length > (1 + rounding) * limit;
+}
+
 /// Cuts every leaf below `root` that a line, given in the root's coordinates, runs through.
 void cut_leaves(ElementTree& tree, ElementId root, const CutLine& line) {
     const Patch frame = tree.patch(root);
@@ -49,10 +56,10 @@ class Cutter {
         const double a = norm(tree_.patch(e).a), b = norm(tree_.patch(e).b);
         const bool along_u = touches[0] || touches[2], along_v = touches[1] || touches[3];
         const bool end_of_u = along_u && (open[1] || open[3]), end_of_v = along_v && (open[0] || open[2]);
-        const bool cut_u =
-            a > size_.edge || (along_v && a > strip_) || (end_of_u && a > size_.longest_end * std::max(b, strip_));
-        const bool cut_v =
-            b > size_.edge || (along_u && b > strip_) || (end_of_v && b > size_.longest_end * std::max(a, strip_));
+        const bool cut_u = exceeds(a, size_.edge) || (along_v && exceeds(a, strip_)) ||
+                           (end_of_u && exceeds(a, size_.longest_end * std::max(b, strip_)));
+        const bool cut_v = exceeds(b, size_.edge) || (along_u && exceeds(b, strip_)) ||
+                           (end_of_v && exceeds(b, size_.longest_end * std::max(a, strip_)));
         if (!cut_u && !cut_v) return;
         const Cut way = cut_u && cut_v ? Cut::both : cut_u ? Cut::u : Cut::v;
         tree_.split(e, way);
@@ -70,7 +77,7 @@ class Cutter {
 
     void refine_triangle(ElementId e) {
         const Patch& p = tree_.patch(e);
-        if (std::max({norm(p.a), norm(p.b), norm(p.b - p.a)}) <= size_.edge) return;
+        if (!exceeds(std::max({norm(p.a), norm(p.b), norm(p.b - p.a)}), size_.edge)) return;
         tree_.split(e, Cut::both);
         for (ElementId child : tree_.children(e)) refine_triangle(child);
     }
@@ -98,7 +105,7 @@ class Cutter {
         double longest = 0;
         for (const Point& a : outline)
             for (const Point& b : outline) longest = std::max(longest, norm(a - b));
-        if (longest <= 1.3 * size_.edge) return;
+        if (!exceeds(longest, 1.3 * size_.edge)) return;
         for (ElementId child : refine_element(tree_, e)) shorten(child);
     }
 
@@ -182,9 +189,13 @@ ElementTree make_mesh(const std::vector<Piece>& pieces, const std::vector<Concav
 
 std::size_t predict_elements(const std::vector<Piece>& pieces, double edge) {
     double count = 0;
+    const auto parts = [&](double length) {
+        double n = 1;
+        while (exceeds(length, n * edge)) n *= 2;
+        return n;
+    };
     for (const auto& [region, patch] : pieces) {
-        const double a = std::exp2(std::ceil(std::max(0.0, std::log2(norm(patch.a) / edge))));
-        const double b = std::exp2(std::ceil(std::max(0.0, std::log2(norm(patch.b) / edge))));
+        const double a = parts(norm(patch.a)), b = parts(norm(patch.b));
         count += patch.is_triangle() ? std::max(a, b) * std::max(a, b) : a * b;
     }
     return static_cast<std::size_t>(count);

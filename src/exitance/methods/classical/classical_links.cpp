@@ -13,13 +13,14 @@ namespace {
 /// A_eps where none is given, of the scene's area: eight cuts of a whole.
 constexpr double default_least_share = 1.0 / 65536;
 constexpr std::size_t default_memory = std::size_t(1) << 32;  // of links, bytes
-constexpr std::size_t most_rounds = 200;                      // of refinement and gathering; a safeguard
+constexpr double rounding = 1e-6;         // of lengths and areas that count as equal: coordinates in files are rounded
+constexpr std::size_t most_rounds = 200;  // of refinement and gathering; a safeguard
 
 /// Into quarters; a parallelogram much longer than wide across its length, so that elements come to be as long as wide.
 Cut way_to_cut(const Patch& patch) {
     constexpr double long_ratio = 1.5;
     const double a = norm(patch.a), b = norm(patch.b);
-    if (patch.is_triangle() || std::max(a, b) <= long_ratio * std::min(a, b)) return Cut::both;
+    if (patch.is_triangle() || std::max(a, b) <= (1 + rounding) * long_ratio * std::min(a, b)) return Cut::both;
     return a > b ? Cut::u : Cut::v;
 }
 
@@ -132,7 +133,7 @@ bool LinkedElements::may_cut(ElementId e) const {
     const Patch& patch = tree_.patch(e);
     if (patch.area() / (way_to_cut(patch) == Cut::both ? 4 : 2) < least_area_) return false;
     const double edge = std::max({norm(patch.a), norm(patch.b), patch.is_triangle() ? norm(patch.a - patch.b) : 0.0});
-    return edge > longest_edge_ * (1 + 1e-9);
+    return edge > longest_edge_ * (1 + rounding);
 }
 
 /// Children begin with their parent's light.
@@ -172,7 +173,7 @@ ElementId LinkedElements::to_cut(ElementId p, const Link& link, double threshold
         const bool partial = link.share > 0 && link.share < 1;
         if (strength(p, q) <= (partial ? 0.5 * threshold : threshold)) return {};
     }
-    const bool first = tree_.area(p) >= tree_.area(q) && tree_.area(p) > 0;
+    const bool first = tree_.area(p) >= (1 - rounding) * tree_.area(q) && tree_.area(p) > 0;
     const ElementId larger = first ? p : q, smaller = first ? q : p;
     return may_cut(larger) ? larger : may_cut(smaller) ? smaller : ElementId();
 }
