@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -119,6 +120,33 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     Json kept = Json::parse(stats.out), made = json;
     for (Json* either : {&kept, &made}) either->erase("seconds"), either->erase("peak_memory_bytes");
     EXPECT_EQ(kept, made);
+}
+
+/// A closed room with a lamp, and a closed room without one beside it.
+std::string write_lit_and_dark_room(const TemporaryFolder& folder) {
+    const std::string scene = write_small_room(folder);
+    std::ofstream(scene, std::ios::app)
+        << "v 6 0 0\nv 9 0 0\nv 9 3 0\nv 6 3 0\nv 6 0 2.5\nv 9 0 2.5\nv 9 3 2.5\nv 6 3 2.5\nusemtl grey\ng dark\n"
+           "f 13 14 15 16\nf 20 19 18 17\nf 13 17 18 14\nf 14 18 19 15\nf 15 19 20 16\nf 16 20 17 13\n";
+    return scene;
+}
+
+TEST(ProgramSolve, ARoomWithoutLightHasAMeanOfZeroAndAReferenceForItsError) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "rooms.h5";
+    const Finished run =
+        run_program({"solve", write_lit_and_dark_room(folder), "-o", solution, "--error", "0.1", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Json rooms = Json::parse(run.out)["rooms"];
+    ASSERT_EQ(rooms.size(), 2u);
+    const Json &lit = rooms[0], &dark = rooms[1];
+    EXPECT_EQ(keys(lit), (std::vector<std::string>{"area", "mean", "reference", "error"}));
+    EXPECT_GT(lit["mean"], 0.1);
+    EXPECT_EQ(lit["reference"], lit["mean"]);
+    EXPECT_EQ(dark["mean"], 0.0);
+    EXPECT_GT(dark["reference"], 0.0);
+    EXPECT_EQ(Json::parse(run_program({"stats", solution, "--json"}).out)["rooms"], rooms);
+    EXPECT_NE(run_program({"stats", solution}).out.find("48 m^2: 0 W/m^2"), std::string::npos);
 }
 
 TEST(ProgramSolve, PeakMemoryIsItsOwnNotThatOfWhoStartsIt) {

@@ -63,7 +63,8 @@ Json seconds_of(const SolveStatistics& s) {
 std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
     Json rooms = Json::array();
     for (const RoomError& room : s.rooms)
-        rooms.push_back({{"area", room.area}, {"mean", room.mean}, {"error", room.error}});
+        rooms.push_back(
+            {{"area", room.area}, {"mean", room.mean}, {"reference", room.reference}, {"error", room.error}});
     Json bodies = Json::array();
     for (const BodyError& body : s.bodies)
         bodies.push_back({{"surfaces", body.surfaces},

@@ -33,11 +33,14 @@ struct EnergyBalance {
     double defect = 0;    ///< |emitted - absorbed - escaped| / emitted
 };
 
-/// Light of a room (LightRooms), and how far it is off.
+/// Light of a room (LightRooms) and its error.
 struct RoomError {
     double area = 0;   ///< m^2
-    double mean = 0;   ///< Of reflected radiosity over its surfaces and the bands, W/m^2,
-    double error = 0;  ///< and the RMS error of radiosity relative to it.
+    double mean = 0;   ///< Mean reflected radiosity over the room's surfaces and the bands, W/m^2; 0 in the dark.
+    double error = 0;  ///< RMS error of radiosity relative to `reference`.
+    /// The light that the error is relative to, W/m^2: `mean`, or a small share of the brightest room's where that is
+    /// larger, since no error can be relative to darkness.
+    double reference = 0;
 };
 
 /// Light of a body (`find_bodies`), and how far it is off.

@@ -93,10 +93,15 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
         file.write(group + "/elements_by_level", levels, 1, {"1", "elements of a hierarchy by depth, roots first"});
     }
     if (!statistics.rooms.empty()) {
-        std::vector<double> rooms;
-        for (const RoomError& room : statistics.rooms) rooms.insert(rooms.end(), {room.area, room.mean, room.error});
+        std::vector<double> rooms, references;
+        for (const RoomError& room : statistics.rooms) {
+            rooms.insert(rooms.end(), {room.area, room.mean, room.error});
+            references.push_back(room.reference);
+        }
         file.write(group + "/rooms", rooms, 3,
                    {"m^2, W/m^2, 1", "area, mean reflected radiosity and relative error of every room"});
+        file.write(group + "/room_references", references, 1,
+                   {"W/m^2", "light that the error of every room is relative to"});
     }
     if (!statistics.bodies.empty()) {
         std::vector<double> bodies;
@@ -153,8 +158,13 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
             statistics.elements_by_level.push_back(static_cast<std::size_t>(std::max<std::int64_t>(0, count)));
     if (const std::string rooms = group + "/rooms"; file.has(rooms)) {
         const std::vector<double> values = file.read<double>(rooms, 3);
-        for (std::size_t i = 0; i + 2 < values.size(); i += 3)
-            statistics.rooms.push_back({values[i], values[i + 1], values[i + 2]});
+        for (std::size_t i = 0; i + 2 < values.size(); i += 3)  // older files have no references: the means were those
+            statistics.rooms.push_back({values[i], values[i + 1], values[i + 2], values[i + 1]});
+        if (const std::string references = group + "/room_references"; file.has(references)) {
+            const std::vector<double> given = file.read<double>(references);
+            for (std::size_t i = 0; i < std::min(given.size(), statistics.rooms.size()); ++i)
+                statistics.rooms[i].reference = given[i];
+        }
     }
     if (const std::string bodies = group + "/bodies"; file.has(bodies)) {
         const std::vector<double> values = file.read<double>(bodies, 6);

@@ -127,6 +127,7 @@ struct Certifier::Content {
     void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
     Certificate judge();
     void judge_rooms(Certificate& out);
+    std::vector<double> mean_by_room() const;
     std::vector<RoomError> rooms;
     std::vector<BodyError> bodies;  ///< The largest first.
 };
@@ -152,6 +153,17 @@ void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
     const double resolved = (options.summed ? 0.5 : 1) * options.error * mean_reflected;
     const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : certificate_rays(0);
     plan = plan_check(check, stage, b, at, hash(options.seed, 3), {rays * resolved * resolved, !options.summed});
+}
+
+/// Mean reflected radiosity of every room as the method found it, W/m^2; one entry where all is one room.
+std::vector<double> Certifier::Content::mean_by_room() const {
+    if (stage.rooms.count() == 0) return {mean_reflected};
+    std::vector<double> out(stage.rooms.count());
+    for (std::size_t i = 0; i < light.reflected.size(); ++i) {
+        const std::size_t room = stage.rooms.of(light.tree, light.numbering.leaves[i]);
+        out[room] += area[i] * mean(light.reflected[i]) / stage.rooms.area(room);
+    }
+    return out;
 }
 
 /// One more look: the residual at stratified points, twice each.
@@ -240,8 +252,9 @@ std::vector<Spectrum> Certifier::Content::late_response() const {
 /// Every room by itself; parts of the residual are then those of the rooms, each by what it may have.
 void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
+    const std::vector<double> found = mean_by_room();
     if (count == 0) {
-        rooms = {{stage.area, mean_reflected, out.estimate}};
+        rooms = {{stage.area, found[0], out.estimate, mean_reflected}};
         out.worst_room = out.of_rooms = out.estimate, out.room_uncertainty = out.uncertainty;
         return;
     }
@@ -263,7 +276,7 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         for (double& square : squares[room]) square /= weight[room] > 0 ? weight[room] : 1;
         const BatchMean error(squares[room]);
         const double estimate = std::sqrt(std::max(error.mean, error.standard_error)) / light_there;
-        rooms.push_back({stage.rooms.area(room), light_there, estimate});
+        rooms.push_back({stage.rooms.area(room), found[room], estimate, light_there});
         if (estimate > out.worst_room) {
             out.worst_room = estimate;
             out.room_uncertainty = 0.5 * error.standard_error / (estimate * light_there * light_there);
@@ -393,7 +406,7 @@ std::vector<FaceError> Certifier::surface_errors() const {
     if (c.rooms.empty()) return {};
     std::vector<PointError> points;
     for (const ResidualSample& s : c.samples) {
-        const double light_there = c.rooms[s.room].mean;
+        const double light_there = c.rooms[s.room].reference;
         points.push_back({s.surface, s.weight, s.squared / (light_there * light_there)});
     }
     const Scene& scene = c.stage.scene;
