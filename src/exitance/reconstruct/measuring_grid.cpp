@@ -64,12 +64,14 @@ void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress
     progress.phase("measure");
     const std::size_t count = grid.points.size();
     std::vector<std::uint8_t> open(count);
-    const Locator locator(light.solution().scene);
+    // Points on walls are measured on the side of the plane's middle, in all directions alike.
+    const Point middle = grid.plane.origin + 0.5 * (grid.plane.u + grid.plane.v);
+    std::vector<Point> places = grid.points;
     parallel_for(count, 32, [&](std::size_t i) {
         if (!grid.counts.empty() && !grid.counts[i]) return;
-        const SurfaceId s = locator.find(grid.points[i], grid.n);
-        const RegionId region = s.is_none() ? RegionId() : light.solution().scene.surfaces()[s].region;
-        open[i] = is_in_open(light.stage(), grid.points[i], grid.n, region);
+        const MeasuredPlace place = light.places().find(grid.points[i], grid.n, &middle);
+        places[i] = place.x;
+        open[i] = is_in_open(light.stage(), place.x, grid.n, place.region);
     });
     std::copy(open.begin(), open.end(), grid.is_open.begin());
     const std::vector<Normal> normals = grid.is_cylindrical ? around() : std::vector<Normal>{grid.n};
@@ -83,7 +85,7 @@ void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress
             std::span(chosen).subspan(first, std::min(slice, chosen.size() - first));
         std::vector<ProbePoint> points;
         for (const std::size_t i : part)
-            for (const Normal& n : normals) points.push_back({grid.points[i], n});
+            for (const Normal& n : normals) points.push_back({places[i], n});
         const std::vector<Light> found = light.at(points);
         for (std::size_t k = 0; k < found.size(); ++k)
             grid.irradiance[part[k / normals.size()]] +=

@@ -16,7 +16,7 @@ Light light_on(const Material& material, const Spectrum& irradiance) {
 
 RadiosityFunction::RadiosityFunction(const Solution& solution)
     : solution_(solution),
-      locator_(solution.scene),
+      places_(solution.scene),
       indirect_locator_(solution.indirect.tree, solution.scene.regions().size()),
       interpolant_locator_(solution.interpolant.tree, solution.scene.regions().size()),
       cells_(solution.cells),
@@ -58,24 +58,21 @@ std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Com
         ClusteredLight::Workspace workspace;
         GatherWorkspace gathering;
         for (std::size_t i = begin; i < end; ++i) {
-            const auto& [x, n] = points[i];
-            const SurfaceId surface = locator_.find(x, n);
-            const bool free = surface.is_none();
-            const RegionId region = free ? RegionId() : solution_.scene.surfaces()[surface].region;
-            if (!free && stage_->occluders.is_covered(x, n, region)) {
-                out[i] = light_on(solution_.scene.material(surface), Spectrum());
+            const Normal& n = points[i].n;
+            const auto& [x, surface, region, is_between_sides] = places_.find(points[i].x, n);
+            if (!surface.is_none()) {
+                const bool is_covered = stage_->occluders.is_covered(x, n, region);
+                out[i] = light_on(solution_.scene.material(surface),
+                                  is_covered ? Spectrum() : irradiance_on(region, x, component, workspace));
+                out[i].is_between_sides = is_between_sides;
                 continue;
             }
-            if (!free) {
-                const Spectrum irradiance = irradiance_on(region, x, component, workspace);
-                out[i] = light_on(solution_.scene.material(surface), irradiance);
-                continue;
-            }
+            out[i].is_between_sides = is_between_sides;
             if (component != Component::indirect)
                 out[i].irradiance += stage_->clustered.at(x, n, region, accuracy_, workspace).irradiance;
             const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), i);
             if (component != Component::direct)
-                out[i].irradiance += gathered(points[i], RegionId(), free_space_rays, key, gathering);
+                out[i].irradiance += gathered({x, n}, RegionId(), free_space_rays, key, gathering);
         }
     });
     return out;
@@ -90,10 +87,10 @@ Spectrum RadiosityFunction::interpolated(RegionId region, const Point& x) const 
 std::vector<Light> RadiosityFunction::interpolant_at(std::span<const ProbePoint> points) const {
     std::vector<Light> out(points.size());
     parallel_for(points.size(), 256, [&](std::size_t i) {
-        const SurfaceId surface = locator_.find(points[i].x, points[i].n);
-        if (surface.is_none()) return;
-        const RegionId region = solution_.scene.surfaces()[surface].region;
-        out[i] = light_on(solution_.scene.material(surface), interpolated(region, points[i].x));
+        const MeasuredPlace place = places_.find(points[i].x, points[i].n);
+        if (!place.surface.is_none())
+            out[i] = light_on(solution_.scene.material(place.surface), interpolated(place.region, place.x));
+        out[i].is_between_sides = place.is_between_sides;
     });
     return out;
 }

@@ -7,7 +7,7 @@
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/mesh/growing_cells/cell_function.hpp"
 #include "exitance/reconstruct/solution.hpp"
-#include "exitance/scene/locator.hpp"
+#include "exitance/scene/place_finder.hpp"
 
 namespace exitance {
 
@@ -22,6 +22,7 @@ struct Light {
     Spectrum irradiance;  ///< E, W/m^2
     Spectrum radiosity;   ///< B = M + rho E, W/m^2; meaningless where `on_surface` is false.
     bool on_surface = false;
+    bool is_between_sides = false;  ///< Does the point lie on a border of several sides? See PlaceFinder.
 };
 
 /// A place to measure at: a point and the normal of the plane to measure on.
@@ -39,8 +40,8 @@ class RadiosityFunction {
     explicit RadiosityFunction(const Solution& solution);
     ~RadiosityFunction();
 
-    /// Light at each point (all cores); a point on no surface is measured by the direct light and by rays that read the
-    /// solution where they hit. About 5 us a point and visible emitter.
+    /// Light at each point (all cores), at the place that `places()` finds for it; a point on no surface is measured by
+    /// the direct light and by rays that read the solution where they hit. About 5 us a point and visible emitter.
     std::vector<Light> at(std::span<const ProbePoint> points, Component component = Component::total) const;
 
     /// The same from the elements that `export` writes, without exact direct light; zero off the surfaces.
@@ -62,6 +63,7 @@ class RadiosityFunction {
                       GatherWorkspace& workspace) const;
 
     const Solution& solution() const { return solution_; }
+    const PlaceFinder& places() const { return places_; }
     const Stage& stage() const { return *stage_; }
 
   private:
@@ -70,7 +72,7 @@ class RadiosityFunction {
                            ClusteredLight::Workspace& workspace) const;
 
     const Solution& solution_;
-    Locator locator_;
+    PlaceFinder places_;
     ElementLocator indirect_locator_, interpolant_locator_;
     CellFunction cells_;        ///< Where growing cells hold the light.
     SixNodeLocator triangles_;  ///< Of the discontinuity mesh, where there is one.

@@ -64,8 +64,9 @@ std::vector<SurfacePoints> measure_surfaces(const RadiosityFunction& light, std:
             out[f].surface = faces[f];
             const double share = face.area / area * static_cast<double>(total);
             const auto count = static_cast<std::size_t>(std::clamp(std::ceil(share), 16.0, 1024.0));
+            const Point middle = centroid(scene.outline(faces[f]));
             for (const Point& p : spread(scene.outline(faces[f]), face.normal, count))
-                points.push_back({p, face.normal}), face_of.push_back(f);
+                points.push_back({light.places().find(p, face.normal, &middle).x, face.normal}), face_of.push_back(f);
         }
         std::vector<std::uint8_t> open(points.size());
         parallel_for(points.size(), 64, [&](std::size_t i) {

@@ -1,6 +1,8 @@
 #include "exitance/scene/locator.hpp"
 
-#include <algorithm>
+#include <cmath>
+
+#include "exitance/scene/outline_distance.hpp"
 
 namespace exitance {
 
@@ -9,20 +11,6 @@ struct Locator::Candidate {
     double distance = HUGE_VAL;
     bool holds = false;
 };
-
-namespace {
-
-double squared_distance_to_border(std::span<const Point> outline, const Point& p) {
-    double best = HUGE_VAL;
-    for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
-        const Vec3 edge = outline[i] - outline[j], w = p - outline[j];
-        const double along = std::clamp(dot(w, edge) / squared_norm(edge), 0.0, 1.0);
-        best = std::min(best, squared_norm(w - along * edge));
-    }
-    return best;
-}
-
-}  // namespace
 
 Locator::Locator(const Scene& scene) : scene_(&scene), tolerance_(1e-5 * scene.size()) {
     std::vector<Box> boxes(scene.surfaces().size());
@@ -42,7 +30,7 @@ void Locator::look_at(SurfaceId s, const Point& p, const Normal& n, Candidate& b
     if (!(std::abs(height) <= tolerance_)) return;
 
     Candidate found = {s, std::abs(height), contains(outline, surface.normal, p)};
-    if (!found.holds) found.distance = std::sqrt(squared_distance_to_border(outline, p));
+    if (!found.holds) found.distance = norm(p - nearest_on_border(outline, p));
     if (!(found.distance <= tolerance_)) return;
     // Distances that differ by the rounding of a text file's digits are equal.
     const double gain = best.distance - found.distance, rounding = 1e-4 * tolerance_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exitance/cli/border_points.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
@@ -63,7 +64,13 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     if (!solution) return terminal.fail(solution.error());
 
     DaylightResults results;
-    for (std::size_t i = 0; i < points->size(); ++i) results.sensors.push_back({points->points[i], points->normals[i]});
+    BorderPoints borders;
+    const PlaceFinder places(solution->scene);
+    for (std::size_t i = 0; i < points->size(); ++i) {
+        results.sensors.push_back({points->points[i], points->normals[i]});
+        borders.add(places.find(points->points[i], points->normals[i]).is_between_sides);
+    }
+    borders.tell(terminal);
     results.hours = hours_of(*weather);
     const DaylightSite site{.place = weather->place,
                             .north = arguments.north,

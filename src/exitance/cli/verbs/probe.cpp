@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "exitance/cli/border_points.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
@@ -7,7 +8,6 @@
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/reconstruct/error/path_reference.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
-#include "exitance/scene/locator.hpp"
 
 namespace exitance {
 namespace {
@@ -23,7 +23,7 @@ std::vector<ProbePoint> zip(const ProbePoints& probes) {
 }
 
 Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeReader& reader,
-                         ProbeWriter& writer) {
+                         ProbeWriter& writer, BorderPoints& borders) {
     ProbePoints probes;
     while (true) {
         if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
@@ -31,25 +31,27 @@ Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunctio
         const std::vector<ProbePoint> points = zip(probes);
         const std::vector<Light> values =
             arguments.interpolant ? light.interpolant_at(points) : light.at(points, arguments.component);
-        for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            borders.add(values[i].is_between_sides);
             writer.add(points[i].x, points[i].n, values[i].irradiance,
                        values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt);
+        }
     }
 }
 
 /// Paths in place of the solution. All points together, since a point's random numbers go by its place.
 Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeReader& reader,
-                             ProbeWriter& writer, Terminal& terminal, const StopRequest& stop) {
+                             ProbeWriter& writer, BorderPoints& borders, Terminal& terminal, const StopRequest& stop) {
     ProbePoints probes;
     if (const Result<void> read = reader.next(probes, std::numeric_limits<std::size_t>::max()); !read)
         return read.error();
     const std::vector<ProbePoint> points = zip(probes);
     const std::vector<ReferenceLight> values =
         reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
-    const Locator locator(scene);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const SurfaceId surface = locator.find(points[i].x, points[i].n);
+        const SurfaceId surface = values[i].surface;
         const Spectrum& E = values[i].irradiance;
+        borders.add(values[i].is_between_sides);
         std::optional<Spectrum> B;
         if (!surface.is_none()) B = scene.material(surface).exitance + scene.material(surface).reflectance * E;
         writer.add(points[i].x, points[i].n, E, B, values[i].standard_error);
@@ -87,10 +89,12 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
         arguments.output, {.standard_errors = by_paths, .unit = told ? std::optional(unit) : std::nullopt});
     if (!writer) return terminal.fail(writer.error());
 
-    const Result<void> written = by_paths
-                                     ? write_reference(arguments, solution->scene, *reader, *writer, terminal, stop)
-                                     : write_light(arguments, RadiosityFunction(*solution), *reader, *writer);
+    BorderPoints borders;
+    const Result<void> written =
+        by_paths ? write_reference(arguments, solution->scene, *reader, *writer, borders, terminal, stop)
+                 : write_light(arguments, RadiosityFunction(*solution), *reader, *writer, borders);
     if (!written) return terminal.fail(written.error());
+    borders.tell(terminal);
     return ExitCode::done;
 }
 

@@ -6,7 +6,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
-#include "exitance/scene/locator.hpp"
+#include "exitance/methods/daylight/sensor_places.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/transport/ray_rows.hpp"
 #include "exitance/visibility/glazed_part.hpp"
@@ -86,11 +86,11 @@ class MatrixMaker {
     }
 
     /// Reflected light at a sensor.
-    void gather(const ProbePoint& sensor, RegionId own, std::size_t number, std::span<float> out) const {
+    void gather(const Receiver& sensor, std::size_t number, std::span<float> out) const {
         Ends ends;
         std::vector<std::pair<std::uint32_t, float>> leaves;
-        cast(options_.rays_a_sensor, hash(options_.seed, static_cast<std::uint64_t>(Stream::gather), number), own,
-             RegionId(), sensor.n, ends, [&](double, double) { return sensor.x; });
+        cast(options_.rays_a_sensor, hash(options_.seed, static_cast<std::uint64_t>(Stream::gather), number),
+             sensor.own, RegionId(), sensor.n, ends, [&](double, double) { return sensor.x; });
         count(ends.leaves, options_.rays_a_sensor, leaves);
         std::fill(out.begin(), out.end(), 0.0f);
         add(leaves, out);
@@ -229,15 +229,6 @@ class PatchView {
     std::vector<Vec3> part_, room_;
 };
 
-/// Where a sensor receives light: on the surface that it lies on, or in free space.
-Receiver receiver_of(const Stage& stage, const Locator& locator, const ProbePoint& sensor) {
-    const SurfaceId s = locator.find(sensor.x, sensor.n);
-    if (s.is_none()) return {sensor.x, sensor.n, RegionId()};
-    const RegionId own = stage.scene.surfaces()[s].region;
-    const double off = stage.scene.regions()[own].plane.signed_distance(sensor.x) - stage.occluders.lift(own);
-    return {sensor.x - off * sensor.n, sensor.n, own};
-}
-
 }  // namespace
 
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
@@ -259,15 +250,14 @@ DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sen
     DaylightMatrix out;
     const std::size_t m = out.patches = patches.size();
     out.direct.resize(sensors.size() * m), out.reflected.resize(sensors.size() * m);
-    const Locator locator(scene);
+    const std::vector<Receiver> places = sensor_places(scene, stage.occluders, sensors);
     const Spectrum weights = luminous_weights();
     const std::vector<Cone> cones = cones_of(patches);
     parallel_ranges(sensors.size(), 4, [&](std::size_t begin, std::size_t end) {
         PatchView view(stage, cones);
         for (std::size_t i = begin; i < end; ++i) {
-            const Receiver at = receiver_of(stage, locator, sensors[i]);
-            view.see(at, weights, std::span(&out.direct[i * m], m));
-            maker.gather(sensors[i], at.own, i, std::span(&out.reflected[i * m], m));
+            view.see(places[i], weights, std::span(&out.direct[i * m], m));
+            maker.gather(places[i], i, std::span(&out.reflected[i * m], m));
         }
     });
     return out;

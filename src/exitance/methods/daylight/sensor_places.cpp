@@ -1,19 +1,19 @@
 #include "exitance/methods/daylight/sensor_places.hpp"
 
-#include "exitance/scene/locator.hpp"
+#include "exitance/scene/place_finder.hpp"
 
 namespace exitance {
 
 std::vector<Receiver> sensor_places(const Scene& scene, const Occluders& occluders,
                                     std::span<const ProbePoint> sensors) {
-    const Locator locator(scene);
+    const PlaceFinder places(scene);
     std::vector<Receiver> out;
     for (const ProbePoint& sensor : sensors) {
-        const SurfaceId s = locator.find(sensor.x, sensor.n);
-        const RegionId own = s.is_none() ? RegionId() : scene.surfaces()[s].region;
-        Point x = sensor.x;
-        if (!own.is_none()) x -= (scene.regions()[own].plane.signed_distance(x) - occluders.lift(own)) * sensor.n;
-        out.push_back({x, sensor.n, own});
+        const MeasuredPlace place = places.find(sensor.x, sensor.n);
+        Point x = place.x;
+        if (!place.region.is_none())
+            x -= (scene.regions()[place.region].plane.signed_distance(x) - occluders.lift(place.region)) * sensor.n;
+        out.push_back({x, sensor.n, place.region});
     }
     return out;
 }

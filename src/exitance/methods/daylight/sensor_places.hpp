@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-/// Sensors as receivers of direct light: those on a surface are moved into its plane.
+/// Sensors as receivers of light, at the places that a PlaceFinder finds: those on a surface are moved into its plane.
 std::vector<Receiver> sensor_places(const Scene& scene, const Occluders& occluders,
                                     std::span<const ProbePoint> sensors);
 

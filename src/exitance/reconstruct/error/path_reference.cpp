@@ -9,7 +9,7 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
     constexpr std::size_t randomisations = 16, chunk = 64;
     const Stage stage(scene);
     const PathTracer tracer(stage);
-    const Locator locator(scene);
+    const PlaceFinder places(scene);
     const std::uint32_t each = static_cast<std::uint32_t>((paths + randomisations - 1) / randomisations);
     std::vector<ReferenceLight> out(points.size());
     progress.phase("paths");
@@ -18,9 +18,10 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
         const std::size_t count = std::min(chunk, points.size() - first);
         parallel_for(count, 1, [&](std::size_t local) {
             const std::size_t i = first + local;
-            const auto& [x, n] = points[i];
-            const SurfaceId surface = locator.find(x, n);
-            const RegionId region = surface.is_none() ? RegionId() : scene.surfaces()[surface].region;
+            const Normal& n = points[i].n;
+            const MeasuredPlace place = places.find(points[i].x, n);
+            const auto& [x, surface, region, is_between_sides] = place;
+            out[i].surface = surface, out[i].is_between_sides = is_between_sides;
             if (!surface.is_none() && stage.occluders.is_covered(x, n, region)) return;
             DirectLight::Workspace workspace;
             std::array<Spectrum, randomisations> batch{};

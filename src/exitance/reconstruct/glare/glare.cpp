@@ -178,7 +178,7 @@ class Eye {
 };
 
 /// Indirect illuminance of the plane that the observer looks along, as the mean of several places at the eye, whose
-/// rays differ.
+/// rays differ. The eye itself takes the place of those that a wall keeps from it.
 double indirect_at_eye(const RadiosityFunction& light, const Observer& observer, const LightUnit& lux) {
     constexpr int places = 8;
     constexpr double step = 1e-3;  // metres
@@ -186,7 +186,11 @@ double indirect_at_eye(const RadiosityFunction& light, const Observer& observer,
     std::vector<ProbePoint> points;
     for (int i = 0; i < places; ++i) {
         const double a = 2 * pi * i / places;
-        points.push_back({observer.eye + step * frame.to_world(std::cos(a), std::sin(a), 0), observer.view});
+        const Point x = observer.eye + step * frame.to_world(std::cos(a), std::sin(a), 0);
+        bool blocked = false;
+        light.stage().tracer.occluded(std::span(&observer.eye, 1), std::span(&x, 1), RegionId(), RegionId(),
+                                      std::span(&blocked, 1));
+        points.push_back({blocked ? observer.eye : x, observer.view});
     }
     double sum = 0;
     for (const Light& there : light.at(points, Component::indirect)) sum += lux(there.irradiance) / places;
@@ -206,8 +210,10 @@ bool Glare::has_large_source() const {
                        [](const GlareSource& source) { return source.solid_angle > largest_angle; });
 }
 
-Glare find_glare(const RadiosityFunction& light, const Observer& observer, const LightUnit& lux) {
+Glare find_glare(const RadiosityFunction& light, const Observer& at, const LightUnit& lux) {
     const Scene& scene = light.solution().scene;
+    Observer observer = at;
+    observer.eye = light.places().find(at.eye, at.view).x;
     const Eye eye(light, observer, lux);
     Glare out;
     const auto add = [&](GlareSource source) {
