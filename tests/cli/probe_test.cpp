@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <sstream>
 
 #include "cli/small_scene.hpp"
@@ -25,7 +26,6 @@ class ProgramProbe : public testing::Test {
     static std::string solution() { return *folder_ / "room.h5"; }
     static std::string file(const std::string& name) { return *folder_ / name; }
 
-  private:
     static inline TemporaryFolder* folder_ = nullptr;
 };
 
@@ -87,6 +87,25 @@ TEST_F(ProgramProbe, PathsGiveTheLightThatTheSolutionGivesWithTheirStandardError
     EXPECT_GT(field(lines[1], 12), 0);
     // The solution was asked for 10%; the paths' own error comes on top.
     EXPECT_NEAR(field(lines[1], 6) / field(own, 6), 1, 0.15);
+}
+
+TEST_F(ProgramProbe, TellsHowManyPointsLieBetweenTwoSides) {
+    // The small room with a sheet of two faces in x = 2, y < 1 on its floor.
+    const std::string scene = write_small_room(*folder_, "parted");
+    std::ofstream(scene, std::ios::app) << "v 2 0 0\nv 2 1 0\nv 2 1 2\nv 2 0 2\nusemtl grey\ng sheet\n"
+                                           "f 13 14 15 16\nf 16 15 14 13\n";
+    ASSERT_EQ(run_program({"solve", scene, "-o", file("parted.h5"), "--error", "0.2", "-q"}).status, 0);
+    const std::string header = "x,y,z,nx,ny,nz\n", on_walls = "0,2,0,0,0,1\n4,3,0,0,0,1\n",
+                      on_sheet = "2,0.5,0,0,0,1\n";
+    for (const std::vector<std::string>& way : {std::vector<std::string>{}, {"--interpolant"}, {"--reference", "16"}}) {
+        std::vector<std::string> words{"probe", file("parted.h5"), "--points", "-"};
+        words.insert(words.end(), way.begin(), way.end());
+        EXPECT_EQ(run_program(words, header + on_walls).err.find("warning"), std::string::npos);
+        const Finished run = run_program(words, header + on_walls + on_sheet);
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_NE(run.err.find("warning: 1 of 3 points lie on a border"), std::string::npos) << run.err;
+        EXPECT_EQ(lines_of(run.out).at(3).find("2,0.5,0,0,0,1,"), 0u) << "points are written as they were read";
+    }
 }
 
 TEST_F(ProgramProbe, PartsOfTheSolutionAreUsageErrorsBesideWhatHasNone) {

@@ -26,12 +26,13 @@ struct PlaceFinder::Blade {
 
 /// What lies between two neighbouring blades.
 struct PlaceFinder::Sector {
-    Point place;              ///< The point moved into the sector.
-    Vec3 inwards;             ///< The direction of its middle, of length 1.
-    int backs = 0;            ///< How many of its two sides are backs of walls.
-    bool holds_point = true;  ///< Does the point lie in it, by more than rounding?
-    bool is_reflex = false;   ///< Does it open by more than half a turn?
-    SurfaceId front;          ///< The first face, by its id, whose front it is at; none where that is a pane.
+    Point place;                  ///< The point moved into the sector.
+    Vec3 inwards;                 ///< The direction of its middle, of length 1.
+    int backs = 0;                ///< How many of its two sides are backs of walls.
+    bool holds_point = true;      ///< Does the point lie in it, by more than rounding?
+    bool is_reflex = false;       ///< Does it open by more than half a turn?
+    SurfaceId front;              ///< The first face, by its id, whose front it is at; none at panes alone.
+    bool is_before_pane = false;  ///< Does it lie on the side that a pane's normal points to?
 };
 
 namespace {
@@ -137,9 +138,10 @@ PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, st
         for (const Blade& b : side) {
             // Of walls that stand behind one another the sector sees the outermost.
             if (depth(b) > least + clearly_off * step_) continue;
-            const bool faces = b.wall.surface.is_none() || dot(b.across, off) > 0;
-            is_front |= faces;
-            if (faces && !b.wall.surface.is_none() && (out.front.is_none() || b.wall.surface < out.front))
+            const bool is_pane = b.wall.surface.is_none(), is_before = dot(b.across, off) > 0;
+            is_front |= is_pane || is_before;
+            out.is_before_pane |= is_pane && is_before;
+            if (!is_pane && is_before && (out.front.is_none() || b.wall.surface < out.front))
                 out.front = b.wall.surface;
         }
         out.backs += !is_front;
@@ -234,7 +236,8 @@ MeasuredPlace PlaceFinder::find(const Point& p, const Normal& n, const Point* to
         // The step is small beside the way, so that a difference of less than a step is none.
         const auto is_better = [&](const Sector& a, const Sector& b) {
             const double gain = dot(way, a.inwards) - dot(way, b.inwards);
-            return std::abs(gain) > step_ ? gain > 0 : a.front < b.front;
+            if (std::abs(gain) > step_) return gain > 0;
+            return a.front == b.front ? a.is_before_pane && !b.is_before_pane : a.front < b.front;
         };
         for (const Sector& s : sectors)
             if (equals(s) && is_better(s, *best)) best = &s;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exitance/methods/daylight/daylight_provision.hpp"
 #include "exitance/methods/daylight/daylight_year.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "support/solved.hpp"
@@ -89,6 +90,38 @@ TEST(Daylight, OfARoomItIsThatOfASolveUnderTheSameSky) {
     const auto metrics = daylight_metrics({sensors.size(), {}, {}}, patches, matrix, {}, site);
     for (std::size_t i = 0; i < sensors.size(); ++i)
         EXPECT_NEAR(metrics[i].daylight_factor, light[i].irradiance[0], 0.04 * light[i].irradiance[0]) << i;
+}
+
+TEST(Daylight, OfASensorOnTheLineOfAWallIsThatFromInside) {
+    // The limits from inside of the walls' lines, and in free space in the plane of a wall. Light changes by some
+    // tenths of a percent from there to the places beside them, and some of the rays of reflected light meet another
+    // element.
+    const Scene dark = scene(true);
+    const std::vector<ProbePoint> on{{{0, 2, 0}, {0, 0, 1}},
+                                     {{1.5, 4, 0}, {0, 0, 1}},
+                                     {{3, 4, 0}, {0, 0, 1}},
+                                     {{0, 2, 1}, {0, 0, 1}},
+                                     {{0, 2, 0}, {1, 0, 0}}};
+    std::vector<ProbePoint> beside = on;
+    constexpr double inside = 1e-3;  // metres
+    beside[0].x.x += inside, beside[1].x.y -= inside, beside[2].x.x -= inside, beside[2].x.y -= inside;
+    beside[3].x.x += inside, beside[4].x.z += inside;
+    const SkyPatches patches(1);
+    const DaylightSite site{.place = {47.4, 8.5, 400}};
+    Progress progress;
+    const auto factors = [&](const std::vector<ProbePoint>& sensors) {
+        const DaylightMatrix matrix = make_daylight_matrix(
+            dark, sensors, patches, {.elements = 300, .rays_an_element = 64, .rays_a_sensor = 1024}, progress);
+        return daylight_metrics({sensors.size(), {}, {}}, patches, matrix, {}, site);
+    };
+    const auto found = factors(on), expected = factors(beside);
+    const std::vector<double> hours = sunlight_hours(dark, on, site, 1, {}),
+                              hours_beside = sunlight_hours(dark, beside, site, 1, {});
+    for (std::size_t i = 0; i < on.size(); ++i) {
+        ASSERT_GT(expected[i].daylight_factor, 0.05);
+        EXPECT_NEAR(found[i].daylight_factor / expected[i].daylight_factor, 1, 0.02) << i;
+        EXPECT_NEAR(hours[i], hours_beside[i], 1.0 / 15) << i;  // two steps of two minutes
+    }
 }
 
 }  // namespace exitance

@@ -38,6 +38,7 @@ class TileBaker {
     TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
               const MeshTexels& mesh)
         : stage_(light.stage()),
+          finder_(light.places()),
           outlines_(outlines),
           mesh_(mesh),
           light_(light, texel_points, 0, 1, SpotPoints::mirrored) {
@@ -77,12 +78,13 @@ class TileBaker {
         std::size_t found = 0;
         for (std::size_t k = 0; k < texel_points; ++k) {
             if (k == few && found == 0) return;
-            const Point x = chart.at(places_[cover.first + k]);
+            const Point x = finder_.find(chart.at(places_[cover.first + k]), n).x;
             if ((k >= few && found == k) || is_in_open(stage_, x, n, chart.region)) points_.push_back(x), ++found;
         }
     }
 
     const Stage& stage_;
+    const PlaceFinder& finder_;
     std::span<const std::vector<TexelOutline>> outlines_;
     const MeshTexels& mesh_;
     TileLight light_;
