@@ -213,7 +213,10 @@ bool Glare::has_large_source() const {
 Glare find_glare(const RadiosityFunction& light, const Observer& at, const LightUnit& lux) {
     const Scene& scene = light.solution().scene;
     Observer observer = at;
-    observer.eye = light.places().find(at.eye, at.view).x;
+    const MeasuredPlace place = light.places().find(at.eye, at.view);
+    observer.eye = place.x;
+    // Rays of an eye on a wall that it looks away from would meet the wall at no distance.
+    if (!place.region.is_none()) observer.eye += light.places().step() * scene.regions()[place.region].plane.n;
     const Eye eye(light, observer, lux);
     Glare out;
     const auto add = [&](GlareSource source) {

@@ -130,5 +130,22 @@ TEST(Glare, ALightWithoutExtentCountsAsASmallSource) {
     EXPECT_NEAR(spot->term(), 200 * intensity * intensity / 0.64, 1e-9 * spot->term());
 }
 
+TEST(Glare, OfAnEyeOnAWallIsThatOfAnEyeBesideIt) {
+    const Solution s = lamp_room({{3, 3}, {5, 3}});
+    const RadiosityFunction light(s);
+    const LightUnit lux(UnitChoice::lux, true);
+    const Normal view{1, 0, 0};
+    const auto rated = [&](const Point& eye) { return find_glare(light, {"", eye, view}, lux); };
+    const Glare along = rated({1, 0, 1.2}), beside = rated({1, 1e-3, 1.2});
+    EXPECT_NEAR(along.background / beside.background, 1, 0.02);  // noise of 4096 rays at eight places
+    EXPECT_NEAR(along.rating(), beside.rating(), 0.1);
+    // Looking away from the wall it sees both lamps.
+    const Glare away = rated({0, 3, 1.2}), before = rated({1e-3, 3, 1.2});
+    ASSERT_EQ(before.sources.size(), 2u);
+    ASSERT_EQ(away.sources.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_NEAR(away.sources[i].term() / before.sources[i].term(), 1, 0.01);  // 1 mm of 3 m
+}
+
 }  // namespace
 }  // namespace exitance
