@@ -86,6 +86,37 @@ class Borders {
         return reached;
     }
 
+    /// The parts that all sides fall into by such steps: the number of every side's part, [face][is front].
+    struct Parts {
+        std::vector<std::array<std::uint32_t, 2>> part_of;
+        std::vector<bool> is_sure;  ///< Of every part: no step from it met two faces that lie on one another.
+    };
+    Parts parts() const {
+        constexpr std::uint32_t none = 0xffffffff;
+        Parts out{std::vector<std::array<std::uint32_t, 2>>(faces_.size(), {none, none}), {}};
+        std::vector<FaceSide> open;
+        for (std::uint32_t k = 0; k < 2 * faces_.size(); ++k) {
+            if (out.part_of[k / 2][k % 2] != none) continue;
+            const auto part = static_cast<std::uint32_t>(out.is_sure.size());
+            out.is_sure.push_back(true);
+            out.part_of[k / 2][k % 2] = part;
+            open.push_back({k / 2, k % 2 == 1});
+            while (!open.empty()) {
+                const FaceSide side = open.back();
+                open.pop_back();
+                for (const auto& [e, sense] : faces_[side.face].edges) {
+                    const auto next = beyond(side, e, sense);
+                    std::uint32_t* const there = next ? &out.part_of[next->face][next->is_front ? 1 : 0] : nullptr;
+                    // A step that does not lead back, or leads into another part, is one between doubtful faces.
+                    if (!there || (*there != none && *there != part)) out.is_sure[part] = false;
+                    if (there && *there != none && *there != part) out.is_sure[*there] = false;
+                    if (there && *there == none) *there = part, open.push_back(*next);
+                }
+            }
+        }
+        return out;
+    }
+
     const BorderedFace& face(std::size_t f) const { return faces_[f]; }
 
   private:

@@ -47,6 +47,7 @@ class Inspector {
     Shell run() {
         find_open_edges();
         find_turned_faces();
+        find_inside_out_bodies();
         return std::move(out_);
     }
 
@@ -54,6 +55,7 @@ class Inspector {
     void meet();
     void find_open_edges();
     void find_turned_faces();
+    void find_inside_out_bodies();
 
     const Scene& scene_;
     double tolerance_;
@@ -173,10 +175,32 @@ void Inspector::find_turned_faces() {
         out_.marks.push_back({Mark::Kind::turned, {scene_.outline(s).begin(), scene_.outline(s).end()}});
 }
 
+void Inspector::find_inside_out_bodies() {
+    BodyFaces faces;
+    faces.size = scene_.size();
+    for (const SurfaceId s : scene_.surfaces().ids())
+        faces.add(scene_.outline(s), scene_.surfaces()[s].normal, scene_.material(s).emits());
+    faces.add_lights(scene_.lights(), scene_.distant());
+    out_.inside_out = find_inside_out(faces);
+    for (const InsideOut& body : out_.inside_out)
+        for (const std::uint32_t f : body.faces)
+            out_.marks.push_back(
+                {Mark::Kind::turned, {scene_.outline(SurfaceId(f)).begin(), scene_.outline(SurfaceId(f)).end()}});
+}
+
 }  // namespace
 
 Shell inspect_shell(const Scene& scene) {
     return Inspector(scene).run();
+}
+
+Finding finding_of(const InsideOut& body, const std::string& group, Finding::Kind kind) {
+    const bool is_repair = kind == Finding::Kind::repair;
+    const char* const wrong = body.is_room ? "look outwards, away from the light" : "look inwards";
+    return {kind, "", 0,
+            fmt::format("the {} faces of a closed body of '{}' {}: {}", body.faces.size(), group, wrong,
+                        is_repair ? "they are turned" : "it is inside out"),
+            is_repair ? "" : "--turn-bodies turns such faces; or reverse the order of their corners"};
 }
 
 std::vector<Finding> findings_of(const Shell& shell, const Scene& scene) {
@@ -192,6 +216,11 @@ std::vector<Finding> findings_of(const Shell& shell, const Scene& scene) {
                          turned.second == 1 ? "a face" : fmt::format("{} faces", turned.second), scene.groups()[group],
                          turned.second == 1 ? "looks" : "look", turned.second == 1 ? "its" : "their"),
              "turn the order of corners round"});
+    for (const InsideOut& body : shell.inside_out) {
+        const Surface& first = scene.surfaces()[SurfaceId(body.faces[0])];
+        Finding& finding = out.emplace_back(finding_of(body, scene.groups()[first.group], Finding::Kind::warning));
+        finding.file = scene.file(), finding.line = first.line;
+    }
     return out;
 }
 

@@ -58,4 +58,58 @@ TEST(Shell, ASheetWithTwoSidesIsNeitherOpenNorTurned) {
     EXPECT_TRUE(shell.turned.empty());
 }
 
+/// The faces of a box that look inwards, like those of a room, or outwards.
+std::vector<test::Face> box(const Point& lo, const Point& hi, bool inwards,
+                            const std::vector<test::Face>& others = {}) {
+    std::vector<test::Face> faces = test::closed_box(lo, hi);
+    const Vec3 to_middle = 0.5 * (lo + hi) - faces[0].corners[0];
+    if ((dot(area_vector(faces[0].corners), to_middle) > 0) != inwards)
+        for (test::Face& face : faces) std::reverse(face.corners.begin(), face.corners.end());
+    faces.insert(faces.begin(), others.begin(), others.end());
+    return faces;
+}
+
+std::vector<std::size_t> sizes(const Shell& shell) {
+    std::vector<std::size_t> out;
+    for (const InsideOut& body : shell.inside_out) out.push_back(body.faces.size());
+    return out;
+}
+
+TEST(Shell, FurnitureInARoomIsInsideOutIfItLooksInwards) {
+    const std::vector<test::Face> room = box({0, 0, 0}, {4, 3, 2.5}, true);
+    const Shell wrong = inspect_shell(test::make(box({1, 1, 0.5}, {2, 2, 1}, true, room)));
+    ASSERT_EQ(sizes(wrong), std::vector<std::size_t>{6});
+    EXPECT_EQ(wrong.inside_out[0].faces[0], 6u);
+    EXPECT_FALSE(wrong.inside_out[0].is_room);
+    EXPECT_TRUE(inspect_shell(test::make(box({1, 1, 0.5}, {2, 2, 1}, false, room))).inside_out.empty());
+}
+
+TEST(Shell, ABodyThatSharesEdgesWithTheRoomOrHasTJointsIsJudgedToo) {
+    const std::vector<test::Face> room = box({0, 0, 0}, {4, 3, 2.5}, true);
+    EXPECT_EQ(sizes(inspect_shell(test::make(box({0, 0, 0}, {1, 1, 2.5}, true, room)))), std::vector<std::size_t>{6});
+    std::vector<test::Face> faces = box({1, 1, 0.5}, {2, 2, 1}, true, room);
+    const std::vector<Point> q = faces[6].corners;
+    const Point a = 0.5 * (q[0] + q[1]), b = 0.5 * (q[3] + q[2]);
+    faces[6].corners = {q[0], a, b, q[3]};
+    faces.push_back({{a, q[1], q[2], b}});
+    EXPECT_EQ(sizes(inspect_shell(test::make(faces))), std::vector<std::size_t>{7});
+}
+
+TEST(Shell, CavitiesOfSolidBodiesAndRoomsSideBySideAreNotInsideOut) {
+    const std::vector<test::Face> house = box({-0.2, -0.2, -0.2}, {4.2, 3.2, 2.7}, false);
+    const std::vector<test::Face> rooms = box({0, 0, 0}, {2, 3, 2.5}, true, box({2.1, 0, 0}, {4, 3, 2.5}, true, house));
+    EXPECT_TRUE(inspect_shell(test::make(rooms)).inside_out.empty());
+    // A cupboard in one of the rooms of the house, three levels deep.
+    EXPECT_EQ(sizes(inspect_shell(test::make(box({0.5, 0.5, 0.5}, {1, 1, 1}, true, rooms)))),
+              std::vector<std::size_t>{6});
+    const std::vector<test::Face> touching = box({0, 0, 0}, {2, 3, 2.5}, true, box({2, 0, 0}, {4, 3, 2.5}, true));
+    EXPECT_TRUE(inspect_shell(test::make(touching)).inside_out.empty());
+}
+
+TEST(Shell, ASolidBodyWithWallsOfTwoSidesIsNotInsideOut) {
+    const std::vector<test::Face> room = box({0, 0, 0}, {4, 3, 2.5}, true);
+    const std::vector<test::Face> both = box({1, 1, 0.5}, {2, 2, 1}, false, box({1, 1, 0.5}, {2, 2, 1}, true, room));
+    EXPECT_TRUE(inspect_shell(test::make(both)).inside_out.empty());
+}
+
 }  // namespace exitance
