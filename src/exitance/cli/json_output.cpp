@@ -222,6 +222,14 @@ std::string options_json(const SolveOptions& o) {
     return dump(json, -1);
 }
 
+std::string with_scene_options(const std::string& options, const LoadOptions& load) {
+    Json json = Json::parse(options);
+    if (load.metres_per_unit) json["length_unit"] = *load.metres_per_unit;
+    if (load.y_is_up) json["up"] = *load.y_is_up ? "y" : "z";
+    if (load.turn_bodies) json["turn_bodies"] = true;
+    return dump(json, -1);
+}
+
 std::string options_json(const SolveOptions& options, const ClassicalOptions& c, const ClassicalFacts& facts) {
     Json json = Json::parse(options_json(options));
     json["classical"] = {

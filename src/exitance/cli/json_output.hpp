@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/classical/classical.hpp"
 #include "exitance/methods/light_groups/light_groups.hpp"
 #include "exitance/methods/plan/forecast.hpp"
@@ -34,6 +35,9 @@ std::string forecast_json(const Forecast& forecast);
 
 /// The options in force, as the solution records them: what the light depends on, and hence neither threads nor limits.
 std::string options_json(const SolveOptions& options);
+
+/// Adds the options by which a scene was read, where they were given: length_unit (metres), up, turn_bodies.
+std::string with_scene_options(const std::string& options, const LoadOptions& load);
 
 /// The same of a classical form, with what it took (`ClassicalFacts`).
 std::string options_json(const SolveOptions& options, const ClassicalOptions& classical, const ClassicalFacts& facts);

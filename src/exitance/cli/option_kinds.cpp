@@ -80,6 +80,15 @@ void declare_unit(CLI::App& app, UnitArguments& unit) {
     add_positive(app, "--efficacy", unit.efficacy, "LM/W", "In place of 179 lm/W")->needs(named);
 }
 
+constexpr std::array<std::pair<double, std::string_view>, 5> length_unit_names{{
+    {1e-3, "mm"},
+    {1e-2, "cm"},
+    {0.0254, "in"},
+    {0.3048, "ft"},
+    {1.0, "m"},
+}};
+constexpr std::array<std::pair<bool, std::string_view>, 2> up_names{{{true, "y"}, {false, "z"}}};
+
 void declare_scene(CLI::App& app, SceneArguments& scene) {
     app.add_option("SCENE", scene.files, "Scene (.obj with its .mtl, .gltf, .glb, .rad); several files make one")
         ->required();
@@ -90,6 +99,12 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
                    "Table of luminaires in the scene (.csv): file,x,y,z and, where wanted, aim_x,aim_y,aim_z,rotation,"
                    "dimming,lumens,maintenance_factor,group")
         ->type_name("FILE");
+    add_choice(app, "--length-unit", length_unit_names, scene.load.metres_per_unit,
+               "Length unit of .obj, .stl, .rad and .vs3 files; default m. Points, cameras and tables are in metres");
+    add_choice(app, "--up", up_names, scene.load.y_is_up,
+               "Upright axis of .obj, .stl and .vs3 files; default z. Points, cameras and tables have Z up");
+    app.add_flag("--turn-bodies", scene.load.turn_bodies,
+                 "Turn the faces of closed bodies that are inside out; check reports such bodies");
     app.add_flag("--run-commands", scene.load.run_commands,
                  "Have lines of .rad files that begin with '!' done by Radiance's programs, where they are installed");
 }

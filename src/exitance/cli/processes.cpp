@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "exitance/core/archive.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
@@ -43,9 +44,9 @@ Result<void> check_processes(const SolveArguments& arguments) {
     return {};
 }
 
-CheckedScene load_for_all(const SceneArguments& scene) {
+LoadedScene load_for_all(const SceneArguments& scene) {
     if (processes() == 1) return load_scene(scene.files, scene.load);
-    CheckedScene checked{Error{}, {}};
+    LoadedScene checked{{Error{}, {}}, {}};
     if (is_first_process()) checked = load_scene(scene.files, scene.load);
     const Result<void> read =
         by_first([&] { return checked.scene ? Result<void>() : Result<void>(checked.scene.error()); });
@@ -56,6 +57,11 @@ CheckedScene load_for_all(const SceneArguments& scene) {
     const std::string bytes =
         as_first(is_first_process() ? StoredScene::bytes_of(*checked.scene) : std::string(), "scene");
     if (!is_first_process()) checked.scene = StoredScene::from_bytes(bytes);
+    ArchiveWriter own;
+    own(checked.reflectance_deviation);
+    const std::string deviation = as_first(own.take(), "scene");
+    ArchiveReader reader(deviation);
+    reader(checked.reflectance_deviation);
     return checked;
 }
 

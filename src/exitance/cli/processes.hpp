@@ -13,7 +13,7 @@ namespace exitance {
 Result<void> check_processes(const SolveArguments& arguments);
 
 /// The scene, which the first process reads and checks, for all.
-CheckedScene load_for_all(const SceneArguments& scene);
+LoadedScene load_for_all(const SceneArguments& scene);
 
 /// The exit status for a signal that any of the processes has received.
 std::optional<ExitCode> signal_of_any(std::optional<ExitCode> own);

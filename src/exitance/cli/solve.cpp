@@ -23,6 +23,7 @@
 #include "exitance/io/solution/stored_scene_check.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/methods/solve_scene.hpp"
+#include "exitance/reconstruct/error/texture_error.hpp"
 #include "exitance/scene/findings.hpp"
 #include "exitance/transport/distributed.hpp"
 
@@ -160,14 +161,14 @@ std::optional<Error> no_estimate(const SolveArguments& arguments, const SolveSta
 }
 
 /// The scene as it is solved; programs that make parts of it end by the time limit.
-CheckedScene read_scene(SolveArguments& arguments, const Stopwatch& run_time) {
+LoadedScene read_scene(SolveArguments& arguments, const Stopwatch& run_time) {
     StopRequest stop;
     if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
     LoadOptions& load = arguments.scene.load;
     load.stop = &stop;
     load.photometric = arguments.photometric;
     load.light_groups = arguments.light_groups;
-    CheckedScene checked = load_for_all(arguments.scene);
+    LoadedScene checked = load_for_all(arguments.scene);
     load.stop = nullptr;
     return checked;
 }
@@ -192,6 +193,7 @@ void record_run(Solution& solution, const SolveArguments& arguments, const std::
                 double read_seconds, const Stopwatch& run_time) {
     SolveStatistics& statistics = solution.statistics;
     if (!arguments.classical.any()) solution.options = options_json(arguments.options);
+    solution.options = with_scene_options(solution.options, arguments.scene.load);
     add_findings(statistics.warnings, findings, solution.scene.file());
     statistics.seconds["read"] = read_seconds;
     statistics.seconds["total"] = run_time.seconds();
@@ -238,7 +240,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     Tracing tracing(arguments.trace, terminal.progress());
 
     const Stopwatch reading;
-    CheckedScene checked = read_scene(arguments, run_time);
+    LoadedScene checked = read_scene(arguments, run_time);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     if (const Result<void> few = check_light_groups(arguments, *checked.scene); !few) return terminal.fail(few.error());
@@ -269,6 +271,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
         const ExitCode failure = terminal.fail(*failed);
         return signal ? *signal : failure;
     }
+    add_texture_error(*solution, checked.reflectance_deviation, arguments.options.error_demand());
     const Result<LightGroups> groups = keep_light_groups(arguments, *solution, tracing.progress(), stop);
     if (!groups) return terminal.fail(groups.error());
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);

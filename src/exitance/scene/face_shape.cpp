@@ -1,4 +1,4 @@
-// What SceneBuilder asks of the shape of a face: an area, no holes that turn, no crossings, one plane.
+// SceneBuilder's checks of the shape of a face: an area, holes that turn, crossings, one plane.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 
 #include "exitance/geometry/triangulation.hpp"
 #include "exitance/joining/outline.hpp"
+#include "exitance/joining/uncross.hpp"
 #include "exitance/scene/outline_repair.hpp"
 #include "exitance/scene/scene_builder.hpp"
 
@@ -37,38 +38,34 @@ bool SceneBuilder::split_folded(std::uint32_t f, std::span<const std::uint32_t> 
     return true;
 }
 
-namespace {
+SceneBuilder::OutlineShape::OutlineShape(std::span<const Point> points, std::span<const std::uint32_t> outline) {
+    Box box;
+    for (std::uint32_t c : outline) corners.push_back(points[c]), box.add(points[c]);
+    area = area_vector(corners);
+    extent = box.diagonal();
+}
 
-/// The outline's own figures.
-struct Shape {
-    std::vector<Point> corners;
-    Vec3 area;
-    double extent = 0;  ///< Diagonal of its box, metres.
+double SceneBuilder::narrowest_width(const OutlineShape& shape) const {
+    return std::max(tol_.place, std::numeric_limits<float>::epsilon() * shape.extent);
+}
 
-    Shape(std::span<const Point> points, std::span<const std::uint32_t> outline) {
-        Box box;
-        for (std::uint32_t c : outline) corners.push_back(points[c]), box.add(points[c]);
-        area = area_vector(corners);
-        extent = box.diagonal();
-    }
-};
-
-}  // namespace
+bool SceneBuilder::is_too_narrow(const OutlineShape& shape) const {
+    return norm(shape.area) <= narrowest_width(shape) * shape.extent;
+}
 
 void SceneBuilder::check_shape(std::uint32_t f, std::vector<std::uint32_t> outline) {
     const SceneDescription::Face& face = in_.faces[f];
-    Shape shape(in_.points, outline);
-    // Narrower beside its length than single precision resolves: no ray meets it.
-    const double narrowest = std::max(tol_.place, std::numeric_limits<float>::epsilon() * shape.extent);
-    if (norm(shape.area) <= narrowest * shape.extent) {
+    OutlineShape shape(in_.points, outline);
+    if (is_too_narrow(shape)) {
+        const double narrowest = narrowest_width(shape);
         if (!is_collinear(shape.corners, std::max(2 * narrowest, std::min(tol_.plane, 1e-3 * shape.extent))))
-            return error(face, "face crosses itself: its parts cancel out", "order its corners counter-clockwise");
+            return split_crossed(f, outline);
         return repair(
             face, fmt::format("face of {} corners has no area, they are in line: it is left out", face.corners.size()),
             "faces without area");
     }
     if (const std::size_t turned = turn_holes(in_.points, normalized(shape.area), outline); turned > 0) {
-        shape = Shape(in_.points, outline);
+        shape = OutlineShape(in_.points, outline);
         repair(face,
                fmt::format("{} of the face turn{} like its rim: it is cut out all the same",
                            turned == 1 ? "a hole" : "holes", turned == 1 ? "s" : ""),
@@ -78,37 +75,64 @@ void SceneBuilder::check_shape(std::uint32_t f, std::vector<std::uint32_t> outli
     EdgePair where{};
     if (crosses_itself(shape.corners, n, tol_.place, where)) {
         if (is_bent(shape.corners, n, shape.extent) && split_folded(f, outline, shape.corners)) return;
+        const std::vector<std::uint32_t> given = outline;
         std::size_t dropped = 0;
         if (!drop_crossing_corners(in_.points, n, tol_.place, std::min(tol_.plane, 1e-3 * shape.extent), outline,
-                                   dropped)) {
-            const std::size_t m = shape.corners.size();
-            return error(
-                face,
-                fmt::format("face crosses itself: the edge from corner {} to {} meets the edge from corner {} to {}",
-                            where.first + 1, (where.first + 1) % m + 1, where.second + 1, (where.second + 1) % m + 1),
-                "order its corners counter-clockwise, or split it");
-        }
+                                   dropped))
+            return split_crossed(f, given);
         repair(face, fmt::format("face crosses itself by rounding: {} of its corners are left out", dropped),
                "faces that do so");
         if (outline.size() < 3) return;
-        shape = Shape(in_.points, outline);
-        if (norm(shape.area) <= narrowest * shape.extent) return;
+        shape = OutlineShape(in_.points, outline);
+        if (is_too_narrow(shape)) return;
     }
-    if (!is_one_polygon(in_.points, outline, shape.area, tol_.place))
-        return error(face, "face crosses itself in a corner: a part of it is turned over", "split it there");
-    const double off = out_of_plane(shape.corners, normalized(shape.area));
-    if (is_bent(shape.corners, normalized(shape.area), shape.extent)) {
-        repair(face,
+    if (!is_one_polygon(in_.points, outline, shape.area, tol_.place)) return split_crossed(f, outline);
+    add_shape(f, outline, shape);
+}
+
+void SceneBuilder::split_crossed(std::uint32_t f, std::span<const std::uint32_t> outline) {
+    const OutlineShape whole(in_.points, outline);
+    const Normal n = is_too_narrow(whole) ? normal_of_corners(whole.corners) : Normal(normalized(whole.area));
+    const UncrossedOutline uncrossed = uncross(whole.corners, n, tol_.place);
+    const auto first_crossing = static_cast<std::uint32_t>(in_.points.size());
+    in_.points.insert(in_.points.end(), uncrossed.crossings.begin(), uncrossed.crossings.end());
+    std::size_t added = 0;
+    for (const std::vector<std::uint32_t>& part : uncrossed.parts) {
+        std::vector<std::uint32_t> corners;
+        for (const std::uint32_t c : part)
+            corners.push_back(c < outline.size() ? outline[c]
+                                                 : first_crossing + c - static_cast<std::uint32_t>(outline.size()));
+        drop_repeated_corners(corners);
+        if (corners.size() < 3) continue;
+        const OutlineShape shape(in_.points, corners);
+        EdgePair where{};
+        if (is_too_narrow(shape) || crosses_itself(shape.corners, normalized(shape.area), tol_.place, where)) continue;
+        add_shape(f, corners, shape), ++added;
+    }
+    const char* kind = "faces that cross themselves";
+    if (added == 0)
+        return repair(in_.faces[f], "face crosses itself and its parts have no area: it is left out", kind,
+                      "order its corners counter-clockwise");
+    repair(in_.faces[f],
+           fmt::format("face of {} corners crosses itself: it is split into {} where its edges cross", outline.size(),
+                       added == 1 ? std::string("its one part") : fmt::format("{} parts", added)),
+           kind, "order its corners counter-clockwise");
+}
+
+void SceneBuilder::add_shape(std::uint32_t f, std::span<const std::uint32_t> outline, const OutlineShape& shape) {
+    const Normal n = normalized(shape.area);
+    const double off = out_of_plane(shape.corners, n);
+    if (is_bent(shape.corners, n, shape.extent)) {
+        repair(in_.faces[f],
                fmt::format("face of {} corners is {:.3g} m out of plane: it is split into triangles, each a "
                            "surface of its own",
                            shape.corners.size(), off),
                "faces out of plane");
-        for (const auto& [a, b, c] : triangulate(shape.corners, normalized(shape.area)))
-            add_triangle(f, outline, shape.corners, {a, b, c});
+        for (const auto& [a, b, c] : triangulate(shape.corners, n)) add_triangle(f, outline, shape.corners, {a, b, c});
         return;
     }
     if (off > tol_.place) {
-        if (flattened_.count++ == 0) flattened_.first_line = face.line;
+        if (flattened_.count++ == 0) flattened_.first_line = in_.faces[f].line;
         flattened_.farthest = std::max(flattened_.farthest, off);
     }
     add_face(f, outline, shape.area);

@@ -11,6 +11,7 @@
 #include "exitance/joining/outline.hpp"
 #include "exitance/joining/weld.hpp"
 #include "exitance/scene/overlaps.hpp"
+#include "exitance/scene/shell.hpp"
 
 namespace exitance {
 
@@ -96,20 +97,35 @@ void SceneBuilder::check_lights() {
                               light.outer_cone),
                   "the inner one is at least 0 and less than the outer one, that one at most pi / 2");
     }
-    for (Pane& pane : in_.panes) {
-        const Vec3 area = area_vector(pane.corners);
-        if (norm(area) > 0) pane.n = normalized(area);
-        if (!pane.is_sane() || !std::all_of(pane.corners.begin(), pane.corners.end(), is_near))
-            error(pane.line, "a pane of glass is no polygon, or lets more light through than arrives");
-    }
     if (!in_.distant.is_sane())
         error(0, "a sky or a sun has no direction, or light that is negative, too much or not finite");
+}
+
+void SceneBuilder::add_pane_faces() {
+    first_pane_face_ = static_cast<std::uint32_t>(in_.faces.size());
+    for (const Pane& pane : in_.panes) {
+        SceneDescription::Face& face = in_.faces.emplace_back();
+        face.line = pane.line, face.group = static_cast<std::uint32_t>(in_.groups.size());
+        for (const Point& corner : pane.corners) {
+            face.corners.push_back(static_cast<std::uint32_t>(in_.points.size()));
+            in_.points.push_back(corner);
+        }
+    }
+}
+
+void SceneBuilder::check_panes() {
+    in_.faces.resize(first_pane_face_);
+    in_.panes = std::move(panes_);
+    for (const Pane& pane : in_.panes)
+        if (!pane.is_sane()) error(pane.line, "a pane of glass lets more light through than arrives");
 }
 
 /// Finds the scene's box and the points that stand at one place.
 void SceneBuilder::place_corners() {
     std::vector<float> lengths;  // of all edges; only their magnitude matters
-    for (const auto& face : in_.faces) {
+    for (std::uint32_t f = 0; f < in_.faces.size(); ++f) {
+        const auto& face = in_.faces[f];
+        if (is_pane(f) && first_pane_face_ > 0) break;
         const Point* before = nullptr;
         for (std::uint32_t c : face.corners) {
             if (c >= in_.points.size() || !is_near(in_.points[c])) continue;
@@ -130,8 +146,11 @@ void SceneBuilder::check_faces() {
     mesh_.first.push_back(0);
     for (std::uint32_t f = 0; f < in_.faces.size(); ++f) check_face(f);
     report_flattened();
-    if (in_.faces.empty())
+    check_panes();
+    if (in_.faces.empty() && in_.panes.empty())
         error(1, "there are no polygons", "a scene needs at least one face");
+    else if (in_.faces.empty())
+        error(in_.panes[0].line, "all faces are panes of clear glass", "a scene needs at least one opaque face");
     else if (mesh_.size() == 0 && !has_errors())
         error(in_.faces[0].line, "no polygon is left once faces without area are taken out");
 }
@@ -139,7 +158,7 @@ void SceneBuilder::check_faces() {
 /// Appends the face to the mesh if it can be used; reports why not otherwise.
 void SceneBuilder::check_face(std::uint32_t f) {
     const SceneDescription::Face& face = in_.faces[f];
-    if (face.material >= in_.materials.size() || face.group >= in_.groups.size())
+    if (!is_pane(f) && (face.material >= in_.materials.size() || face.group >= in_.groups.size()))
         return error(face, "face has no material or no group");
     if (face.corners.size() > most_corners)
         return error(face, fmt::format("face has {} corners; {} are the most", face.corners.size(), most_corners),
@@ -169,6 +188,13 @@ void SceneBuilder::check_face(std::uint32_t f) {
 }
 
 void SceneBuilder::add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area) {
+    if (is_pane(f)) {
+        Pane& pane = panes_.emplace_back(in_.panes[f - first_pane_face_]);
+        pane.corners.clear();
+        for (const std::uint32_t c : outline) pane.corners.push_back(in_.points[c]);
+        pane.n = normalized(area);
+        return;
+    }
     mesh_.corners.insert(mesh_.corners.end(), outline.begin(), outline.end());
     mesh_.first.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
     mesh_.material.push_back(in_.faces[f].material);
@@ -223,6 +249,27 @@ void SceneBuilder::drop_duplicates() {
     origin_ = std::move(left_origin);
 }
 
+void SceneBuilder::turn_bodies() {
+    BodyFaces faces;
+    faces.size = box_.diagonal();
+    for (std::uint32_t f = 0; f < mesh_.size(); ++f) {
+        std::vector<Point> corners;
+        for (const std::uint32_t c : mesh_.outline(f)) corners.push_back(in_.points[c]);
+        faces.add(corners, normalized(mesh_.area_vector[f]), in_.materials[mesh_.material[f]].emits());
+    }
+    faces.add_lights(in_.lights, in_.distant);
+    for (const InsideOut& body : find_inside_out(faces)) {
+        const SceneDescription::Face& first = in_.faces[origin_[body.faces[0]]];
+        const Finding repaired = finding_of(body, in_.groups[first.group], Finding::Kind::repair);
+        repair(first, repaired.message, "bodies that are inside out");
+        for (const std::uint32_t f : body.faces) {
+            const auto corners = mesh_.corners.begin();
+            std::reverse(corners + mesh_.first[f], corners + mesh_.first[f + 1]);
+            mesh_.area_vector[f] = -mesh_.area_vector[f];
+        }
+    }
+}
+
 void SceneBuilder::check_light() {
     const auto shines = [](const auto& l) { return max(l.irradiance) > 0; };
     const bool lit =
@@ -262,11 +309,13 @@ CheckedScene SceneBuilder::build() {
     add_other_sides();
     check_materials();
     check_lights();
+    add_pane_faces();
     place_corners();
     check_faces();
     report_alike();
     if (!has_errors()) {
         drop_duplicates();
+        if (turn_bodies_) turn_bodies();
         check_light();
         report_alike();
     }

@@ -14,7 +14,9 @@ namespace exitance {
 /// Makes a scene step by step; findings gather on the way.
 class SceneBuilder {
   public:
-    explicit SceneBuilder(SceneDescription description) : in_(std::move(description)) {}
+    /// turn_bodies  true: turns the faces of closed bodies that are inside out (`find_inside_out`)
+    explicit SceneBuilder(SceneDescription description, bool turn_bodies = false)
+        : in_(std::move(description)), turn_bodies_(turn_bodies) {}
     CheckedScene build();
 
   private:
@@ -24,6 +26,25 @@ class SceneBuilder {
     void check_faces();
     void check_face(std::uint32_t f);
     void check_shape(std::uint32_t f, std::vector<std::uint32_t> outline);
+    /// Corners, area vector (m^2) and extent of an outline.
+    struct OutlineShape {
+        std::vector<Point> corners;
+        Vec3 area;
+        double extent = 0;  ///< Diagonal of its box, metres.
+
+        OutlineShape(std::span<const Point> points, std::span<const std::uint32_t> outline);
+    };
+    /// Width (metres) below which no ray meets the outline: single precision does not resolve it beside its length.
+    double narrowest_width(const OutlineShape& shape) const;
+    bool is_too_narrow(const OutlineShape& shape) const;
+    /// Adds the parts of an outline that crosses itself.
+    void split_crossed(std::uint32_t f, std::span<const std::uint32_t> outline);
+    /// Adds an outline that does not cross itself; splits it into triangles if it is bent.
+    void add_shape(std::uint32_t f, std::span<const std::uint32_t> outline, const OutlineShape& shape);
+    /// Appends the outlines of panes to the faces, so that they get the same checks.
+    void add_pane_faces();
+    bool is_pane(std::uint32_t f) const { return f >= first_pane_face_; }
+    void check_panes();
     void add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area);
     /// A face may be bent by as much as its neighbours may be tilted.
     bool is_bent(std::span<const Point> corners, const Normal& n, double extent) const;
@@ -35,6 +56,7 @@ class SceneBuilder {
                       const std::array<std::size_t, 3>& t);
     void report_flattened();
     void drop_duplicates();
+    void turn_bodies();
     void check_light();
     Scene make();
     void add_other_sides();
@@ -63,11 +85,14 @@ class SceneBuilder {
     bool has_errors() const { return exitance::has_errors(findings_); }
 
     SceneDescription in_;
+    bool turn_bodies_;
     std::vector<Finding> findings_;
     std::vector<std::uint32_t> place_;  // of every point: the first point at its place
     Tolerances tol_;
     FaceMesh mesh_;
     std::vector<std::uint32_t> origin_;  // face of the mesh -> face of the description
+    std::uint32_t first_pane_face_ = 0;  // the faces of the description from here on are outlines of panes
+    std::vector<Pane> panes_;            // checked
     Box box_;
     /// Faces out of plane by more than rounding, within the tolerance.
     struct Flattened {

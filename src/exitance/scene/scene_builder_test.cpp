@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "exitance/scene/scene.hpp"
 
@@ -241,14 +242,78 @@ TEST(Checks, FacesWithoutAreaAreLeftOutAndSaid) {
     EXPECT_TRUE(s.findings[0].message.ends_with("(and 1 more faces without area)")) << s.findings[0].message;
 }
 
-TEST(Checks, ABowTieIsAnErrorWhetherItsPartsCancelOrNot) {
-    for (double y : {1.0, 1.5}) {
+double area_of_face_line(const CheckedScene& s, int line) {
+    double sum = 0;
+    for (const Surface& surface : s.scene->surfaces())
+        if (surface.line == line) sum += surface.area;
+    return sum;
+}
+
+TEST(Checks, ABowTieIsSplitAtItsCrossingWhetherItsPartsCancelOrNot) {
+    // Parts of y = 1: 1/4 m^2 each. y = 1.5: the diagonals cross at (3/5, 3/5).
+    for (const auto& [y, area] : {std::pair{1.0, 0.5}, {1.5, 0.5 * 1 * 0.4 + 0.5 * 1.5 * 0.6}}) {
         const auto s = Sketch().add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, y, 0}}).light().make();
-        ASSERT_FALSE(s.scene);
-        EXPECT_EQ(s.scene.error().code, ErrorCode::bad_input);
-        EXPECT_EQ(s.scene.error().where, "sketch.obj:1");
-        EXPECT_NE(s.scene.error().message.find("crosses itself"), std::string::npos);
+        ASSERT_TRUE(s.scene);
+        ASSERT_EQ(s.scene->surfaces().size(), 3u);
+        EXPECT_NEAR(area_of_face_line(s, 1), area, 1e-12);
+        EXPECT_EQ(s.scene->surfaces()[SurfaceId(0)].normal, s.scene->surfaces()[SurfaceId(1)].normal);
+        ASSERT_EQ(count(s, Finding::Kind::repair), 1);
+        EXPECT_NE(s.findings[0].message.find("split into 2 parts"), std::string::npos);
     }
+}
+
+TEST(Checks, ACrossedFaceIsSplitAlikeWhereverItStands) {
+    const auto area = [](double size, double turn, const Vec3& shift) {
+        const Frame frame(normalized(Vec3{std::cos(turn), std::sin(turn), 0.7}));
+        std::vector<Point> outline;
+        for (const Vec2 p : {Vec2{0, 0}, Vec2{2, 1}, Vec2{2, 0}, Vec2{0, 1.2}, Vec2{-0.5, 0.4}})
+            outline.push_back(frame.to_world(size * p.x, size * p.y, 0) + shift);
+        const auto s = Sketch().add(outline).light().make();
+        return s.scene ? area_of_face_line(s, 1) / (size * size) : -1;
+    };
+    // The edges to (2, 1) and to (0, 1.2) cross where x / 2 = 1.2 - 0.6 (2 - x): x = 12/11.
+    const double x = 12.0 / 11, right = 0.5 * (2 - x), left = 0.5 * 1.2 * x + 0.5 * 1.2 * 0.5;
+    for (const double size : {1e-3, 1.0, 1e3}) {
+        EXPECT_NEAR(area(size, 0, {}), right + left, 1e-6) << size;
+        EXPECT_NEAR(area(size, 0.37, {1000, -20, 3}), right + left, 1e-6) << size;
+    }
+}
+
+TEST(Checks, EveryPartThatAnOutlineRunsAroundCountsOnce) {
+    std::vector<Point> star;
+    for (int i = 0; i < 5; ++i) star.push_back({std::cos(4 * pi * i / 5), std::sin(4 * pi * i / 5), 0});
+    const auto s = Sketch().add(star).light().make();
+    ASSERT_TRUE(s.scene);
+    const double inner = std::cos(2 * pi / 5) / std::cos(pi / 5);  // radius of the inner corners
+    EXPECT_NEAR(area_of_face_line(s, 1), 5 * inner * std::sin(pi / 5), 1e-9);
+    EXPECT_EQ(s.scene->regions().size(), 2u) << "its parts are one region";
+
+    const std::vector<Point> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    std::vector<Point> twice = square;
+    twice.insert(twice.end(), square.begin(), square.end());
+    const auto doubled = Sketch().add(twice).light().make();
+    ASSERT_TRUE(doubled.scene);
+    EXPECT_NEAR(area_of_face_line(doubled, 1), 1, 1e-12);
+    EXPECT_EQ(doubled.scene->surfaces()[SurfaceId(0)].normal, (Normal{0, 0, 1}));
+}
+
+TEST(Checks, PanesAreCheckedLikeFaces) {
+    Sketch sketch = Sketch().rectangle(0, 0, 1, 1).light();
+    const auto pane = [&](std::vector<Point> corners) {
+        Pane& p = sketch.d.panes.emplace_back();
+        p.corners = std::move(corners), p.transmissivity = Spectrum(0.9), p.line = 7;
+    };
+    pane({{0, 0, 1}, {1, 0, 1}});                                   // a loose edge
+    pane({{0, 0, 1}, {1, 0, 1}, {1, 0, 1}, {1, 1, 1}, {1, 1, 1}});  // repeated corners
+    pane({{0, 0, 2}, {1, 1, 2}, {1, 0, 2}, {0, 1, 2}});             // a bow tie
+    const auto s = sketch.make();
+    ASSERT_TRUE(s.scene) << s.scene.error().message;
+    ASSERT_EQ(s.scene->panes().size(), 3u);
+    double area = 0;
+    for (const Pane& p : s.scene->panes()) area += norm(area_vector(p.corners));
+    EXPECT_NEAR(area, 0.5 + 0.5, 1e-12);
+    EXPECT_EQ(count(s, Finding::Kind::repair), 3);
+    EXPECT_EQ(s.scene->box().hi.z, 9) << "panes do not count for the box";
 }
 
 TEST(Checks, AFaceFoldedUntilItCrossesItselfIsTwoTriangles) {
@@ -396,11 +461,12 @@ TEST(Checks, FacesBackToBackBesideEachOtherOrInAHoleAreNoOverlap) {
     EXPECT_TRUE(s.findings.empty()) << s.findings[0].message;
 }
 
-TEST(Checks, LobesOfOppositeSenseThatMeetInACornerAreAnError) {
+TEST(Checks, LobesOfOppositeSenseThatMeetInACornerAreSplitThere) {
     const Point v{0, 0, 0};
     const auto s = Sketch().add({v, {2, -1, 0}, {2, 1, 0}, v, {-1, -0.5, 0}, {-1, 0.5, 0}}).light().make();
-    ASSERT_FALSE(s.scene);
-    EXPECT_NE(s.scene.error().message.find("crosses itself"), std::string::npos);
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->surfaces().size(), 3u);
+    EXPECT_NEAR(area_of_face_line(s, 1), 2.5, 1e-12);
     const auto proper = Sketch().add({v, {2, -1, 0}, {2, 1, 0}, v, {-1, 0.5, 0}, {-1, -0.5, 0}}).light().make();
     EXPECT_TRUE(proper.scene);
 }

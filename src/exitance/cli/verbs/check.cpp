@@ -6,6 +6,7 @@
 #include "exitance/io/pictures/check_picture.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/scene/findings.hpp"
+#include "exitance/scene/model_units.hpp"
 #include "exitance/scene/shell.hpp"
 
 namespace exitance {
@@ -66,6 +67,11 @@ ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
             checked.lines.place(finding);
             checked.findings.push_back(std::move(finding));
         }
+        const LoadOptions& load = arguments.scene.load;
+        if (!say_units(arguments.scene.files))
+            for (Finding& finding : findings_of(guess_units(*checked.scene), *checked.scene,
+                                                load.metres_per_unit.has_value(), load.y_is_up.has_value()))
+                checked.findings.push_back(std::move(finding));
         sort_findings(checked.findings);
         checked.marks.insert(checked.marks.end(), shell.marks.begin(), shell.marks.end());
     }

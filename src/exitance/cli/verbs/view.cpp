@@ -159,7 +159,7 @@ class RunningSolve {
                 break;
             }
             if (stop_.requested() && !solution->statistics.relative_error_estimate && gallery_.newest()) break;
-            solution->options = options_json(options);
+            solution->options = with_scene_options(options_json(options), arguments_.scene.load);
             const std::size_t count = gallery_.add(std::move(*solution));
             events_.tell("light", fmt::format(R"({{"count": {}}})", count));
             if (*options.error <= arguments_.error) break;
@@ -216,6 +216,10 @@ ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
         return ViewAnswer{200, "application/json", solves ? R"({"solving": true})" : R"({"solving": false})"};
     });
     if (!solves) {
+        const LoadOptions& load = arguments.scene.load;
+        if (load.metres_per_unit || load.y_is_up || load.turn_bodies)
+            return terminal.fail({ErrorCode::usage, "--length-unit, --up and --turn-bodies are for scenes",
+                                  arguments.scene.files[0], "a solution is in metres, with Z up"});
         Result<Solution> solution = load_solution(arguments.scene.files[0], Rehearsed::not_yet, &groups);
         if (!solution) return terminal.fail(solution.error());
         gallery.add(std::move(*solution));

@@ -1,5 +1,6 @@
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/scene/emitter_groups.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,7 +14,9 @@
 #include "exitance/io/scenes/radiance/radiance.hpp"
 #include "exitance/io/scenes/stl.hpp"
 #include "exitance/io/scenes/view3d.hpp"
+#include "exitance/scene/emitter_groups.hpp"
 #include "exitance/scene/findings.hpp"
+#include "exitance/scene/scene_builder.hpp"
 
 namespace exitance {
 namespace {
@@ -22,16 +25,30 @@ LoadedScene refused(ErrorCode code, const std::string& path, std::string message
     return {{Error{code, message, path, hint}, {{Finding::Kind::error, path, 0, message, hint}}}};
 }
 
+/// The error about a scene of panes alone, with the materials that made its faces panes.
+Finding only_glass(const ReadScene& read) {
+    const std::vector<std::string>& by = read.glazed_by;
+    const std::size_t count = read.description.panes.size();
+    return {Finding::Kind::error, read.description.file, 0,
+            fmt::format("{} pane{} of clear glass{}{}: a scene needs at least one opaque face",
+                        count == 1 ? "the only face is a" : fmt::format("all {} faces are", count),
+                        count == 1 ? "" : "s", by.empty() ? "" : " by " + by.front(),
+                        by.size() > 1 ? fmt::format(" and {} more", by.size() - 1) : ""),
+            "make a material opaque (in MTL: 'd 1'), or add faces that light does not pass straight"};
+}
+
 /// Findings of the reader and of the checks together. A file with errors is still looked at in full, but not warned
 /// about light that may be among what could not be read.
-CheckedScene checked(ReadScene read, const SceneLines& lines) {
+CheckedScene checked(ReadScene read, const SceneLines& lines, bool turn_bodies) {
+    if (read.description.faces.empty() && !read.description.panes.empty() && !has_errors(read.findings))
+        read.findings.push_back(only_glass(read));
     const bool broken = has_errors(read.findings);
     if (broken && read.description.faces.empty()) {
         sort_findings(read.findings);
         Error first = error_of(read.findings);
         return {std::move(first), std::move(read.findings)};
     }
-    CheckedScene out = make_scene(std::move(read.description));
+    CheckedScene out = SceneBuilder(std::move(read.description), turn_bodies).build();
     for (Finding& finding : out.findings) lines.place(finding);
     if (!out.scene && has_errors(out.findings)) sort_findings(out.findings), out.scene = error_of(out.findings);
     if (broken) std::erase_if(out.findings, [](const Finding& f) { return f.kind == Finding::Kind::warning; });
@@ -97,6 +114,46 @@ int last_line(const SceneDescription& description) {
     return last;
 }
 
+/// glTF says metres and Y up.
+bool says_units(Reader reader) {
+    return reader == Reader(read_gltf);
+}
+
+/// Converts what a file that does not say its units holds to metres and Z up. Radiances and their profiles stay: they
+/// do not depend on the unit of length.
+void convert_units(SceneDescription& d, const LoadOptions& options) {
+    const double scale = options.metres_per_unit.value_or(1);
+    const bool turns = options.y_is_up.value_or(false);
+    const auto turned = [&](const Vec3& v) { return turns ? Vec3{v.x, -v.z, v.y} : v; };
+    const auto place = [&](Point& p) { p = scale * turned(p); };
+    std::for_each(d.points.begin(), d.points.end(), place);
+    for (Pane& pane : d.panes) {
+        std::for_each(pane.corners.begin(), pane.corners.end(), place);
+        pane.n = turned(pane.n);
+    }
+    for (PunctualLight& light : d.lights) place(light.position), light.direction = turned(light.direction);
+    for (SceneCamera& camera : d.cameras) {
+        place(camera.eye), place(camera.target);
+        camera.up = turned(camera.up), camera.width *= scale;
+    }
+}
+
+/// Why --length-unit or --up cannot be used with these files; none if it can.
+std::optional<Error> refuse_units(std::span<const std::string> paths, const LoadOptions& options) {
+    const auto all = [&](const auto& is) {
+        return std::all_of(paths.begin(), paths.end(), [&](const std::string& p) { return is(reader_of(p)); });
+    };
+    const char* const given = options.metres_per_unit ? "--length-unit" : "--up";
+    if ((options.metres_per_unit || options.y_is_up) && all(says_units))
+        return Error{ErrorCode::usage, "glTF files say their unit and axis: metres, and Y is up", given,
+                     "leave the option out; scale or turn a node in the file if it is wrong"};
+    const bool has_radiance = !all([](Reader r) { return r != Reader(read_radiance); });
+    if (options.y_is_up.value_or(false) && has_radiance)
+        return Error{ErrorCode::usage, "Radiance's files have Z up: their skies and suns say where up is", "--up",
+                     "turn the geometry with !xform -rx 90"};
+    return std::nullopt;
+}
+
 /// All files as one; those of no known kind are left to the caller.
 ReadScene read_files(std::span<const std::string> paths, const LoadOptions& options) {
     std::vector<std::string> radiance;
@@ -108,6 +165,7 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
         const Reader read = reader_of(path);
         if (!read || (read == Reader(read_radiance) && path != radiance.front())) continue;
         ReadScene one = read == Reader(read_radiance) ? read_radiance(radiance, options) : read(path);
+        if (!says_units(read)) convert_units(one.description, options);
         if (one.lines.empty() && paths.size() > 1) one.lines.add(path, last_line(one.description));
         if (is_first) {
             all = std::move(one);
@@ -117,8 +175,11 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
                 if (face.line > 0) face.line += before;
             for (Pane& pane : one.description.panes)
                 if (pane.line > 0) pane.line += before;
+            all.reflectance_deviation.resize(all.description.materials.size());
+            append(all.reflectance_deviation, one.reflectance_deviation);
             append(all.description, std::move(one.description)), append(all.findings, one.findings);
-            append(all.luminaires, one.luminaires);
+            append(all.luminaires, one.luminaires), append(all.darkening, one.darkening);
+            append(all.glazed_by, one.glazed_by);
         }
         is_first = false;
     }
@@ -151,6 +212,17 @@ void add_luminaires(ReadScene& read, const LoadOptions& options) {
     add_luminaires(all, options.photometric, read.description, read.findings);
 }
 
+/// Repairs that take light from the scene are errors if none is left: all results would be 0 for want of a file.
+void judge_darkening(ReadScene& read) {
+    const SceneDescription& d = read.description;
+    const bool emits = !d.distant.empty() || !d.lights.empty() ||
+                       std::any_of(d.materials.begin(), d.materials.end(), [](const Material& m) { return m.emits(); });
+    for (Finding& finding : read.darkening) {
+        if (!emits) finding.kind = Finding::Kind::error;
+        read.findings.push_back(std::move(finding));
+    }
+}
+
 }  // namespace
 
 LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options) {
@@ -166,13 +238,17 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");
     }
+    if (std::optional<Error> e = refuse_units(paths, options))
+        return {{*e, {{Finding::Kind::error, e->where, 0, e->message, e->hint}}}};
     ReadScene read = read_files(paths, options);
     if (options.sky) give_sky(*options.sky, read);
     add_luminaires(read, options);
+    judge_darkening(read);
     if (options.light_groups) part_emitters_by_group(read.description);
     SceneLines lines = std::move(read.lines);
-    LoadedScene scene{checked(std::move(read), lines), {}};
-    scene.lines = std::move(lines);
+    std::vector<Spectrum> deviation = std::move(read.reflectance_deviation);
+    LoadedScene scene{checked(std::move(read), lines, options.turn_bodies), {}};
+    scene.lines = std::move(lines), scene.reflectance_deviation = std::move(deviation);
     if (!scene.scene && options.stop && options.stop->requested())
         return refused(ErrorCode::limit, paths.front(), "a stop was asked for while the scene was being read", "");
     if (options.faults == Faults::refuse) refuse_repairs(scene);
@@ -181,6 +257,10 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
 
 CheckedScene load_scene(const std::string& path, Faults faults) {
     return load_scene(std::span(&path, 1), {.faults = faults});
+}
+
+bool say_units(std::span<const std::string> paths) {
+    return std::any_of(paths.begin(), paths.end(), [](const std::string& p) { return says_units(reader_of(p)); });
 }
 
 SceneDescription read_description(std::span<const std::string> paths, const LoadOptions& options) {

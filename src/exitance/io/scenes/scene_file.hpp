@@ -32,11 +32,18 @@ struct LoadOptions {
     std::string luminaires = {};           ///< A table of luminaires that stand in the scene; empty: none.
     bool light_groups = false;             ///< Gives the emitters of every group materials of their own.
     std::optional<bool> photometric = {};  ///< Is the scene's light in lumens? None: as its files say.
+    bool turn_bodies = false;              ///< Turns the faces of closed bodies that are inside out.
+    /// Length unit and upright axis of files that do not say either; none: metres, Z up.
+    std::optional<double> metres_per_unit = {};
+    std::optional<bool> y_is_up = {};
 };
 
 /// A scene, and where its faces' lines stand: those of several files are counted on from one to the next.
 struct LoadedScene : CheckedScene {
     SceneLines lines = {};
+    /// By material: how much its reflectance varies over faces that show pictures, RMS. Faces have the mean. May be
+    /// shorter than the materials.
+    std::vector<Spectrum> reflectance_deviation = {};
 };
 
 /// Reads and checks the files of one scene, in their order. Files of Radiance share the names of materials and stand
@@ -47,6 +54,9 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
 /// the file is among the findings. An unreadable file has the code cannot_read, everything else that is wrong
 /// bad_input.
 CheckedScene load_scene(const std::string& path, Faults faults = Faults::repair);
+
+/// True if one of the files says its length unit and which axis is up: then so does the scene.
+bool say_units(std::span<const std::string> paths);
 
 /// What a scene file says, not yet checked; nothing, where it is of no known kind or cannot be read.
 SceneDescription read_description(std::span<const std::string> paths, const LoadOptions& options);

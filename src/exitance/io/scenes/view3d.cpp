@@ -11,6 +11,8 @@
 #include "exitance/geometry/polygon.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/joining/outline.hpp"
+#include "exitance/joining/uncross.hpp"
 #include "exitance/scene/findings.hpp"
 
 namespace exitance {
@@ -25,7 +27,8 @@ using Polygon = std::vector<Point>;
 struct Piece {
     char kind = 'S';
     int line = 0;
-    std::vector<Polygon> parts;  ///< Convex; several where others were cut out.
+    std::vector<Polygon> parts;  ///< Convex unless it crosses itself; several where others were cut out.
+    bool crosses_itself = false;
     Normal normal;
     std::size_t base = 0, merged = 0;  ///< Numbers of other surfaces, 0: none.
     double emittance = 0.9;
@@ -224,14 +227,19 @@ class View3dReader {
         check_shape(piece);
     }
 
-    /// Sets the normal; refuses what is not convex or not plane.
+    /// Sets the normal; refuses an outline that is concave or out of plane. One that crosses itself is split by the
+    /// scene's checks.
     void check_shape(Piece& piece) {
         const Polygon& p = piece.parts.front();
         const Vec3 area = area_vector(p);
         double size = 0, off = 0;
         for (const Point& c : p) size = std::max(size, norm(c - p[0]));
-        if (!(norm(area) > 1e-14 * size * size)) return;  // left out by the scene's checks, and told
+        EdgePair where{};
+        const Normal n = normal_of_corners(p);
+        piece.crosses_itself = norm(n) > 0 && crosses_itself(p, n, 1e-9 * size, where);
+        if (!(norm(area) > 1e-14 * size * size)) return;  // left out or split by the scene's checks, which report it
         piece.normal = normalized(area);
+        if (piece.crosses_itself) return;
         bool convex = true;
         for (std::size_t i = 0; i < p.size(); ++i) {
             const Vec3 in = p[(i + 1) % p.size()] - p[i], out = p[(i + 2) % p.size()] - p[(i + 1) % p.size()];
@@ -247,6 +255,11 @@ class View3dReader {
         for (const Piece& piece : pieces_) {
             if (piece.base == 0 || piece.parts.empty()) continue;
             Piece& base = pieces_[piece.base - 1];
+            if (piece.crosses_itself || base.crosses_itself) {
+                error(piece.line, "a quadrangle that crosses itself cannot be cut out, nor have parts cut out",
+                      "order its corners counter-clockwise");
+                continue;
+            }
             const Polygon& hole = piece.parts.front();
             std::vector<Polygon> left;
             for (const Polygon& part : base.parts) {

@@ -23,7 +23,7 @@ constexpr std::array known_extensions = {"KHR_lights_punctual",      "KHR_materi
                                          "KHR_materials_specular",   "KHR_materials_clearcoat",
                                          "KHR_materials_sheen",      "KHR_materials_iridescence",
                                          "KHR_materials_anisotropy", "KHR_materials_variants",
-                                         "KHR_materials_dispersion"};
+                                         "KHR_materials_dispersion", "KHR_materials_pbrSpecularGlossiness"};
 
 class GltfReader {
   public:
@@ -262,24 +262,66 @@ GltfModel::Colour times(const GltfModel::Colour& a, const GltfModel::Colour& b, 
     return {s * a.r * b.r, s * a.g * b.g, s * a.b * b.b};
 }
 
+/// Three or more numbers of an extension's array; `otherwise` for all if there are none.
+GltfModel::Colour colour_in(const tinygltf::Value& extension, const char* key, double otherwise) {
+    GltfModel::Colour out{otherwise, otherwise, otherwise};
+    if (!extension.Has(key) || extension.Get(key).ArrayLen() < 3) return out;
+    double* const channels[3] = {&out.r, &out.g, &out.b};
+    for (std::size_t k = 0; k < 3; ++k)
+        if (const tinygltf::Value& v = extension.Get(key).Get(k); v.IsNumber()) *channels[k] = v.GetNumberAsDouble();
+    return out;
+}
+
+/// The reference to a texture in an extension.
+tinygltf::TextureInfo texture_in(const tinygltf::Value& extension, const char* key) {
+    tinygltf::TextureInfo out;
+    if (!extension.Has(key) || !extension.Get(key).IsObject()) return out;
+    const tinygltf::Value& texture = extension.Get(key);
+    const auto integer = [&](const char* name, int otherwise) {
+        return texture.Has(name) && texture.Get(name).IsNumber() ? texture.Get(name).GetNumberAsInt() : otherwise;
+    };
+    out.index = integer("index", -1), out.texCoord = integer("texCoord", 0);
+    if (texture.Has("extensions") && texture.Get("extensions").IsObject())
+        for (const std::string& name : texture.Get("extensions").Keys())
+            out.extensions[name] = texture.Get("extensions").Get(name);
+    return out;
+}
+
+/// The diffuse part of a material: the base colour, of which the metallic share does not reflect diffusely; or, of the
+/// older KHR_materials_pbrSpecularGlossiness, which takes precedence, the diffuse colour.
+struct DiffusePart {
+    GltfModel::Colour factor;
+    tinygltf::TextureInfo texture;
+    double metallic = 0;
+    int metallic_texture = -1;
+};
+
+DiffusePart diffuse_part(const tinygltf::Material& in) {
+    const auto older = in.extensions.find("KHR_materials_pbrSpecularGlossiness");
+    if (older != in.extensions.end() && older->second.IsObject())
+        return {colour_in(older->second, "diffuseFactor", 1), texture_in(older->second, "diffuseTexture")};
+    const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
+    return {colour_of(pbr.baseColorFactor, 1), pbr.baseColorTexture, pbr.metallicFactor,
+            pbr.metallicRoughnessTexture.index};
+}
+
 void GltfReader::read_materials() {
     for (std::size_t i = 0; i < in_.materials.size(); ++i) {
         const tinygltf::Material& in = in_.materials[i];
-        const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
+        const DiffusePart diffuse = diffuse_part(in);
         GltfModel::Material m;
         m.name = name_or(shown(in.name), "material", i);
-        m.base =
-            times(colour_of(pbr.baseColorFactor, 1), texture_mean(pbr.baseColorTexture.index, srgb_curve(), m.name));
-        m.metallic = pbr.metallicFactor;
+        m.base = times(diffuse.factor, texture_mean(diffuse.texture.index, srgb_curve(), m.name));
+        m.metallic = diffuse.metallic;
         if (m.metallic > 0)  // metalness is the texture's blue
-            m.metallic *= texture_mean(pbr.metallicRoughnessTexture.index, linear_curve(), m.name).b;
+            m.metallic *= texture_mean(diffuse.metallic_texture, linear_curve(), m.name).b;
         const double strength = number_in(in.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
         m.emission = times(colour_of(in.emissiveFactor, 0), {1, 1, 1}, strength);
         if (m.emission.r != 0 || m.emission.g != 0 || m.emission.b != 0)
             m.emission = times(m.emission, texture_mean(in.emissiveTexture.index, srgb_curve(), m.name));
         m.double_sided = in.doubleSided;
         if (with_textures_) {
-            const tinygltf::TextureInfo &base = pbr.baseColorTexture, &glow = in.emissiveTexture;
+            const tinygltf::TextureInfo &base = diffuse.texture, &glow = in.emissiveTexture;
             m.base_texture = texture_use(base.index, base.texCoord, base.extensions);
             m.emission_texture = texture_use(glow.index, glow.texCoord, glow.extensions);
         }

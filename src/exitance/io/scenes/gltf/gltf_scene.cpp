@@ -28,10 +28,20 @@ Spectrum spread(const GltfModel::Colour& c) {
     return out;
 }
 
+/// Glass that transmits less is drawn as what it reflects.
+bool is_clear_glass(const GltfModel::Material& m) {
+    constexpr double min_transmission = 0.5;
+    return m.transmission >= min_transmission;
+}
+
 class SceneMaker {
   public:
     SceneMaker(const GltfModel& in, ReadScene& out)
-        : in_(in), out_(out.description), findings_(out.findings), luminaires_(out.luminaires) {}
+        : in_(in),
+          out_(out.description),
+          findings_(out.findings),
+          luminaires_(out.luminaires),
+          deviation_(out.reflectance_deviation) {}
     void make();
 
   private:
@@ -45,8 +55,8 @@ class SceneMaker {
     void add_triangle(std::array<std::uint32_t, 3> corners, bool double_sided, std::uint32_t material,
                       const ShownColour& colour);
     ShownColour colour_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices);
-    Spectrum shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
-                   const std::array<std::uint32_t, 3>& vertices);
+    ShownPart shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
+                    const std::array<std::uint32_t, 3>& vertices);
     std::uint32_t corner(const GltfModel::Primitive& p, const Affine& to_world, std::uint32_t index);
     void add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world);
     void add_view(const GltfModel::View& view, const Affine& to_world);
@@ -64,6 +74,7 @@ class SceneMaker {
     SceneDescription& out_;
     std::vector<Finding>& findings_;
     std::vector<PlacedLuminaire>& luminaires_;
+    std::vector<Spectrum>& deviation_;
     std::vector<std::uint32_t> group_of_mesh_;
     std::uint32_t default_material_ = 0;
     bool has_default_ = false;
@@ -102,9 +113,9 @@ void SceneMaker::report_materials() {
          "white is the default of glTF; walls reflect 0.5 to 0.85");
     list([&](std::size_t i) { return in_.materials[i].metallic >= 1 && !out_.materials[i].emits(); },
          "is metal: nothing of it reflects diffusely", "set the metallic factor to 0, glTF's default is 1");
-    list([&](std::size_t i) { return in_.materials[i].transparent && in_.materials[i].transmission < 0.5; },
+    list([&](std::size_t i) { return in_.materials[i].transparent && !is_clear_glass(in_.materials[i]); },
          "lets light through: here it is opaque", "panes of clear glass have KHR_materials_transmission");
-    list([&](std::size_t i) { return in_.materials[i].transmission >= 0.5; },
+    list([&](std::size_t i) { return is_clear_glass(in_.materials[i]); },
          "lets light through: its faces are panes of clear glass", "");
     for (Material& m : out_.materials)
         for (double& v : m.reflectance.value) v = std::min(v, most_reflectance);
@@ -131,10 +142,9 @@ std::uint32_t SceneMaker::corner(const GltfModel::Primitive& p, const Affine& to
     return point;
 }
 
-/// A triangle of glass. Glass that transmits little is taken for what it reflects.
+/// Adds a triangle of glass as a pane; returns whether it is one.
 bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t material) {
-    constexpr double least = 0.5;
-    if (material >= in_.materials.size() || !(in_.materials[material].transmission >= least)) return false;
+    if (material >= in_.materials.size() || !is_clear_glass(in_.materials[material])) return false;
     const GltfModel::Material& m = in_.materials[material];
     Pane pane;
     for (const std::uint32_t i : c) pane.corners.push_back(out_.points[i]);
@@ -144,19 +154,19 @@ bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t m
     return true;
 }
 
-/// What a triangle shows of a texture, by the mean of that.
-Spectrum SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
-                           const std::array<std::uint32_t, 3>& vertices) {
-    if (texture.picture < 0 || static_cast<std::size_t>(texture.picture) >= in_.pictures.size()) return Spectrum(1.0);
+/// The part of a texture that a triangle shows.
+ShownPart SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
+                            const std::array<std::uint32_t, 3>& vertices) {
+    if (texture.picture < 0 || static_cast<std::size_t>(texture.picture) >= in_.pictures.size()) return {};
     const GltfRows& places = p.places[static_cast<std::size_t>(texture.place_set)];
-    if (places.size() == 0) return Spectrum(1.0);
+    if (places.size() == 0) return {};
     const auto [picture, is_new] = pictures_.try_emplace(texture.picture);
     if (is_new) {
         Result<TextureArea> area =
             TextureArea::of(in_.pictures[static_cast<std::size_t>(texture.picture)], srgb_curve());
         if (area) picture->second = std::move(*area);  // else that was told with the material
     }
-    if (!picture->second) return Spectrum(1.0);
+    if (!picture->second) return {};
     std::array<Vec2, 3> outline;
     for (std::size_t k = 0; k < 3; ++k)
         outline[k] = texture.moved({places.at(vertices[k], 0), places.at(vertices[k], 1)});
@@ -167,7 +177,7 @@ Spectrum SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfModel
 ShownColour SceneMaker::colour_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices) {
     if (p.material < 0) return {};
     const GltfModel::Material& m = in_.materials[static_cast<std::size_t>(p.material)];
-    ShownColour out{shown(m.base_texture, p, vertices), Spectrum(1.0)};
+    ShownColour out{shown(m.base_texture, p, vertices), {}};
     if (out_.materials[static_cast<std::size_t>(p.material)].emits())
         out.exitance = shown(m.emission_texture, p, vertices);
     return out;
@@ -319,6 +329,8 @@ void SceneMaker::make() {
     report_materials();
     if (!visit_nodes()) return out_.faces.clear();
     textured_.finish();
+    deviation_ = textured_.reflectance_deviation();
+    if (const std::optional<Finding> finding = textured_.finding()) warn(finding->message, finding->hint);
     if (deformed_ > 0)
         warn(fmt::format("{} {} deformed by skins or morph targets: {} in the rest pose", deformed_,
                          deformed_ == 1 ? "node is" : "nodes are", deformed_ == 1 ? "it stays" : "they stay"));
@@ -336,6 +348,8 @@ ReadScene read_gltf(const std::string& path) {
         return out;
     }
     SceneMaker(*model, out).make();
+    for (const GltfModel::Material& m : model->materials)
+        if (is_clear_glass(m)) out.glazed_by.push_back(fmt::format("material '{}' ({})", m.name, path));
     return out;
 }
 

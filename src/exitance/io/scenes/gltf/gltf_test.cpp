@@ -102,6 +102,17 @@ TEST_F(GltfFiles, StripsAndFansAreTrianglesOfOneOrientation) {
     }
 }
 
+TEST_F(GltfFiles, SpecularGlossinessReflectsItsDiffuseFactor) {
+    GltfText text = triangle(R"({"extensions":{"KHR_materials_pbrSpecularGlossiness":{
+        "diffuseFactor":[0.1,0.2,0.3,1],"specularFactor":[1,1,1]}}})");
+    text.nodes = R"({"mesh":0})";
+    const CheckedScene s = load(text);
+    ASSERT_TRUE(s.scene);
+    EXPECT_NEAR(s.scene->material(SurfaceId(0)).reflectance[0], bands == 1 ? 0.2 : 0.1, 1e-12);
+    EXPECT_NEAR(s.scene->material(SurfaceId(0)).reflectance[bands - 1], bands == 1 ? 0.2 : 0.3, 1e-12);
+    EXPECT_EQ(warnings(s, "metal"), 0u);
+}
+
 TEST_F(GltfFiles, ADoubleSidedMaterialMakesTwoSurfaces) {
     GltfText text = triangle(R"({"doubleSided":true,"pbrMetallicRoughness":{"metallicFactor":0}})");
     text.nodes = R"({"mesh":0})";

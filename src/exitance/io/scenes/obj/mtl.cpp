@@ -185,7 +185,8 @@ void MtlReader::take_glass() {
     // Leaves, curtains and faded surfaces are no glass.
     constexpr double least = 0.5;
     if (!(mean(passes) > least)) return opaque_.add(line_, material_.name);
-    extras_.glass.emplace(material_.name, transmissivity_of(passes));
+    extras_.glass.emplace(material_.name,
+                          MtlExtras::Glass{transmissivity_of(passes), fmt::format("{}:{}", file_, line_)});
     glazed_.add(line_, material_.name);
 }
 

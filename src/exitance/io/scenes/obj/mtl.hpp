@@ -18,10 +18,14 @@ struct MtlPictures {
 
 /// What else an MTL text says, by the names of materials.
 struct MtlExtras {
-    /// Of a material that lets light through, the transmissivity of its panes (Pane): `d` below 1, or `Tf` with an
+    /// Materials that let light through, with the transmissivity of their panes (Pane): `d` below 1, or `Tf` with an
     /// `illum` for glass (4, 6, 7, 9). Of light that meets a pane at right angles (1 - d) Tf passes, more than a half;
     /// else the material is opaque.
-    std::map<std::string, Spectrum> glass;
+    struct Glass {
+        Spectrum transmissivity;
+        std::string where;  ///< File and line of the material.
+    };
+    std::map<std::string, Glass> glass;
     std::map<std::string, MtlPictures> pictures;
     std::map<std::string, std::shared_ptr<const TextureArea>> read;  ///< By file: pictures are read once.
 };

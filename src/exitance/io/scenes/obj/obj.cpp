@@ -176,8 +176,10 @@ void ObjReader::read_library(std::string_view name) {
         has_library_ = true;
         return parse_mtl(*text, file, out_.description.materials, out_.findings, extras_);
     }
-    error(fmt::format("material file '{}' {}", shown(name), text.error().message),
-          "put it beside the scene file, or take the 'mtllib' out: then everything reflects 0.5 and emits nothing");
+    out_.darkening.push_back({Finding::Kind::repair, path_, lines_.number(),
+                              fmt::format("material file '{}' {}: its materials reflect 0.5 and emit nothing",
+                                          shown(name), text.error().message),
+                              "put it beside the scene file"});
     library_missing_ = true;
 }
 
@@ -225,25 +227,26 @@ void ObjReader::resolve_materials() {
     std::unordered_map<std::string, std::uint32_t> by_name;
     for (std::uint32_t m = 0; m < materials.size(); ++m) by_name.emplace(materials[m].name, m);
     std::vector<std::uint32_t> meaning;
-    std::size_t untold = 0;
+    const Use* unknown = nullptr;
+    std::size_t unknown_count = 0;
     for (const Use& use : uses_) {
         auto known = by_name.find(use.name);
         if (known == by_name.end()) {
-            if (!has_library_ && !library_missing_ && use.name != default_material && untold++ == 0)
-                find(Finding::Kind::repair, use.line,
-                     fmt::format("no material file is named, in which '{}' would be: what has such a material reflects "
-                                 "0.5 and emits nothing",
-                                 shown(use.name)),
-                     "name it with 'mtllib'");
-            if (has_library_ && !library_missing_ && use.name != default_material)
-                find(Finding::Kind::error, use.line,
-                     fmt::format("material '{}' is in no material file", shown(use.name)),
-                     "define it with 'newmtl', or mend the name");
+            if (use.name != default_material && unknown_count++ == 0) unknown = &use;
             known = by_name.emplace(use.name, static_cast<std::uint32_t>(materials.size())).first;
             materials.push_back({use.name, Spectrum(0.5), Spectrum()});
         }
         meaning.push_back(known->second);
     }
+    if (unknown && !library_missing_)
+        find(Finding::Kind::repair, unknown->line,
+             fmt::format("material '{}'{}: such faces reflect 0.5 and emit nothing", shown(unknown->name),
+                         unknown_count > 1
+                             ? fmt::format(" and {} more are in {}", unknown_count - 1,
+                                           has_library_ ? "no material file" : "no file, as the scene names none")
+                         : has_library_ ? " is in no material file"
+                                        : " is in no file, as the scene names none"),
+             has_library_ ? "define it with 'newmtl', or correct the name" : "name its file with 'mtllib'");
     for (auto& face : out_.description.faces) face.material = meaning[face.material];
     take_textures();
     take_panes();
@@ -279,18 +282,25 @@ void ObjReader::take_textures() {
         textured.show(f, colour);
     }
     textured.finish();
+    out_.reflectance_deviation = textured.reflectance_deviation();
+    if (const std::optional<Finding> finding = textured.finding())
+        find(finding->kind, 0, finding->message, finding->hint);
 }
 
 /// Faces of glass become panes.
 void ObjReader::take_panes() {
     if (extras_.glass.empty()) return;
     SceneDescription& d = out_.description;
+    std::vector<bool> is_listed(d.materials.size());
     std::erase_if(d.faces, [&](const SceneDescription::Face& face) {
         const auto glass = extras_.glass.find(d.materials[face.material].name);
         if (glass == extras_.glass.end()) return false;
+        if (!is_listed[face.material])
+            out_.glazed_by.push_back(fmt::format("material '{}' ({})", shown(glass->first), glass->second.where));
+        is_listed[face.material] = true;
         Pane pane;
         for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
-        pane.transmissivity = glass->second, pane.line = face.line;
+        pane.transmissivity = glass->second.transmissivity, pane.line = face.line;
         d.panes.push_back(std::move(pane));
         return true;
     });

@@ -15,6 +15,11 @@ struct ReadScene {
     std::vector<Finding> findings;
     std::vector<PlacedLuminaire> luminaires = {};
     SceneLines lines = {};  ///< Empty: all faces stand in the description's file.
+    /// Repairs after which the scene has less light than its files mean; errors if nothing in the scene emits.
+    std::vector<Finding> darkening = {};
+    /// By material: the RMS deviation of reflectance over faces that show pictures (`TexturedFaces`); may be shorter.
+    std::vector<Spectrum> reflectance_deviation = {};
+    std::vector<std::string> glazed_by = {};  ///< What made faces panes: "material 'water' (glass.mtl:4)".
 };
 
 /// Reads Wavefront OBJ with its MTL files: faces with any number of corners, 'g' and 'o' names, 'usemtl', several

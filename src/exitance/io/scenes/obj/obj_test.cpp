@@ -86,7 +86,6 @@ TEST_F(ObjFiles, EveryErrorNamesItsFileAndLine) {
     EXPECT_EQ(first_error(head + "f 1 2 x\n"), "s.obj:7: face names 'x', which is not a vertex number");
     EXPECT_EQ(first_error(head + "f 1 2 99999999999999999999\n"),
               "s.obj:7: face names '99999999999999999999', which is not a vertex number");
-    EXPECT_EQ(first_error(head + "usemtl red\nf 1 2 3\n"), "s.obj:7: material 'red' is in no material file");
     EXPECT_EQ(first_error(""), "s.obj:1: there are no polygons");
 }
 
@@ -100,6 +99,51 @@ TEST_F(ObjFiles, WithoutAMaterialFileEverythingIsGreyAndThatIsTold) {
     EXPECT_NE(
         first_error("mtllib none.mtl\nusemtl grey\n" + points + "f 1 2 3\n").find("s.obj:1: material file 'none.mtl'"),
         std::string::npos);
+}
+
+TEST_F(ObjFiles, UnknownMaterialsReflectOneHalfAndAreToldOnce) {
+    const auto s =
+        load("mtllib m.mtl\n" + points + "usemtl light\nf 1 2 3\nusemtl red\nf 1 3 4\nusemtl blue\nf 4 3 2 1\n");
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->material(SurfaceId(1)).reflectance[0], 0.5);
+    ASSERT_EQ(s.findings.size(), 1u);
+    EXPECT_EQ(s.findings[0].kind, Finding::Kind::repair) << "an error under --strict";
+    EXPECT_NE(s.findings[0].message.find("material 'red' and 1 more are in no material file"), std::string::npos);
+}
+
+TEST_F(ObjFiles, AMissingMaterialFileIsAnErrorOnlyIfNothingShines) {
+    const std::string text = "mtllib none.mtl m.mtl\n" + points + "usemtl grey\nf 1 2 3\n";
+    const auto s = load(text + "usemtl light\nf 1 3 4\n");
+    ASSERT_TRUE(s.scene);
+    EXPECT_EQ(s.scene->material(SurfaceId(0)).reflectance[0], 0.5);
+    write("s.obj", "mtllib none.mtl\nusemtl grey\n" + points + "f 1 2 3\n");
+    LoadOptions under_sky;
+    under_sky.sky.emplace();
+    under_sky.sky->in_watts.domes.push_back({{}, Spectrum(1.0)});
+    const std::string path = folder_ + "/s.obj";
+    EXPECT_TRUE(load_scene(std::span(&path, 1), under_sky).scene);
+    EXPECT_FALSE(load_scene(path).scene);
+}
+
+TEST_F(ObjFiles, ASceneOfGlassAloneSaysWhatMadeItSo) {
+    write("g.mtl", "newmtl water\nKd 0 0 0\nd 0.1\n");
+    EXPECT_EQ(first_error("mtllib g.mtl\nusemtl water\n" + points + "f 1 2 3\nf 1 3 4\n")
+                  .find("s.obj: all 2 faces are panes of clear glass by material 'water' ("),
+              0u);
+}
+
+TEST_F(ObjFiles, UnitsAndAxesAreThoseOfTheOptions) {
+    const std::string path = write("s.obj", "mtllib m.mtl\n" + points + "usemtl light\nf 1 2 3 4\n");
+    LoadOptions options;
+    options.metres_per_unit = 0.0254, options.y_is_up = true;
+    const LoadedScene s = load_scene(std::span(&path, 1), options);
+    ASSERT_TRUE(s.scene);
+    EXPECT_NEAR(s.scene->surfaces()[SurfaceId(0)].area, 0.0254 * 0.0254, 1e-15);
+    EXPECT_EQ(s.scene->surfaces()[SurfaceId(0)].normal, (Normal{0, -1, 0})) << "z of the file is -y";
+    const std::string glb = write("s.glb", "glTF");
+    EXPECT_EQ(load_scene(std::span(&glb, 1), options).scene.error().code, ErrorCode::usage);
+    const std::string rad = write("s.rad", "void plastic a 0 0 5 .5 .5 .5 0 0\n");
+    EXPECT_EQ(load_scene(std::span(&rad, 1), options).scene.error().where, "--up");
 }
 
 TEST_F(ObjFiles, PicturesAreFoundWhateverSystemNamedThem) {
@@ -161,10 +205,12 @@ TEST_F(ObjFiles, TextInUtf16IsRefusedByName) {
 }
 
 TEST_F(ObjFiles, MessagesShowNamesAsTextWhateverTheirBytes) {
-    EXPECT_EQ(first_error("mtllib m.mtl\nusemtl w\xc3\xa4nde\n" + points + "f 1 2 3\n"),
-              "s.obj:2: material 'w\xc3\xa4nde' is in no material file");
-    EXPECT_EQ(first_error("mtllib m.mtl\nusemtl \xff\x01\xc3_\n" + points + "f 1 2 3\n"),
-              "s.obj:2: material '???_' is in no material file");
+    const auto said = [&](const std::string& name) {
+        const auto s = load("mtllib m.mtl\n" + points + "usemtl light\nf 1 2 3\nusemtl " + name + "\nf 1 3 4\n");
+        return s.findings.size() == 1 ? s.findings[0].message.substr(0, s.findings[0].message.find(':')) : "";
+    };
+    EXPECT_EQ(said("w\xc3\xa4nde"), "material 'w\xc3\xa4nde' is in no material file");
+    EXPECT_EQ(said("\xff\x01\xc3_"), "material '???_' is in no material file");
     EXPECT_LT(first_error("v " + std::string(100000, 'x') + " 0 0\n").size(), 120u);
 }
 

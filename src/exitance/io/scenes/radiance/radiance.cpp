@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <list>
+#include <set>
 #include <unordered_map>
 
 #include "exitance/geometry/polygon.hpp"
@@ -94,6 +95,7 @@ class RadianceReader {
     };
     std::vector<Bubble> bubbles_;
     bool opened_ = false;
+    std::set<std::string> glass_names_;  ///< Modifiers of the panes so far.
 };
 
 /// Patterns on what reflects.
@@ -134,6 +136,8 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
         }
         if (meaning->kind == RadMeaning::Kind::glass) {
             Pane pane = materials_.glass[meaning->material];
+            if (glass_names_.insert(p.modifier).second)
+                out_.glazed_by.push_back(fmt::format("glass '{}' ({}:{})", shown(p.modifier), file, p.line));
             for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
             pane.line = face.line;
             d.panes.push_back(std::move(pane));

@@ -102,19 +102,55 @@ const TextureArea::Level& TextureArea::level_for(const Vec2& step) const {
     return levels_[static_cast<std::size_t>(std::min(level, static_cast<double>(levels_.size() - 1)))];
 }
 
-TextureArea::Colour TextureArea::mean(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const {
+namespace {
+
+/// Moments and range of colours.
+class ColourSum {
+  public:
+    void add(const TextureArea::Colour& colour) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double v = colour[c];
+            sum_[c] += v, squares_[c] += v * v;
+            lowest_[c] = count_ == 0 ? v : std::min(lowest_[c], v);
+            highest_[c] = count_ == 0 ? v : std::max(highest_[c], v);
+        }
+        ++count_;
+    }
+    std::size_t count() const { return count_; }
+    TextureArea::Part part() const {
+        TextureArea::Part out{{}, {}, lowest_, highest_};
+        const auto n = static_cast<double>(count_);
+        for (std::size_t c = 0; c < 3; ++c) {
+            out.mean[c] = sum_[c] / n;
+            const bool is_even = lowest_[c] == highest_[c];  // a difference of squares would leave rounding
+            out.deviation[c] = is_even ? 0 : std::sqrt(std::max(0.0, squares_[c] / n - out.mean[c] * out.mean[c]));
+        }
+        return out;
+    }
+
+  private:
+    TextureArea::Colour sum_{}, squares_{}, lowest_{}, highest_{};
+    std::size_t count_ = 0;
+};
+
+TextureArea::Part even_part(const TextureArea::Colour& colour) {
+    return {colour, {}, colour, colour};
+}
+
+}  // namespace
+
+TextureArea::Part TextureArea::part(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const {
     constexpr double farthest = 1e6;  // beyond, a place is known to less than a pixel
     Vec2 low{farthest, farthest}, high{-farthest, -farthest}, middle;
     for (const Vec2& p : outline) {
-        if (!(std::abs(p.x) < farthest && std::abs(p.y) < farthest)) return mean_;
+        if (!(std::abs(p.x) < farthest && std::abs(p.y) < farthest)) return even_part(mean_);
         low = {std::min(low.x, p.x), std::min(low.y, p.y)}, high = {std::max(high.x, p.x), std::max(high.y, p.y)};
         middle = middle + (1.0 / static_cast<double>(outline.size())) * p;
     }
-    if (outline.empty()) return mean_;
+    if (outline.empty()) return even_part(mean_);
     const Vec2 step = (1.0 / places_a_side) * (high - low);
     const Level& level = level_for(step);
-    Colour sum{};
-    std::size_t count = 0;
+    ColourSum sum;
     std::vector<double> crossings;
     for (int j = 0; j < places_a_side; ++j) {
         const double y = low.y + (j + 0.5) * step.y;
@@ -130,14 +166,12 @@ TextureArea::Colour TextureArea::mean(std::span<const Vec2> outline, Wrap wrap_s
             const double x = low.x + (i + shift) * step.x;
             const auto left = std::lower_bound(crossings.begin(), crossings.end(), x) - crossings.begin();
             if (left % 2 == 0) continue;
-            const Colour here = level.at(pixel(x, level.width, wrap_s), pixel(y, level.height, wrap_t));
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += here[c];
-            ++count;
+            sum.add(level.at(pixel(x, level.width, wrap_s), pixel(y, level.height, wrap_t)));
         }
     }
-    if (count == 0) return level.at(pixel(middle.x, level.width, wrap_s), pixel(middle.y, level.height, wrap_t));
-    for (double& s : sum) s /= static_cast<double>(count);
-    return sum;
+    if (sum.count() == 0)
+        return even_part(level.at(pixel(middle.x, level.width, wrap_s), pixel(middle.y, level.height, wrap_t)));
+    return sum.part();
 }
 
 }  // namespace exitance

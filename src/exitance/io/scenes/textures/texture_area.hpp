@@ -28,11 +28,22 @@ class TextureArea {
     /// Of the whole picture.
     Colour mean() const { return mean_; }
 
-    /// Of the part that a face shows: by the pixels at 32 x 32 places of the part's bounding box, of which those inside
-    /// count; of a size between neighbouring places, so that none is skipped. The border is known to half a place, and
-    /// the mean of two halves of a triangle, one black and one white, to a hundredth.
+    /// The part of a picture that a face shows, by channel.
+    struct Part {
+        Colour mean{};
+        Colour deviation{};  ///< Root mean square deviation from the mean.
+        Colour lowest{}, highest{};
+    };
+
+    /// Samples the pixels at 32 x 32 places of the part's bounding box, of which those inside the outline count. The
+    /// pixels are of a size between neighbouring places, so that none is skipped: variation finer than that is averaged
+    /// out. The border is known to half a place, and the mean of two halves of a triangle, one black and one white, to
+    /// a hundredth.
     /// outline  the face's corners in the picture; (0, 0) is its upper left, (1, 1) its lower right
-    Colour mean(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const;
+    Part part(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const;
+    Colour mean(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const {
+        return part(outline, wrap_s, wrap_t).mean;
+    }
 
     /// The colour at a place, smoothed over `size` pixels of what is held.
     Colour smoothed(const Vec2& place, double size, Wrap wrap_s, Wrap wrap_t) const;

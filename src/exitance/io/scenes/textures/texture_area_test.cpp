@@ -23,6 +23,15 @@ std::vector<Vec2> square(double x, double y, double size) {
     return {{x, y}, {x + size, y}, {x + size, y + size}, {x, y + size}};
 }
 
+TEST(TextureArea, APartHasItsDeviationAndRange) {
+    const TextureArea halves = picture(64, 64, [](std::size_t x, std::size_t) { return x < 32; });
+    const TextureArea::Part all = halves.part(square(0, 0, 1), Wrap::repeat, Wrap::repeat);
+    EXPECT_NEAR(all.deviation[0], 0.5, 0.01);  // the border is known to half of 32 places
+    EXPECT_EQ(all.lowest[0], 0);
+    EXPECT_EQ(all.highest[0], 1);
+    EXPECT_EQ(halves.part(square(0, 0, 0.5), Wrap::repeat, Wrap::repeat).deviation[0], 0);
+}
+
 TEST(TextureArea, AFaceShowsItsOwnPart) {
     const TextureArea halves = picture(64, 64, [](std::size_t x, std::size_t) { return x < 32; });
     EXPECT_DOUBLE_EQ(halves.mean()[0], 0.5);
