@@ -159,6 +159,7 @@ std::optional<std::size_t> BodyFinder::space_around(std::size_t space) {
 
 bool BodyFinder::holds_light(std::size_t space) {
     if (std::any_of(in_.lights.begin(), in_.lights.end(), [&](const Point& p) { return holds(space, p); })) return true;
+    if (!has_emitters_) return false;
     const auto sends_into = [&](std::uint32_t f) {
         if (!in_.emits[f]) return false;
         const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);

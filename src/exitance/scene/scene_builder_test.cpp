@@ -404,7 +404,7 @@ TEST(Checks, FindingsThatReadAlikeAreToldOnce) {
 TEST(Checks, EveryErrorIsFoundNotJustTheFirst) {
     Sketch sketch;
     sketch.add({{0, 0, 0}, {1, 0, 0}, {1e30, 1, 0}, {0, 1, 0}})
-        .add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.5, 0}})
+        .add({{0, 0, 0}, {1, 1, 0}, {1, 0, 1e40}, {0, 1.5, 0}})
         .light();
     sketch.d.materials[0].reflectance[1] = 1.25;
     const auto s = sketch.make();

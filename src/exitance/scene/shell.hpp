@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/scene/bodies.hpp"
+#include "exitance/scene/inside_out.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

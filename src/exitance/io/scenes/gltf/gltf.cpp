@@ -17,13 +17,23 @@
 namespace exitance {
 namespace {
 
-constexpr std::array known_extensions = {"KHR_lights_punctual",      "KHR_materials_emissive_strength",
-                                         "KHR_texture_transform",    "KHR_mesh_quantization",
-                                         "KHR_materials_unlit",      "KHR_materials_ior",
-                                         "KHR_materials_specular",   "KHR_materials_clearcoat",
-                                         "KHR_materials_sheen",      "KHR_materials_iridescence",
-                                         "KHR_materials_anisotropy", "KHR_materials_variants",
-                                         "KHR_materials_dispersion", "KHR_materials_pbrSpecularGlossiness"};
+constexpr std::array known_extensions = {"KHR_lights_punctual",
+                                         "KHR_materials_emissive_strength",
+                                         "KHR_texture_transform",
+                                         "KHR_mesh_quantization",
+                                         "KHR_materials_unlit",
+                                         "KHR_materials_ior",
+                                         "KHR_materials_specular",
+                                         "KHR_materials_clearcoat",
+                                         "KHR_materials_sheen",
+                                         "KHR_materials_iridescence",
+                                         "KHR_materials_anisotropy",
+                                         "KHR_materials_variants",
+                                         "KHR_materials_dispersion",
+                                         "KHR_materials_pbrSpecularGlossiness",
+                                         "KHR_materials_transmission",
+                                         "KHR_materials_volume",
+                                         "KHR_materials_diffuse_transmission"};
 
 class GltfReader {
   public:
