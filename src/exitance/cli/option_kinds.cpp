@@ -106,7 +106,10 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
     app.add_flag("--turn-bodies", scene.load.turn_bodies,
                  "Turn the faces of closed bodies that are inside out; check reports such bodies");
     app.add_flag("--run-commands", scene.load.run_commands,
-                 "Have lines of .rad files that begin with '!' done by Radiance's programs, where they are installed");
+                 "Run '!' lines of .rad files with the installed Radiance programs");
+    app.add_flag("--older-gensky", scene.load.older_sky_programs,
+                 "Evaluate '!gensky' and '!gendaylit' lines of .rad files as Radiance's programs did before November "
+                 "2019; default: as today's do. For comparison with results of that time");
 }
 
 }  // namespace exitance

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "exitance/core/progress.hpp"
 #include "exitance/io/scenes/scene_lines.hpp"
@@ -19,8 +20,9 @@ enum class Faults : std::uint8_t {
 /// A sky to be put over a scene.
 struct ChosenSky {
     DistantLight in_watts, in_lumens;
-    bool light_groups = false;             ///< Gives the emitters of every group materials of their own.
-    std::optional<bool> photometric = {};  ///< Which of them; none: as the scene has it.
+    bool light_groups = false;               ///< Gives the emitters of every group materials of their own.
+    std::optional<bool> photometric = {};    ///< Which of them; none: as the scene has it.
+    std::vector<std::string> warnings = {};  ///< Sentences about the weather file that it comes from.
 };
 
 /// How a scene is read.
@@ -28,6 +30,7 @@ struct LoadOptions {
     Faults faults = Faults::repair;
     bool run_commands = false;  ///< Lets installed programs of Radiance's do what lines that begin with '!' say.
     const StopRequest* stop = nullptr;  ///< Ends such programs.
+    bool older_sky_programs = false;    ///< Reads !gensky and !gendaylit as those of before November 2019.
     std::optional<ChosenSky> sky = {};
     std::string luminaires = {};           ///< A table of luminaires that stand in the scene; empty: none.
     bool light_groups = false;             ///< Gives the emitters of every group materials of their own.

@@ -2,10 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace exitance {
 
 void RadFindings::error(const RadPlace& at, std::string message, std::string hint) {
     errors_.push_back({Finding::Kind::error, at.file, at.line, std::move(message), std::move(hint)});
+}
+
+void RadFindings::warning(const RadPlace& at, std::string message) {
+    warnings_.push_back({Finding::Kind::warning, at.file, at.line, std::move(message), ""});
 }
 
 void RadFindings::note(const std::string& what, const RadPlace& at) {
@@ -15,6 +22,8 @@ void RadFindings::note(const std::string& what, const RadPlace& at) {
 std::vector<Finding> RadFindings::take() {
     std::vector<Finding> out = std::move(errors_);
     errors_.clear();
+    std::move(warnings_.begin(), warnings_.end(), std::back_inserter(out));
+    warnings_.clear();
     for (const auto& [what, note] : notes_)
         out.push_back(
             {Finding::Kind::warning, note.file, note.line,

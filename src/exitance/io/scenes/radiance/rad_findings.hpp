@@ -14,10 +14,11 @@ struct RadPlace {
     int line = 0;
 };
 
-/// What a reader of Radiance's files finds: errors one by one, what is left out once a kind.
+/// Findings of the reader of Radiance's files: errors and warnings one by one, parts that are left out once per kind.
 class RadFindings {
   public:
     void error(const RadPlace& at, std::string message, std::string hint = "");
+    void warning(const RadPlace& at, std::string message);
     /// `what` is left out.
     void note(const std::string& what, const RadPlace& at);
 
@@ -32,7 +33,7 @@ class RadFindings {
         int line = 0;
         std::size_t count = 0;
     };
-    std::vector<Finding> errors_;
+    std::vector<Finding> errors_, warnings_;
     std::map<std::string, Note> notes_;
 };
 

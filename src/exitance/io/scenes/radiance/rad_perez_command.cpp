@@ -13,30 +13,39 @@ namespace {
 
 constexpr double solar_irradiance = 1367, solar_illuminance = 127'500;  ///< W/m^2 and lx, outside the atmosphere.
 constexpr double lumens_per_watt = 179;                                 ///< Radiance's white.
-constexpr double water = 2;                                             ///< cm of it in the air.
 
 /// Sky and sun as Perez' model takes them.
 struct Perez {
-    double zenith_angle = 0;  ///< Of the sun, radians.
-    int day = 150;
+    double zenith_angle = 0;         ///< Of the sun, radians, at most that of the horizon.
+    int day = 0;                     ///< Of the year, from 1.
+    double water = 2;                ///< cm of it in the air.
     double diffuse = 0, direct = 0;  ///< W/m^2, horizontal and normal.
+    double diffuse_lux = 0, direct_lux = 0;
     double clearness = 1, brightness = 0.01;
 
     double cubed() const { return 1.041 * std::pow(zenith_angle, 3); }
-    /// Irradiance outside the atmosphere over the air's optical mass [Kasten66].
+    /// Irradiance by the sun outside the atmosphere, W/m^2, for the Earth's distance on that day.
+    double extraterrestrial() const {
+        const double angle = 2 * pi * (day - 1) / 365;
+        return solar_irradiance * (1.00011 + 0.034221 * std::cos(angle) + 0.00128 * std::sin(angle) +
+                                   0.000719 * std::cos(2 * angle) + 0.000077 * std::sin(2 * angle));
+    }
+    /// That irradiance over the air's optical mass [Kasten66].
     double reference() const {
-        const double degrees = zenith_angle * 180 / pi, angle = 2 * pi * (day - 1) / 365;
-        const double mass = 1 / (std::cos(zenith_angle) + 0.15 * std::pow(93.885 - degrees, -1.253));
-        const double orbit = 1.00011 + 0.034221 * std::cos(angle) + 0.00128 * std::sin(angle) +
-                             0.000719 * std::cos(2 * angle) + 0.000077 * std::sin(2 * angle);
-        return solar_irradiance * orbit / mass;
+        const double mass = 1 / (std::cos(zenith_angle) + 0.15 * std::pow(93.885 - zenith_angle * 180 / pi, -1.253));
+        return extraterrestrial() / mass;
     }
     void find_parameters() {
         brightness = diffuse / reference();
         clearness = ((diffuse + direct) / diffuse + cubed()) / (1 + cubed());
         limit();
     }
-    void limit() { clearness = std::clamp(clearness, 1.0, 12.01), brightness = std::clamp(brightness, 0.01, 0.6); }
+    /// The ranges of gendaylit. No light at all has no clearness, and keeps none.
+    void limit() {
+        constexpr double clearest = 12.01, of_clearer = clearest - 0.001;
+        clearness = clearness > clearest ? of_clearer : clearness < 1 ? 1 : clearness;
+        brightness = std::clamp(brightness, 0.01, 0.6);
+    }
 };
 
 std::size_t bin_of(double clearness) {
@@ -57,7 +66,7 @@ double diffuse_efficacy(const Perez& p) {
                                        {141.88, 1.90, -53.24, -14.03},
                                        {152.23, 0.35, -45.27, -7.98}}};
     const Row& r = rows[bin_of(p.clearness)];
-    return r[0] + r[1] * water + r[2] * std::cos(p.zenith_angle) + r[3] * std::log(p.brightness);
+    return r[0] + r[1] * p.water + r[2] * std::cos(p.zenith_angle) + r[3] * std::log(p.brightness);
 }
 
 /// lm/W of the sun's [Perez90].
@@ -71,26 +80,30 @@ double direct_efficacy(const Perez& p) {
                                        {105.75, 0.77, -1.26, -34.44},
                                        {101.18, 1.58, -1.10, -8.29}}};
     const Row& r = rows[bin_of(p.clearness)];
-    return std::max(0.0, r[0] + r[1] * water + r[2] * std::exp(5.73 * p.zenith_angle - 5) + r[3] * p.brightness);
+    return std::max(0.0, r[0] + r[1] * p.water + r[2] * std::exp(5.73 * p.zenith_angle - 5) + r[3] * p.brightness);
 }
 
-/// Irradiances of which the illuminances are known; the efficacies depend on them.
-void find_irradiances(double direct, double diffuse, Perez& p) {
-    const auto look = [&] {
-        p.find_parameters();
-        p.clearness = std::min(p.clearness, 12.0);
-        if (p.brightness < 0.05) p.brightness = 0.01;
-    };
-    p.diffuse = diffuse * solar_irradiance / solar_illuminance,
-    p.direct = direct * solar_irradiance / solar_illuminance;
-    look();
-    constexpr int rounds = 5;  // as the program has it
+/// Finds the irradiances that belong to the illuminances: the efficacies depend on them.
+void find_irradiances(Perez& p) {
+    p.diffuse = p.diffuse_lux * solar_irradiance / solar_illuminance;
+    p.direct = p.direct_lux * solar_irradiance / solar_illuminance;
+    p.find_parameters();
+    constexpr int rounds = 9;               // as the program has it
+    constexpr double least_efficacy = 0.1;  // lm/W: below it the program has no sun
     for (int i = 0; i < rounds; ++i) {
         const double of_sky = diffuse_efficacy(p), of_sun = direct_efficacy(p);
-        p.diffuse = diffuse / of_sky, p.direct = of_sun > 0 ? direct / of_sun : 0;
-        look();
+        p.diffuse = p.diffuse_lux / of_sky, p.direct = of_sun < least_efficacy ? 0 : p.direct_lux / of_sun;
+        p.find_parameters();
     }
-    p.limit();
+}
+
+/// Splits global horizontal irradiance into diffuse and direct light [Erbs82].
+void split_global(double global, double sine, Perez& p) {
+    const double outside = p.extraterrestrial() * sine, k = std::min(global, 0.999 * outside) / outside;
+    const double share = k <= 0.22  ? 1 - 0.09 * k
+                         : k <= 0.8 ? 0.9511 + k * (-0.1604 + k * (4.388 + k * (-16.638 + k * 12.336)))
+                                    : 0.165;
+    p.diffuse = share * k * outside, p.direct = (1 - share) * k * outside / sine;
 }
 
 /// The sum over Tregenza's 145 directions by which gendaylit scales its sky: about its horizontal irradiance.
@@ -112,43 +125,62 @@ Error wrong(std::string message, std::string hint = "") {
     return {ErrorCode::bad_input, "gendaylit: " + message, "", std::move(hint)};
 }
 
-/// Its two numbers as irradiances and parameters.
+/// Why gendaylit prints a sky without light; empty: it does not.
+std::string darkness(const RadSkyWords& in, const Perez& p) {
+    const bool in_lux = in.input == 'L';
+    const double direct = in_lux ? p.direct_lux : p.direct, diffuse = in_lux ? p.diffuse_lux : p.diffuse;
+    if (!(direct + diffuse > 0)) return in.altitude > 0 ? "there is neither direct nor diffuse light" : "it is night";
+    if (direct > (in_lux ? solar_illuminance : solar_irradiance))
+        return fmt::format("direct light of {:g} {} is more than arrives outside the atmosphere", direct,
+                           in_lux ? "lx" : "W/m^2");
+    if (in.output != 1 && p.direct_lux > solar_illuminance)
+        return fmt::format("direct light of {:g} lx is more than arrives outside the atmosphere", p.direct_lux);
+    return "";
+}
+
+/// The numbers of the line as irradiances, illuminances and parameters.
 Result<Perez> read_input(const RadSkyWords& in) {
     Perez p;
-    p.zenith_angle = 0.5 * pi - in.altitude;
-    if (in.month > 0) p.day = day_of_year(2021, in.month, in.day);
-    if (!(in.altitude > 0))
-        return wrong(fmt::format("the sun stands {:.2f} degrees below the horizon", -in.altitude * 180 / pi),
-                     "Perez' sky has no formula for that");
+    p.zenith_angle = std::min(0.5 * pi - in.altitude, 0.5 * pi);
+    constexpr int day_of_angles = 0, day_of_angles_before = 150;  // as the programs have it where there is no date
+    p.day = in.month > 0 ? day_of_year(2021, in.month, in.day) : in.older ? day_of_angles_before : day_of_angles;
+    p.water = std::exp(0.07 * in.dew_point - 0.075);
+    const double first = std::max(0.0, in.first), second = std::max(0.0, in.second), sine = std::sin(in.altitude);
     switch (in.input) {
         case 'P':
-            if (!(in.first >= 1) || !(in.second > 0)) return wrong("-P needs clearness from 1 and brightness above 0");
             p.clearness = in.first, p.brightness = in.second;
             p.limit();
             p.diffuse = p.brightness * p.reference();
             p.direct = p.diffuse * (p.clearness - 1) * (1 + p.cubed());
-            return p;
+            break;
         case 'W':
+            p.direct = first, p.diffuse = second;
+            break;
         case 'G':
-        case 'L': {
-            const double direct = in.input == 'G' ? in.first / std::sin(in.altitude) : in.first;
-            const double most = in.input == 'L' ? solar_illuminance : solar_irradiance;
-            if (!(direct >= 0 && direct <= most) || !(in.second > 0 && in.second <= most))
-                return wrong(
-                    fmt::format("-{} {:g} {:g}: direct light from 0 and diffuse light above 0, both to {:g}, "
-                                "are needed",
-                                in.input, in.first, in.second, most));
-            if (in.input == 'L') {
-                find_irradiances(direct, in.second, p);
-            } else {
-                p.direct = direct, p.diffuse = in.second;
-                p.find_parameters();
-            }
+            if (sine > 0) p.direct = first / sine, p.diffuse = second;
+            break;
+        case 'E':
+            if (sine > 0) split_global(first, sine, p);
+            break;
+        case 'L':
+            p.direct_lux = first, p.diffuse_lux = second;
+            if (first + second > 0) find_irradiances(p);
             return p;
-        }
         default:
-            return wrong("the light is missing", "-P clearness brightness, -W or -G direct diffuse (W/m^2), -L (lx)");
+            return wrong("the light is missing",
+                         "-P clearness brightness, -W or -G direct diffuse (W/m^2), -L (lx), -E global (W/m^2)");
     }
+    if (!(p.direct + p.diffuse > 0)) return p;
+    if (in.input != 'P') p.find_parameters();
+    p.diffuse_lux = p.diffuse * diffuse_efficacy(p), p.direct_lux = p.direct * direct_efficacy(p);
+    return p;
+}
+
+/// The brightness function; `k`: the scale, the ground, and a to e.
+std::string perez_function(const std::array<double, 7>& k, const Vec3& sun) {
+    std::string out = "void brightfunc skyfunc\n2 skybright perezlum.cal\n0\n10";
+    for (const double v : k) out += fmt::format(" {:.9g}", v);
+    return out + fmt::format(" {:.9g} {:.9g} {:.9g}\n", sun.x, sun.y, sun.z);
 }
 
 }  // namespace
@@ -173,18 +205,24 @@ std::string rad_sun(double radiance, const Vec3& towards, double angle) {
            fmt::format("solar source sun\n0\n0\n4 {:.9g} {:.9g} {:.9g} {:g}\n", towards.x, towards.y, towards.z, angle);
 }
 
-Result<std::string> gendaylit_output(const RadSkyWords& in) {
+Result<PrintedSky> gendaylit_output(const RadSkyWords& in) {
     if (in.output != 0 && in.output != 1 && in.output != 2) return wrong("-O is 0, 1 or 2");
     const Result<Perez> read = read_input(in);
     if (!read) return read.error();
     const Perez& p = *read;
     const Vec3 sun = in.sun();
-    const SkyModel sky = perez_sky_of({p.clearness, p.brightness}, sun);
+    std::string dark = in.is_night ? "the sun is below the horizon at that hour" : darkness(in, p);
+    Normal above = sun;  // or on the horizon
+    if (above.z < 0) above = {-std::sin(in.azimuth), -std::cos(in.azimuth), 0};
+    const SkyModel sky = perez_sky_of({p.clearness, p.brightness}, above);
+    if (dark.empty() && sky.b > 0) dark = "Perez' sky has no such state";
+    if (!dark.empty())
+        return PrintedSky{perez_function({}, sun),
+                          {fmt::format("gendaylit: {}: the sky has no light, as the program prints it", dark)}};
     double diffuse = p.diffuse, direct = p.direct;
     if (in.output != 1) {
         const double unit = in.output == 0 ? lumens_per_watt : 1;
-        diffuse = (in.input == 'L' ? in.second : diffuse * diffuse_efficacy(p)) / unit;
-        direct = (in.input == 'L' ? in.first : direct * direct_efficacy(p)) / unit;
+        diffuse = p.diffuse_lux / unit, direct = p.direct_lux / unit;
     }
     const double scale = diffuse / tregenza_sum(sky);
     const double solar = direct / (2 * pi * (1 - std::cos(sun_half_angle)));
@@ -192,10 +230,9 @@ Result<std::string> gendaylit_output(const RadSkyWords& in) {
     const char kind = p.clearness <= 1 ? 'c' : p.clearness < 6 ? 'i' : 's';
     double ground = scale * sky.value({0, 0, 1}) * rad_sky_factors(kind, in.altitude).second;
     if (has_sun) ground += 6.8e-5 / pi * solar * sun.z;
-    std::string out = has_sun && solar > 0 ? rad_sun(solar, sun, 2 * 0.2665) : "";
-    out += "void brightfunc skyfunc\n2 skybright perezlum.cal\n0\n";
-    out += fmt::format("10 {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", scale,
-                       in.ground * ground, sky.a, sky.b, sky.c, sky.d, sky.e, sun.x, sun.y, sun.z);
+    const bool shines = has_sun && solar > 0;
+    PrintedSky out{shines ? rad_sun(solar, sun, 2 * 0.2665) : in.has_sun ? "void light solar\n0\n0\n3 0 0 0\n" : ""};
+    out.text += perez_function({scale, in.ground * ground, sky.a, sky.b, sky.c, sky.d, sky.e}, sun);
     return out;
 }
 

@@ -11,6 +11,7 @@
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/scenes/radiance/rad_perez_command.hpp"
+#include "exitance/io/scenes/radiance/rad_sky_sun.hpp"
 
 namespace exitance {
 namespace {
@@ -24,11 +25,20 @@ struct Zone {
     const char* name;
     double meridian;
 };
-constexpr std::array<Zone, 25> zones{{{"YST", 135}, {"YDT", 120},   {"PST", 120},  {"PDT", 105},   {"MST", 105},
-                                      {"MDT", 90},  {"CST", 90},    {"CDT", 75},   {"EST", 75},    {"EDT", 60},
-                                      {"AST", 60},  {"ADT", 45},    {"NST", 52.5}, {"NDT", 37.5},  {"GMT", 0},
-                                      {"BST", -15}, {"CET", -15},   {"CEST", -30}, {"EET", -30},   {"EEST", -45},
-                                      {"GST", -60}, {"IST", -82.5}, {"JST", -135}, {"NZST", -180}, {"NZDT", -195}}};
+constexpr std::array<Zone, 27> zones{
+    {{"YST", 135}, {"YDT", 120},   {"PST", 120},   {"PDT", 105},  {"MST", 105},   {"MDT", 90},   {"CST", 90},
+     {"CDT", 75},  {"EST", 75},    {"EDT", 60},    {"AST", 60},   {"ADT", 45},    {"NST", 52.5}, {"NDT", 37.5},
+     {"GMT", 0},   {"BST", -15},   {"CET", -15},   {"CEST", -30}, {"EET", -30},   {"EEST", -45}, {"GST", -60},
+     {"GDT", -75}, {"IST", -82.5}, {"IDT", -97.5}, {"JST", -135}, {"NZST", -180}, {"NZDT", -195}}};
+
+/// gendaylit takes numbers alone, from 0 to below 24: the program reads "14:30EST" as 14 without a word.
+Result<void> read_plain_hour(double hour, bool goes_on, RadSkyWords& out) {
+    if (goes_on)
+        return wrong(out, "minutes after ':' and names of time zones are not read, and the program ignores them",
+                     "write 14.5 for 14:30, and -m for the zone's meridian");
+    if (!(hour < 24)) return wrong(out, "the hour is not below 24");
+    return {};
+}
 
 /// "14", "14.5", "14:30", "14:30EDT", "+14.5" (solar time).
 Result<void> read_hour(std::string_view word, RadSkyWords& out) {
@@ -45,6 +55,7 @@ Result<void> read_hour(std::string_view word, RadSkyWords& out) {
         colon == std::string_view::npos ? std::optional(0.0) : parse_number(number.substr(colon + 1));
     if (!hour || !minute || !(*minute < 60) || !(*hour + *minute / 60 <= 24)) return bad;
     out.hour = *hour + *minute / 60;
+    if (out.program == "gendaylit") return read_plain_hour(*hour, !zone.empty() || colon != number.npos, out);
     if (zone.empty()) return {};
     const auto* known = std::find_if(zones.begin(), zones.end(), [&](const Zone& z) { return zone == z.name; });
     if (known == zones.end() || out.is_solar_time) return bad;
@@ -107,6 +118,15 @@ void take_number(char option, double value, RadSkyWords& out) {
         case 'O':
             out.output = value;
             return;
+        case 'd':
+            if (std::abs(value) <= 40) out.dew_point = value;  // others count as the default, as in the program
+            return;
+        case 'E':
+            out.input = 'E', out.first = value;
+            return;
+        case 'i':
+            out.interval = value;
+            return;
         case 'b':
         case 'B':
             out.zenith = value, out.zenith_by = option;
@@ -124,12 +144,14 @@ Result<void> check_options(const RadSkyWords& in) {
     if (in.year && !is_date(*in.year, in.month ? in.month : 1, in.month ? in.day : 1))
         return wrong(in, fmt::format("{}-{}-{} is no date", *in.year, in.month, in.day));
     if (in.zenith < 0 || in.solar < 0) return wrong(in, "a brightness is negative");
+    if (in.interval < 0) return wrong(in, "-i lies below 0");
+    if (in.older && in.year) return wrong(in, "-y is no option of the programs of before November 2019");
     return {};
 }
 
 Result<void> read_options(const CommandWords& words, RadSkyWords& out) {
     const bool perez = out.program == "gendaylit";
-    const std::string plain = perez ? "sw" : "sicu", numbers = perez ? "gaomyO" : "gaomytbBrR";
+    const std::string plain = perez ? "swc" : "sicu", numbers = perez ? "gaomyOdEi" : "gaomytbBrR";
     const std::string pairs = perez ? "PWLG" : "";
     for (std::size_t i = 4; i < words.size(); ++i) {
         const std::string& w = words[i];
@@ -138,6 +160,7 @@ Result<void> read_options(const CommandWords& words, RadSkyWords& out) {
             if (c == 'w') continue;
             out.kind = c;
             if (c == 's' || c == 'i') out.has_sun = w[0] == '+';
+            if (c == 'c' && perez) out.has_sun = false;
         } else if (w[0] == '-' && pairs.find(c) != std::string::npos) {
             const Result<double> first = number_after(words, i, out);
             if (!first) return first.error();
@@ -154,27 +177,6 @@ Result<void> read_options(const CommandWords& words, RadSkyWords& out) {
         }
     }
     return check_options(out);
-}
-
-/// Fills altitude and azimuth (from south towards west), radians.
-void place_sun(RadSkyWords& in) {
-    if (in.has_angles) return;
-    const int day = day_of_year(2021, in.month, std::min(in.day, 31));
-    double declination = 0.4093 * std::sin(2 * pi / 368 * (day - 81)), solar = in.hour;
-    if (in.year && !in.is_solar_time) {
-        const SunPosition at =
-            sun_position({*in.year, in.month, in.day, in.hour, -in.meridian / 15},
-                         {in.latitude * 180 / pi, -in.longitude, 0, 0, 12});  // no pressure: no refraction
-        in.altitude = at.altitude * pi / 180, in.azimuth = (at.azimuth - 180) * pi / 180;
-        return;
-    }
-    if (!in.is_solar_time)
-        solar += 0.170 * std::sin(4 * pi / 373 * (day - 80)) - 0.129 * std::sin(2 * pi / 355 * (day - 8)) +
-                 (in.meridian - in.longitude) / 15;
-    const double turn = solar * pi / 12, s = std::sin(in.latitude), c = std::cos(in.latitude);
-    const double cd = std::cos(declination), sd = std::sin(declination);
-    in.altitude = std::asin(std::clamp(s * sd - c * cd * std::cos(turn), -1.0, 1.0));
-    in.azimuth = -std::atan2(cd * std::sin(turn), -c * sd - s * cd * std::cos(turn));
 }
 
 std::string gensky(const RadSkyWords& in) {
@@ -214,15 +216,16 @@ bool is_sky_command(const CommandWords& words) {
     return !words.empty() && (words[0] == "gensky" || words[0] == "gendaylit");
 }
 
-Result<std::string> sky_command_output(const CommandWords& words) {
+Result<PrintedSky> sky_command_output(const CommandWords& words, bool older) {
     Result<RadSkyWords> in = read_head(words);
     if (!in) return in.error();
+    in->older = older;
     if (const Result<void> read = read_options(words, *in); !read) return read.error();
-    place_sun(*in);
+    place_rad_sun(*in);
     const bool overcast = in->kind == 'c' || in->kind == 'u';
     constexpr double highest = 87 * pi / 180;  // as the programs have it
     if (!overcast) in->altitude = std::min(in->altitude, highest);
-    return in->program == "gendaylit" ? gendaylit_output(*in) : Result<std::string>(gensky(*in));
+    return in->program == "gendaylit" ? gendaylit_output(*in) : PrintedSky{gensky(*in)};
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "exitance/geometry/vec.hpp"
+#include "exitance/scene/sky/sky_model.hpp"
 
 namespace exitance {
 namespace {
@@ -33,25 +34,79 @@ std::vector<double> numbers_after(const std::string& text, const std::string& li
     return out;
 }
 
-std::string output(const std::string& line) {
-    const Result<std::string> text = sky_command_output(words_of(line));
-    EXPECT_TRUE(text) << (text ? "" : text.error().message);
-    return text ? *text : "";
+std::string output(const std::string& line, bool older = false) {
+    const Result<PrintedSky> printed = sky_command_output(words_of(line), older);
+    EXPECT_TRUE(printed) << (printed ? "" : printed.error().message);
+    return printed ? printed->text : "";
+}
+
+std::vector<std::string> warnings(const std::string& line) {
+    const Result<PrintedSky> printed = sky_command_output(words_of(line));
+    EXPECT_TRUE(printed) << (printed ? "" : printed.error().message);
+    return printed ? printed->warnings : std::vector<std::string>();
+}
+
+/// Earth's distance factor of irradiance on a day of the year.
+double orbit(double day) {
+    const double angle = 2 * pi * (day - 1) / 365;
+    return 1.00011 + 0.034221 * std::cos(angle) + 0.00128 * std::sin(angle) + 0.000719 * std::cos(2 * angle) +
+           0.000077 * std::sin(2 * angle);
 }
 
 TEST(RadSkyCommand, GenskyPrintsWhatTheProgramPrints) {
-    // A published run prints: light 6.73e+06, source 0.421409 -0.593560 0.685639, ground ambient level 14.6.
-    const std::string text = output("gensky 3 20 10 -a 40 -o 98 -m 105 -g 1");
+    // Printed by the program of 2021, in its four digits.
+    const std::string text = output("gensky 12 09 14:00 -a 51 -o 0 -m 0");
+    const std::vector<double> light = numbers_after(text, "void light solar"), sun = numbers_after(text, "source sun");
+    EXPECT_NEAR(light[0], 2.629e6, 0.5e3);
+    EXPECT_NEAR(sun[0], -0.488361, 1e-6);
+    EXPECT_NEAR(sun[1], -0.852180, 1e-6);
+    EXPECT_NEAR(sun[2], 0.187862, 1e-6);
+    EXPECT_EQ(sun[3], 0.5);
+    const std::vector<double> sky = numbers_after(text, "skyfunc");
+    ASSERT_EQ(sky.size(), 7u);
+    EXPECT_EQ(sky[0], 1);
+    EXPECT_NEAR(sky[1], 3.343, 5e-4);
+    EXPECT_NEAR(sky[2], 3.429, 5e-4);
+    EXPECT_NEAR(sky[3], 0.2971, 5e-5);
+    EXPECT_TRUE(warnings("gensky 12 09 14:00 -a 51 -o 0 -m 0").empty());
+}
+
+TEST(RadSkyCommand, OlderGenskyPrintsWhatThatProgramPrinted) {
+    // A published run of the older program: light 6.73e+06, this sun, ground ambient level 14.6.
+    const std::string text = output("gensky 3 20 10 -a 40 -o 98 -m 105 -g 1", true);
     const std::vector<double> light = numbers_after(text, "void light solar"), sun = numbers_after(text, "source sun");
     EXPECT_NEAR(light[0], 6.73e6, 0.005e6);
     EXPECT_NEAR(sun[0], 0.421409, 1e-6);
     EXPECT_NEAR(sun[1], -0.593560, 1e-6);
     EXPECT_NEAR(sun[2], 0.685639, 1e-6);
-    EXPECT_EQ(sun[3], 0.5);
     const std::vector<double> sky = numbers_after(text, "skyfunc");
     ASSERT_EQ(sky.size(), 7u);
-    EXPECT_EQ(sky[0], 1);
     EXPECT_NEAR(sky[2] - 6e-5 / pi * light[0] * sun[2], 14.6, 0.05);
+    // The declination of the two programs differs by its sine's period, 368 and 365 days: at noon, by solar time, the
+    // sun's altitude is 90 degrees less the latitude and plus the declination.
+    const auto noon = [](bool older) {
+        return std::asin(numbers_after(output("gensky 10 23 +12 -a 20", older), "source sun")[2]);
+    };
+    const double day = 296 - 81;
+    EXPECT_NEAR(noon(false), 70 * pi / 180 + 0.4093 * std::sin(2 * pi / 365 * day), 1e-8);
+    EXPECT_NEAR(noon(true), 70 * pi / 180 + 0.4093 * std::sin(2 * pi / 368 * day), 1e-8);
+}
+
+TEST(RadSkyCommand, AYearGivesThePlaceOfAnAlmanac) {
+    // The two algorithms agree within 0.02 degrees (the almanac's is right to 0.01 without refraction).
+    for (const int year : {1960, 1999, 2021, 2024})
+        for (const double hour : {8.0, 12.25, 16.5}) {
+            const std::string date = "gensky 3 1 " + std::to_string(hour);
+            const std::vector<double> sun =
+                numbers_after(output(date + " -a -33 -o -151 -m -150 -y " + std::to_string(year)), "source sun");
+            const SunPosition at = sun_position({year, 3, 1, hour, 10}, {-33, 151, 0, 0, 12});
+            const Normal right = sky_direction(at.altitude, at.azimuth);
+            EXPECT_GT(sun[0] * right.x + sun[1] * right.y + sun[2] * right.z, std::cos(0.02 * pi / 180)) << hour;
+        }
+    // With solar time only the declination follows from the year.
+    const std::vector<double> noon = numbers_after(output("gensky 6 21 +12 -a 45 -y 2021"), "source sun");
+    EXPECT_NEAR(std::asin(noon[2]) * 180 / pi, 45 + 23.44, 0.01);
+    EXPECT_NEAR(noon[0], 0, 1e-8);
 }
 
 TEST(RadSkyCommand, GenskyScalesItsSkyByWhatIsGiven) {
@@ -80,10 +135,7 @@ TEST(RadSkyCommand, GendaylitHasPerezSky) {
     const double Z = 50 * pi / 180, k = 1.041 * Z * Z * Z, clearness = (5 + k) / (1 + k);
     ASSERT_TRUE(clearness > 2.8 && clearness < 4.5);
     const double mass = 1 / (std::cos(Z) + 0.15 * std::pow(93.885 - 50, -1.253));
-    const double day = 2 * pi * 149 / 365;
-    const double orbit = 1.00011 + 0.034221 * std::cos(day) + 0.00128 * std::sin(day) + 0.000719 * std::cos(2 * day) +
-                         0.000077 * std::sin(2 * day);
-    const double delta = 150 * mass / (1367 * orbit);
+    const double delta = 150 * mass / (1367 * orbit(0));  // no date: the program's day 0
     EXPECT_NEAR(sky[2], -1.0156 - 0.3670 * Z + delta * (1.0078 + 1.4051 * Z), 1e-7);
     EXPECT_NEAR(sky[5], -3.4 - 0.1078 * Z + delta * (-1.0750 + 1.5702 * Z), 1e-7);
     // The same state by its parameters.
@@ -97,9 +149,75 @@ TEST(RadSkyCommand, GendaylitHasPerezSky) {
     EXPECT_NEAR(direct / 600, 95, 15);
 }
 
+TEST(RadSkyCommand, GendaylitCountsAnglesAsDayZero) {
+    // -P: irradiances are those outside the atmosphere on the day times the state, so that their ratio is the orbit's.
+    const auto scale = [](const std::string& line, bool older) {
+        return numbers_after(output(line, older), "skyfunc")[0];
+    };
+    const double today = scale("gendaylit -ang 60 10 -P 6.3 0.12", false),
+                 older = scale("gendaylit -ang 60 10 -P 6.3 0.12", true);
+    EXPECT_NEAR(today / older, orbit(0) / orbit(150), 1e-7);
+    EXPECT_GT(today / older, 1.06);
+    EXPECT_EQ(scale("gendaylit 5 30 +10 -a 40 -P 6.3 0.12", false) > 0, true);
+}
+
+TEST(RadSkyCommand, GendaylitPrintsSkiesOfNightHours) {
+    // Below the horizon the sun counts as on it, for the state and for the sky's coefficients; its direction stays.
+    const std::string line = "gendaylit -ang -7 80 -W 0 23";
+    const std::vector<double> sky = numbers_after(output(line), "skyfunc");
+    ASSERT_EQ(sky.size(), 10u);
+    EXPECT_NEAR(sky[9], std::sin(-7 * pi / 180), 1e-8);
+    const double delta = 23 / (0.15 * std::pow(93.885 - 90, -1.253) * 1367 * orbit(0)), Z = pi / 2;
+    ASSERT_TRUE(delta > 0.01 && delta < 0.6);
+    EXPECT_NEAR(sky[2], 1.3525 - 0.2576 * Z + delta * (-0.2690 - 1.4366 * Z), 1e-8);
+    EXPECT_TRUE(warnings(line).empty());
+    // Its illuminance is the irradiance times the efficacy of [Perez90], over 179 lm/W. The program takes its sky's sum
+    // over 145 directions for the integral, and the sun as standing on the horizon there: 6% off.
+    SkyModel model;
+    model.a = sky[2], model.b = sky[3], model.c = sky[4], model.d = sky[5], model.e = sky[6];
+    model.sun = {sky[7], sky[8], sky[9]};
+    const double irradiance = pi * sky[0] * horizontal_mean(model);
+    EXPECT_NEAR(irradiance, 23 * (97.24 - 2 * 0.46 - 8.91 * std::log(delta)) / 179, 0.08 * irradiance);
+    // Dates whose hour is before sunrise or after sunset have no light, and it is said.
+    for (const char* dark :
+         {"gendaylit 3 20 +2 -a 40 -W 100 10", "gendaylit 12 1 +22 -a 40 -P 2 0.1", "gendaylit -ang -1 0 -G 100 10",
+          "gendaylit -ang -1 0 -E 100", "gendaylit -ang 30 0 -W 0 0", "gendaylit -ang 30 0 -W 1400 100",
+          "gendaylit -ang 30 0 -L 0 0"}) {
+        EXPECT_EQ(numbers_after(output(dark), "skyfunc")[0], 0) << dark;
+        EXPECT_EQ(output(dark).find("source sun"), std::string::npos) << dark;
+        ASSERT_EQ(warnings(dark).size(), 1u) << dark;
+        EXPECT_NE(warnings(dark)[0].find("no light"), std::string::npos);
+    }
+    // With an interval the hour about sunrise counts by the middle of its light: 6 h at the equinox.
+    EXPECT_TRUE(warnings("gendaylit 3 22 +5.75 -a 40 -W 50 40 -i 60").empty());
+    EXPECT_EQ(warnings("gendaylit 3 22 +5.25 -a 40 -W 50 40 -i 60").size(), 1u);
+    const double rising = numbers_after(output("gendaylit 3 22 +5.75 -a 40 -W 50 40 -i 60"), "skyfunc")[9];
+    EXPECT_NEAR(std::asin(rising) * 180 / pi, 0.125 * 15 * std::cos(40 * pi / 180), 0.05);  // (6 + 6.25) / 2 h
+}
+
+TEST(RadSkyCommand, GendaylitReadsGlobalLightAndDewPoints) {
+    // Erbs: k = 0.2, below 0.22: the diffuse share is 1 - 0.09 k.
+    const double outside = 1367 * orbit(0) * 0.5;  // at 30 degrees
+    const std::string global = std::to_string(0.2 * outside);
+    const std::vector<double> split = numbers_after(output("gendaylit -ang 30 0 -O 1 -E " + global), "skyfunc");
+    const double diffuse = 0.2 * outside * (1 - 0.09 * 0.2), direct = (0.2 * outside - diffuse) / 0.5;
+    const std::vector<double> same = numbers_after(
+        output("gendaylit -ang 30 0 -O 1 -W " + std::to_string(direct) + " " + std::to_string(diffuse)), "skyfunc");
+    for (std::size_t i = 0; i < same.size(); ++i) EXPECT_NEAR(split[i], same[i], 1e-5 * (1 + std::abs(same[i])));
+    // More water in the air: more lumens for a watt of diffuse light [Perez90]; none of watts (-O 1).
+    const auto scale = [](const std::string& line) { return numbers_after(output(line), "skyfunc")[0]; };
+    EXPECT_GT(scale("gendaylit -ang 40 0 -W 500 150 -d 20"), 1.01 * scale("gendaylit -ang 40 0 -W 500 150 -d 0"));
+    EXPECT_EQ(scale("gendaylit -ang 40 0 -W 500 150 -O 1 -d 20"), scale("gendaylit -ang 40 0 -W 500 150 -O 1"));
+    EXPECT_EQ(output("gendaylit -ang 40 0 -W 500 150 -c").find("source sun"), std::string::npos);
+    // No diffuse light leaves the sun alone.
+    const std::string sun_alone = output("gendaylit -ang 40 0 -O 1 -W 500 0");
+    EXPECT_EQ(numbers_after(sun_alone, "skyfunc")[0], 0);
+    EXPECT_NE(sun_alone.find("source sun"), std::string::npos);
+}
+
 TEST(RadSkyCommand, WhatIsNotReadIsNamed) {
     const auto fault = [](const std::string& line) {
-        const Result<std::string> text = sky_command_output(words_of(line));
+        const Result<PrintedSky> text = sky_command_output(words_of(line));
         return text ? "" : text.error().message + "|" + text.error().hint;
     };
     EXPECT_NE(fault("gensky 3 20").find("missing"), std::string::npos);
@@ -111,9 +229,10 @@ TEST(RadSkyCommand, WhatIsNotReadIsNamed) {
     EXPECT_NE(fault("gensky 3 20 12 -W 1 2").find("'-W'"), std::string::npos);
     EXPECT_NE(fault("gendaylit 3 20 12").find("the light is missing"), std::string::npos);
     EXPECT_NE(fault("gendaylit 3 20 12 -W 100").find("two numbers"), std::string::npos);
-    EXPECT_NE(fault("gendaylit 3 20 12 -W 100 0").find("above 0"), std::string::npos);
-    EXPECT_NE(fault("gendaylit 3 20 +2 -W 100 10").find("below the horizon"), std::string::npos);
-    EXPECT_NE(fault("gendaylit 3 20 12 -E 300").find("--run-commands"), std::string::npos);
+    EXPECT_NE(fault("gendaylit 3 20 12:30 -W 100 10").find("ignores them"), std::string::npos);
+    EXPECT_NE(fault("gendaylit 3 20 12EST -W 100 10").find("-m"), std::string::npos);
+    EXPECT_NE(fault("gendaylit 3 20 24 -W 100 10").find("below 24"), std::string::npos);
+    EXPECT_NE(fault("gendaylit 3 20 12 -C -W 1 2").find("--run-commands"), std::string::npos);
     EXPECT_NE(fault("gensky 2 30 12 -y 2021").find("no date"), std::string::npos);
     EXPECT_EQ(fault("gensky 3 20 12"), "");
 }

@@ -68,6 +68,7 @@ class RadianceReader {
     Result<Copied> copied_by(const std::vector<CommandWords>& stages, int line, const Call& call);
     Result<void> add_file(const std::string& name, Copied& out);
     Result<void> add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out);
+    Result<std::string> sky_text(const CommandWords& words, const RadPlace& at);
     int first_line(const std::string& path, std::string_view text);
     void take(RadPrimitive p, const Call& call);
     void take_surface(const RadPrimitive& p, const Call& call);
@@ -222,6 +223,14 @@ Result<void> RadianceReader::add_file(const std::string& name, Copied& out) {
     return {};
 }
 
+/// Text of a line `!gensky` or `!gendaylit`; its warnings become findings.
+Result<std::string> RadianceReader::sky_text(const CommandWords& words, const RadPlace& at) {
+    Result<PrintedSky> printed = sky_command_output(words, options_.older_sky_programs);
+    if (!printed) return printed.error();
+    for (std::string& warning : printed->warnings) findings_.warning(at, std::move(warning));
+    return std::move(printed->text);
+}
+
 /// What a row of programs prints, each reading what the one before it prints.
 Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out) {
     const bool is_known = (is_sky_command(stages[0]) || is_box_command(stages[0])) && stages.size() == 1;
@@ -234,7 +243,7 @@ Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, in
     std::string text;
     for (const CommandWords& words : stages) {
         Result<std::string> printed =
-            is_known ? is_box_command(words) ? box_command_output(words) : sky_command_output(words)
+            is_known ? is_box_command(words) ? box_command_output(words) : sky_text(words, {*call.name, line})
                      : run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
         // Options that are not read here are left to the program, where that may be run.
         if (is_known && !printed && options_.run_commands)
