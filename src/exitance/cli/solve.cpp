@@ -235,6 +235,8 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     SolveArguments arguments = given;
     if (const Result<void> settled = settle_options(arguments); !settled) return terminal.fail(settled.error());
+    if (arguments.scene.load.sky)
+        for (const std::string& warning : arguments.scene.load.sky->warnings) terminal.progress().warn(warning);
     set_threads(arguments.options.threads);
     set_schedule(arguments.options.schedule);
     Tracing tracing(arguments.trace, terminal.progress());

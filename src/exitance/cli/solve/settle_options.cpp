@@ -69,6 +69,8 @@ Result<void> read_sky(SolveArguments& arguments) {
     Result<ChosenSky> sky = parse_sky(arguments.sky, weather ? &*weather : nullptr);
     if (!sky) return sky.error();
     if (arguments.photometric) sky->photometric = arguments.photometric;
+    if (weather)
+        for (const std::string& warning : weather->warnings) sky->warnings.push_back(arguments.epw + ": " + warning);
     arguments.scene.load.sky = std::move(*sky);
     return {};
 }

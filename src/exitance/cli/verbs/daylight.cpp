@@ -45,11 +45,11 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Weather> weather = load_epw(arguments.epw);
     if (!weather) return terminal.fail(weather.error());
-    const auto missing =
-        std::count_if(weather->hours.begin(), weather->hours.end(), [](const WeatherHour& h) { return h.is_missing; });
-    if (missing > 0 && !arguments.quiet)
-        terminal.note(fmt::format("{}: {} of {} hours have no irradiances, and count as dark", arguments.epw, missing,
-                                  weather->hours.size()));
+    for (const std::string& warning : weather->warnings)
+        terminal.progress().warn(fmt::format("{}: {}", arguments.epw, warning));
+    if (const std::string partial = weather->not_a_year(); !partial.empty())
+        terminal.progress().warn(fmt::format("{}: {}: sDA, ASE and the levels of EN 17037 are defined for whole years",
+                                             arguments.epw, partial));
     const Result<ProbePoints> points = load_probe_points(arguments.points);
     if (!points) return terminal.fail(points.error());
     if (points->size() == 0)

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string_view>
+#include <tuple>
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
@@ -14,16 +17,40 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_hours = 8784 * 100;  ///< A century: more is no weather file.
+constexpr std::size_t max_rows = 8784 * 100;  ///< Hours of a century, or minutes of a year and a half.
 
-std::vector<std::string_view> fields_of(std::string_view line) {
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blanks = " \t\"";
+    const std::size_t first = text.find_first_not_of(blanks);
+    return first == text.npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// Fields of a line without blanks and quotation marks about them; a separator within quotation marks is text.
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
     std::vector<std::string_view> out;
-    while (true) {
-        const std::size_t comma = line.find(',');
-        out.push_back(line.substr(0, comma));
-        if (comma == line.npos) return out;
-        line.remove_prefix(comma + 1);
+    bool in_quotes = false;
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i <= line.size(); ++i) {
+        if (i < line.size() && line[i] == '"') in_quotes = !in_quotes;
+        if (i < line.size() && (line[i] != separator || in_quotes)) continue;
+        out.push_back(trimmed(line.substr(begin, i - begin)));
+        begin = i + 1;
     }
+    return out;
+}
+
+/// The separator that occurs most often.
+char separator_of(std::string_view line) {
+    char out = ',';
+    for (const char c : {';', '\t'})
+        if (std::count(line.begin(), line.end(), c) > std::count(line.begin(), line.end(), out)) out = c;
+    return out;
+}
+
+bool is_key(std::string_view word, std::string_view key) {
+    return std::equal(word.begin(), word.end(), key.begin(), key.end(), [](char a, char b) {
+        return std::toupper(static_cast<unsigned char>(a)) == std::toupper(static_cast<unsigned char>(b));
+    });
 }
 
 std::optional<double> number_within(std::string_view word, double least, double most) {
@@ -31,66 +58,278 @@ std::optional<double> number_within(std::string_view word, double least, double 
     return value && *value >= least && *value <= most ? value : std::nullopt;
 }
 
-/// LOCATION,city,state,country,source,WMO,latitude,longitude,time zone,elevation
-Result<Weather> read_location(LineReader& lines, std::string_view line) {
-    const std::vector<std::string_view> fields = fields_of(line);
-    if (fields.size() < 10 || fields[0] != "LOCATION")
-        return lines.error("a weather file begins with LOCATION and nine fields", "EnergyPlus' format, .epw");
-    const auto latitude = number_within(fields[6], -90, 90), longitude = number_within(fields[7], -180, 180),
-               zone = number_within(fields[8], -13, 15), elevation = number_within(fields[9], -1000, 9999.9);
-    if (!latitude || !longitude || !zone || !elevation)
-        return lines.error("LOCATION has no latitude, longitude, time zone and elevation");
-    Weather out;
-    out.city = shown(fields[1]);
-    out.place = {*latitude, *longitude, *elevation};
-    out.zone = *zone;
-    return out;
+/// Global, direct normal and diffuse horizontal light in one unit; what is missing has no value.
+struct Light {
+    std::optional<double> global, direct, diffuse;
+
+    bool any_above_zero() const { return global.value_or(0) > 0 || direct.value_or(0) > 0 || diffuse.value_or(0) > 0; }
+};
+
+/// A line of numbers.
+struct Row {
+    int year = 2021, month = 1, day = 1, hour = 1;
+    double minute = 0;
+    Light watts = {}, lux = {};
+    int line = 0;
+};
+
+// Fields of a row, counted from 0.
+constexpr std::size_t minute_field = 4, first_watts_field = 13, first_lux_field = 16;
+
+bool is_blank_line(std::string_view line) {
+    return line.find_first_not_of(" \t,;\"") == line.npos;
+}
+
+bool starts_with_number(const std::vector<std::string_view>& fields) {
+    return parse_number(fields[0]).has_value();
 }
 
 /// A leap day stands for that of a leap year: typical years put months of several years together.
-bool mend_leap_day(WeatherHour& hour) {
-    if (is_date(hour.year, hour.month, hour.day)) return true;
-    constexpr int leap_year = 2020;
-    if (hour.month != 2 || hour.day != 29) return false;
-    hour.year = leap_year;
+bool mend_date(Row& row) {
+    constexpr int unknown_year = 2021, leap_year = 2020;
+    if (row.year < 1) row.year = unknown_year;
+    if (is_date(row.year, row.month, row.day)) return true;
+    if (row.month != 2 || row.day != 29) return false;
+    row.year = leap_year;
     return true;
 }
 
-constexpr double missing = 9999;  ///< Numbers from here on say that there is none.
+class EpwReader {
+  public:
+    EpwReader(LineReader lines, const WeatherEfficacies& efficacies)
+        : lines_(std::move(lines)), efficacies_(efficacies) {}
+    Result<Weather> read();
 
-/// The irradiance that is not there, by global = diffuse + direct sin h in the middle of the hour.
-void fill_in(const Weather& weather, const std::optional<double>& global, std::optional<double> direct,
-             std::optional<double> diffuse, WeatherHour& hour) {
-    constexpr double least_sine = 0.05;  // lower suns make any direct light of a small difference
-    const double sine = std::sin(sun_position(hour.middle(weather.zone), weather.place).altitude * pi / 180);
-    if (global && direct && !diffuse)
-        diffuse = std::max(0.0, *global - *direct * std::max(0.0, sine));
-    else if (global && diffuse && !direct && (sine > least_sine || *global <= *diffuse))
-        direct = std::max(0.0, *global - *diffuse) / std::max(sine, least_sine);
-    hour.is_missing = !direct || !diffuse;
-    if (!hour.is_missing) hour.direct_normal = *direct, hour.diffuse_horizontal = *diffuse;
+  private:
+    Result<void> read_line(std::string_view line);
+    Result<void> read_location(std::string_view line);
+    Result<void> read_header(const std::vector<std::string_view>& fields);
+    Result<void> read_row(const std::vector<std::string_view>& fields);
+    Result<Light> read_light(const std::vector<std::string_view>& fields, std::size_t first, double missing) const;
+    Result<void> count_hours_from_one();
+    Result<void> make_hours();
+    WeatherHour mean_of(std::span<const Row* const> rows);
+    bool find_light(const Row& row, double hour, double& direct, double& diffuse);
+    Error error_at(int line, std::string message, std::string hint = "") const;
+
+    LineReader lines_;
+    WeatherEfficacies efficacies_;
+    Weather out_;
+    std::vector<Row> rows_;
+    bool has_location_ = false, has_data_periods_ = false;
+    char separator_ = ',';
+    int stray_line_ = 0;              ///< The first line of numbers in the header that is no hour.
+    std::size_t by_illuminance_ = 0;  ///< Number of lines that take light from illuminances.
+};
+
+Error EpwReader::error_at(int line, std::string message, std::string hint) const {
+    Error out = lines_.error(std::move(message), std::move(hint));
+    out.where = out.where.substr(0, out.where.rfind(':') + 1) + std::to_string(line);
+    return out;
 }
 
-Result<WeatherHour> read_hour(const LineReader& lines, std::string_view line, const Weather& weather) {
-    constexpr std::size_t global_field = 13, direct_field = 14, diffuse_field = 15;  // counted from 0
-    const std::vector<std::string_view> fields = fields_of(line);
-    if (fields.size() <= diffuse_field)
-        return lines.error(
-            fmt::format("an hour has {} fields, at least {} are needed", fields.size(), diffuse_field + 1));
+/// LOCATION,city,state,country,source,WMO,latitude,longitude,time zone,elevation
+Result<void> EpwReader::read_location(std::string_view line) {
+    separator_ = separator_of(line);
+    const std::vector<std::string_view> fields = fields_of(line, separator_);
+    if (fields.size() < 10 || !is_key(fields[0], "LOCATION"))
+        return lines_.error("a weather file begins with LOCATION and nine fields", "EnergyPlus' format, .epw");
+    const auto latitude = number_within(fields[6], -90, 90), longitude = number_within(fields[7], -180, 180),
+               zone = number_within(fields[8], -13, 15), elevation = number_within(fields[9], -1000, 9999.9);
+    if (!latitude || !longitude || !zone || !elevation)
+        return lines_.error("LOCATION has no latitude, longitude, time zone and elevation");
+    out_.city = shown(fields[1]);
+    out_.place = {*latitude, *longitude, *elevation};
+    out_.zone = *zone;
+    has_location_ = true;
+    return {};
+}
+
+/// A line before the first hour.
+Result<void> EpwReader::read_header(const std::vector<std::string_view>& fields) {
+    if (!starts_with_number(fields)) {
+        has_data_periods_ |= is_key(fields[0], "DATA PERIODS");
+        return {};
+    }
+    // In the header, numbers of fewer fields than an hour has may belong to a line that was broken.
+    if (!has_data_periods_ && fields.size() < first_lux_field) {
+        if (stray_line_ == 0) stray_line_ = lines_.line();
+        return {};
+    }
+    if (!has_data_periods_ && stray_line_ > 0)
+        return error_at(stray_line_, "the line is neither a header nor an hour",
+                        "hours begin after DATA PERIODS, or with the first line of numbers");
+    return read_row(fields);
+}
+
+/// Numbers of three fields from `first` on; negative ones, and those from `missing` on, are missing.
+Result<Light> EpwReader::read_light(const std::vector<std::string_view>& fields, std::size_t first,
+                                    double missing) const {
+    std::array<std::optional<double>, 3> value;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (first + i >= fields.size() || fields[first + i].empty()) continue;
+        value[i] = parse_number(fields[first + i]);
+        if (!value[i])
+            return lines_.error(
+                fmt::format("'{}' in field {} is not a number", shown(fields[first + i]), first + i + 1));
+        if (!(*value[i] >= 0 && *value[i] < missing)) value[i].reset();
+    }
+    return Light{value[0], value[1], value[2]};
+}
+
+Result<void> EpwReader::read_row(const std::vector<std::string_view>& fields) {
+    if (fields.size() < first_lux_field)
+        return lines_.error(
+            fmt::format("an hour has {} fields, at least {} are needed", fields.size(), first_lux_field));
     std::array<int, 4> date{};
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < date.size(); ++i) {
         const auto value = number_within(fields[i], 0, 9999);
-        if (!value) return lines.error(fmt::format("'{}' is no part of a date", shown(fields[i])));
+        if (!value || *value != std::floor(*value))
+            return lines_.error(fmt::format("'{}' is no part of a date", shown(fields[i])));
         date[i] = static_cast<int>(*value);
     }
-    WeatherHour out{date[0], date[1], date[2], date[3]};
-    if (!mend_leap_day(out) || out.hour < 1 || out.hour > 24)
-        return lines.error(fmt::format("{}-{}-{}, hour {}, is no date", out.year, out.month, out.day, out.hour));
-    const auto direct = parse_number(fields[direct_field]), diffuse = parse_number(fields[diffuse_field]);
-    if (!direct || !diffuse) return lines.error("direct or diffuse irradiance is not a number");
-    const auto known = [](const std::optional<double>& v) { return v && *v >= 0 && *v < missing ? v : std::nullopt; };
-    fill_in(weather, known(parse_number(fields[global_field])), known(direct), known(diffuse), out);
+    Row row{date[0], date[1], date[2], date[3]};
+    if (!mend_date(row) || row.hour > 24)
+        return lines_.error(fmt::format("{}-{}-{}, hour {}, is no date", row.year, row.month, row.day, row.hour));
+    row.minute = parse_number(fields[minute_field]).value_or(0);
+    constexpr double missing_watts = 9999, missing_lux = 999'900;  // as EnergyPlus' format has it
+    const Result<Light> watts = read_light(fields, first_watts_field, missing_watts);
+    if (!watts) return watts.error();
+    const Result<Light> lux = read_light(fields, first_lux_field, missing_lux);
+    if (!lux) return lux.error();
+    row.watts = *watts, row.lux = *lux, row.line = lines_.line();
+    rows_.push_back(row);
+    if (rows_.size() > max_rows) return lines_.error("there are more hours than a century has");
+    return {};
+}
+
+Result<void> EpwReader::read_line(std::string_view line) {
+    if (is_blank_line(line)) return {};
+    if (!has_location_) return read_location(line);
+    const std::vector<std::string_view> fields = fields_of(line, separator_);
+    return rows_.empty() ? read_header(fields) : read_row(fields);
+}
+
+/// Hours that begin at 0 to 23 become those that end at 1 to 24.
+Result<void> EpwReader::count_hours_from_one() {
+    const auto is_hour = [](int hour) { return [hour](const Row& row) { return row.hour == hour; }; };
+    const auto zero = std::find_if(rows_.begin(), rows_.end(), is_hour(0));
+    if (zero == rows_.end()) return {};
+    if (std::any_of(rows_.begin(), rows_.end(), is_hour(24)))
+        return error_at(zero->line, "there are hours 0 and 24 in the file", "hours are counted from 1 to 24");
+    for (Row& row : rows_) ++row.hour;
+    out_.warnings.push_back("hours are counted from 0 to 23: hour 0 is read as the first of its day");
+    return {};
+}
+
+/// Finds what is missing by global = diffuse + direct sin h, if the two others are known. `sine` computes sin h.
+template <class Sine>
+void fill_in(Light& light, const Sine& sine) {
+    constexpr double least_sine = 0.05;  // lower suns make large direct light of a small difference
+    if (!light.global || light.direct.has_value() == light.diffuse.has_value()) return;
+    const double h = sine();
+    if (light.direct)
+        light.diffuse = std::max(0.0, *light.global - *light.direct * std::max(0.0, h));
+    else if (h > least_sine || *light.global <= *light.diffuse)
+        light.direct = std::max(0.0, *light.global - *light.diffuse) / std::max(h, least_sine);
+}
+
+/// Direct and diffuse irradiance of a line, W/m^2, `hour` being the middle of its time; false if they are not known.
+bool EpwReader::find_light(const Row& row, double hour, double& direct, double& diffuse) {
+    const auto sine = [&] {
+        const LocalTime time{row.year, row.month, row.day, hour, out_.zone};
+        return std::sin(sun_position(time, out_.place).altitude * pi / 180);
+    };
+    Light light = row.watts;
+    fill_in(light, sine);
+    if (!light.direct || !light.diffuse) {
+        Light lux = row.lux;
+        if (light.direct) lux.direct = *light.direct * efficacies_.direct;
+        if (light.diffuse) lux.diffuse = *light.diffuse * efficacies_.diffuse;
+        fill_in(lux, sine);
+        if (lux.direct && lux.diffuse) {
+            by_illuminance_ += lux.any_above_zero();
+            light.direct = *lux.direct / efficacies_.direct, light.diffuse = *lux.diffuse / efficacies_.diffuse;
+        }
+    }
+    if (!light.direct || !light.diffuse) return false;
+    direct = *light.direct, diffuse = *light.diffuse;
+    return true;
+}
+
+/// The hour of some lines, which divide it evenly in their order: the mean of those that are known.
+WeatherHour EpwReader::mean_of(std::span<const Row* const> rows) {
+    const Row& first = *rows.front();
+    WeatherHour out{first.year, first.month, first.day, first.hour};
+    const double count = static_cast<double>(rows.size());
+    double known = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        double direct = 0, diffuse = 0;
+        if (!find_light(*rows[i], first.hour - 1 + (static_cast<double>(i) + 0.5) / count, direct, diffuse)) continue;
+        out.direct_normal += direct, out.diffuse_horizontal += diffuse, ++known;
+    }
+    out.is_missing = known == 0;
+    if (known > 0) out.direct_normal /= known, out.diffuse_horizontal /= known;
     return out;
+}
+
+/// Hours in the order of their first lines.
+Result<void> EpwReader::make_hours() {
+    using Key = std::tuple<int, int, int, int>;
+    std::map<Key, std::size_t> numbers;
+    std::vector<std::vector<const Row*>> hours;
+    // Columns that are 0 in the whole file have been left empty.
+    const auto has_light = [&](Light Row::*columns) {
+        return std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) { return (row.*columns).any_above_zero(); });
+    };
+    const bool has_watts = has_light(&Row::watts), has_lux = has_light(&Row::lux);
+    for (Row& row : rows_) {
+        if (!has_watts) row.watts = {};
+        if (!has_lux) row.lux = {};
+        const auto [at, is_new] = numbers.try_emplace(Key{row.year, row.month, row.day, row.hour}, hours.size());
+        if (is_new) hours.emplace_back();
+        for (const Row* other : hours[at->second])
+            if (other->minute == row.minute)
+                return error_at(row.line,
+                                fmt::format("{}-{}-{}, hour {}, comes twice", row.year, row.month, row.day, row.hour),
+                                "lines of one hour differ in their minutes, the fifth field");
+        hours[at->second].push_back(&row);
+    }
+    for (std::vector<const Row*>& rows : hours) {
+        std::sort(rows.begin(), rows.end(), [](const Row* a, const Row* b) { return a->minute < b->minute; });
+        out_.hours.push_back(mean_of(rows));
+    }
+    return {};
+}
+
+Result<Weather> EpwReader::read() {
+    constexpr char control_z = '\x1a';  // ends a file of DOS
+    bool ended = false;
+    while (!ended) {
+        const std::optional<std::string_view> line = lines_.next();
+        if (!line) break;
+        const std::size_t end = line->find(control_z);
+        ended = end != line->npos;
+        if (const Result<void> read = read_line(line->substr(0, end)); !read) return read.error();
+    }
+    if (lines_.failed()) return lines_.read_error();
+    if (!has_location_) return lines_.error("a weather file begins with LOCATION", "EnergyPlus' format, .epw");
+    if (rows_.empty()) return lines_.error("there are no hours in it");
+    if (const Result<void> counted = count_hours_from_one(); !counted) return counted.error();
+    if (const Result<void> made = make_hours(); !made) return made.error();
+    const auto missing =
+        std::count_if(out_.hours.begin(), out_.hours.end(), [](const auto& h) { return h.is_missing; });
+    if (missing == static_cast<std::ptrdiff_t>(out_.hours.size()))
+        return error_at(rows_.front().line, "no hour has irradiances or illuminances", "fields 14 to 19 of its line");
+    if (by_illuminance_ > 0)
+        out_.warnings.push_back(
+            fmt::format("{} of {} lines have no irradiances: these follow from their illuminances, by {:g} lm/W of sun "
+                        "and {:g} lm/W of sky",
+                        by_illuminance_, rows_.size(), efficacies_.direct, efficacies_.diffuse));
+    if (missing > 0)
+        out_.warnings.push_back(fmt::format(
+            "{} of {} hours have neither irradiances nor illuminances, and count as dark", missing, out_.hours.size()));
+    return std::move(out_);
 }
 
 }  // namespace
@@ -101,30 +340,27 @@ const WeatherHour* Weather::at(int month, int day, double hour) const {
     return nullptr;
 }
 
-Result<Weather> load_epw(const std::string& path) {
+std::string Weather::not_a_year() const {
+    constexpr std::size_t hours_a_day = 24, leap_day = 31 + 29;
+    constexpr int leap_year = 2020;
+    std::array<int, 366 * hours_a_day> count{};
+    for (const WeatherHour& h : hours)
+        ++count[static_cast<std::size_t>(day_of_year(leap_year, h.month, h.day) - 1) * hours_a_day +
+                static_cast<std::size_t>(h.hour - 1)];
+    std::size_t absent = 0, repeated = 0;
+    for (std::size_t i = 0; i < count.size(); ++i) {
+        absent += count[i] == 0 && i / hours_a_day != leap_day - 1;
+        repeated += count[i] > 1;
+    }
+    if (absent == 0 && repeated == 0) return "";
+    return fmt::format("its {} hours are not those of one year ({} of 8760 are absent, {} come more than once)",
+                       hours.size(), absent, repeated);
+}
+
+Result<Weather> load_epw(const std::string& path, const WeatherEfficacies& efficacies) {
     Result<LineReader> lines = LineReader::open(path);
     if (!lines) return lines.error();
-    constexpr int header_lines = 8;
-    Result<Weather> out = Weather();
-    while (const std::optional<std::string_view> line = lines->next()) {
-        if (lines->line() == 1) out = read_location(*lines, *line);
-        if (!out) return out;
-        if (lines->line() <= header_lines || line->find_first_not_of(" \t,") == line->npos) continue;
-        const Result<WeatherHour> hour = read_hour(*lines, *line, *out);
-        if (!hour) return hour.error();
-        const auto is_same = [&](const WeatherHour& h) {
-            return h.year == hour->year && h.month == hour->month && h.day == hour->day && h.hour == hour->hour;
-        };
-        if (!out->hours.empty() && is_same(out->hours.back()))
-            return lines->error(
-                fmt::format("{}-{}-{}, hour {}, comes twice", hour->year, hour->month, hour->day, hour->hour),
-                "files of one line an hour are read");
-        out->hours.push_back(*hour);
-        if (out->hours.size() > most_hours) return lines->error("there are more hours than a century has");
-    }
-    if (lines->failed()) return lines->read_error();
-    if (out && out->hours.empty()) return lines->error("there are no hours in it");
-    return out;
+    return EpwReader(std::move(*lines), efficacies).read();
 }
 
 }  // namespace exitance

@@ -24,14 +24,30 @@ struct Weather {
     Place place;
     double zone = 0;  ///< Hours ahead of universal time.
     std::vector<WeatherHour> hours;
+    std::vector<std::string> warnings;  ///< Sentences about what was missing or changed in the file.
 
     /// The hour that holds a moment of the year; none if there is none.
     const WeatherHour* at(int month, int day, double hour) const;
+    /// A sentence if the hours are not those of one year, each once (29 February or not); empty if they are.
+    std::string not_a_year() const;
 };
 
-/// Reads a weather file (.epw): place and irradiances. Of direct and diffuse light the one that is missing (9999 and
-/// more) follows from the other and from global light; else the hour is missing, and counts as no light. 29 February is
-/// one of a leap year, whatever the line's year. Error: of code bad_input with the line.
-Result<Weather> load_epw(const std::string& path);
+/// Luminous efficacies by which irradiances and illuminances stand for each other, lm/W.
+struct WeatherEfficacies {
+    double direct = 100, diffuse = 120;
+};
+
+/// Reads a weather file (.epw): place and irradiances.
+///
+/// The header begins with LOCATION; hours begin after DATA PERIODS, or with the first line of numbers. Fields are
+/// separated by commas (or by semicolons or tabs throughout). Keys may be in any case; control-Z ends the file. Several
+/// lines of one hour with different minutes are averaged. Hours that are counted from 0 to 23 become 1 to 24, with a
+/// warning. 29 February is one of a leap year, whatever the line's year.
+///
+/// Of direct and diffuse irradiance the missing one (9999 and more, or blank) follows from its illuminance, or from the
+/// other one and global irradiance or illuminance. If neither is known the hour is missing, and counts as no light.
+/// Irradiances or illuminances that are 0 in the whole file count as missing.
+/// Errors: cannot_read; bad_input with the line, or if no hour has light that is known.
+Result<Weather> load_epw(const std::string& path, const WeatherEfficacies& efficacies = {});
 
 }  // namespace exitance
