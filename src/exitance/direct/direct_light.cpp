@@ -14,6 +14,14 @@ bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rou
     return emitter.plane.signed_distance(at.x) > 0 && dot(at.n, emitter.centre - at.x) > -emitter.radius - rounding;
 }
 
+/// True if nothing in the scene rises over a receiver's plane: then nothing hides the sky from it.
+bool is_on_top(const Occluders& occluders, const Point& x, const Normal& n) {
+    const Box& box = occluders.scene().box();
+    const double highest = std::max(n.x * box.lo.x, n.x * box.hi.x) + std::max(n.y * box.lo.y, n.y * box.hi.y) +
+                           std::max(n.z * box.lo.z, n.z * box.hi.z);
+    return highest <= dot(n, x) + occluders.rounding();
+}
+
 }  // namespace
 
 void ReceiverLight::clear() {
@@ -189,6 +197,12 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
     if (occluders_->has_nothing_inside() && !is_distant(e)) {
         if (face_each_other({light.n, dot(light.n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
             add_open(source, receiver[0], light, scratch);
+        return;
+    }
+    if (looks_far(e) && is_on_top(*occluders_, receiver[0], light.n)) {
+        const auto is_above = [&](const Point& corner) { return dot(light.n, corner - occluders_->middle()) > 0; };
+        const std::span<const Point> corners = occluders_->corners(piece);
+        if (std::any_of(corners.begin(), corners.end(), is_above)) add_open(source, receiver[0], light, scratch);
         return;
     }
     scratch.shaft.set(*occluders_, {receiver, light.n, light.own},

@@ -7,6 +7,7 @@
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/edge_sum.hpp"
 #include "exitance/visibility/glazed_part.hpp"
+#include "exitance/visibility/sky/far_factor.hpp"
 #include "exitance/visibility/window_view.hpp"
 
 namespace exitance {
@@ -196,9 +197,21 @@ bool cut_lit(std::size_t first, Workspace& scratch) {
     return true;
 }
 
+/// The form factor of the source with nothing before it, weighted by its radiance. Of a part of the sky it depends on
+/// the normal alone.
+double whole_form_factor(const Occluders& occluders, PieceId source, const Normal& n, const Workspace& scratch,
+                         const RelativeRadiance& radiance) {
+    if (!occluders.is_distant(source) || occluders.is_window(source))
+        return directed_form_factor(n, scratch.source, radiance);
+    double& known = known_far_factor(occluders, source, n);
+    if (known < 0) known = directed_form_factor(n, scratch.source, radiance);
+    return known;
+}
+
 /// The form factor to what the shadows leave, the first `cut` of which have cut the source already. With `fragments`
 /// given these are taken, and nothing is summed.
-double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLight& light, Fragments* fragments) {
+double finish(const Occluders& occluders, PieceId source, const Normal& n, std::size_t cut, Workspace& scratch,
+              const PartLight& light, Fragments* fragments) {
     if (fragments) {
         if (scratch.shadows.empty()) {
             fragments->push_back(scratch.source);
@@ -208,7 +221,7 @@ double finish(const Normal& n, std::size_t cut, Workspace& scratch, const PartLi
         return 0;
     }
     if (light.radiance.is_directed()) {
-        if (scratch.shadows.empty()) return directed_form_factor(n, scratch.source, light.radiance);
+        if (scratch.shadows.empty()) return whole_form_factor(occluders, source, n, scratch, light.radiance);
         return cut_lit(cut, scratch) ? scratch.lit.form_factor(n, light.radiance, scratch.clipped) : 0;
     }
     if (scratch.shadows.empty()) return std::max(0.0, contour_sum(n, scratch.source));
@@ -235,7 +248,8 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     const bool in_scene =
         !at.own.is_none() &&
         !occluders.is_distant(source);  // what lies on the scene's hull stands between none of its points
-    if (in_scene && occluders.has_nothing_inside()) return finish(at.n, 0, scratch, light, fragments);
+    if (in_scene && occluders.has_nothing_inside())
+        return finish(occluders, source, at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     const bool all_the_way = looks_out_on_faces(occluders, source);
@@ -260,20 +274,20 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     const std::size_t large = scratch.shadows.size();
     if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
     if (visit(Occluders::Size::small)) return 0;
-    return finish(at.n, large > 1 ? large : 0, scratch, light, fragments);
+    return finish(occluders, source, at.n, large > 1 ? large : 0, scratch, light, fragments);
 }
 
 double part_among(const Occluders& occluders, const Receiver& at, PieceId source, std::span<const PieceId> candidates,
                   VisibilityWorkspace& scratch, const PartLight& light, Fragments* fragments = nullptr) {
     clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    if (candidates.empty()) return finish(at.n, 0, scratch, light, fragments);
+    if (candidates.empty()) return finish(occluders, source, at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
     const ConvexPiece& emitter = occluders.pieces()[source];
     const bool all_the_way = looks_out_on_faces(occluders, source);
     for (PieceId p : candidates)
         if (add_shadow(occluders, at, emitter, all_the_way, p, scratch) == Hides::everything) return 0;
-    return finish(at.n, 0, scratch, light, fragments);
+    return finish(occluders, source, at.n, 0, scratch, light, fragments);
 }
 
 }  // namespace

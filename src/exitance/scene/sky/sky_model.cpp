@@ -129,7 +129,8 @@ double SkyModel::value(const Vec3& w) const {
         out = phi * f;
     }
     if (blends_ground) {
-        const double weight = std::pow(w.z + 1.01, 10);
+        const double base = w.z + 1.01, square = base * base, fourth = square * square;
+        const double weight = fourth * fourth * square;
         out = (weight * out + ground / weight) / (weight + 1 / weight);
     }
     return std::max(0.0, out);
