@@ -55,6 +55,44 @@ TEST(ProgramSky, ASolutionUnderASkyIsReadBack) {
     EXPECT_EQ(run_program({"export", folder / "s.h5", "-o", folder / "s.glb"}).status, 0);
 }
 
+TEST(ProgramSky, MirroredLightThatIsLeftOutIsReported) {
+    const TemporaryFolder folder;
+    write_text(folder / "front.rad",
+               "void glass pane\n0\n0\n4 .9 .9 .9 4\nvoid plastic black\n0\n0\n5 0 0 0 0 0\n"
+               "pane polygon front\n0\n0\n12 -10 6 0 10 6 0 10 6 20 -10 6 20\n"
+               "black polygon floor\n0\n0\n12 -20 -20 0 20 -20 0 20 6 0 -20 6 0\n"
+               "void glow g\n0\n0\n4 30 30 30 0\ng source up\n0\n0\n4 0 0 1 180\n");
+    const Finished run = run_program({"solve", folder / "front.rad", "-o", folder / "f.h5", "--error", "0.05"});
+    EXPECT_EQ(run.status, 4);
+    EXPECT_NE(run.err.find("warning: panes mirror light"), std::string::npos) << run.err;
+    for (const char* option : {"1024", "0"}) {
+        std::vector<std::string> words{"probe", folder / "f.h5", "--points", "-", "-o", "-"};
+        if (std::string(option) != "0") words.insert(words.end(), {"--reference", option});
+        const Finished probe = run_program(words, "x,y,z,nx,ny,nz\n0,5,1,0,1,0\n");
+        EXPECT_EQ(probe.status, 0) << probe.err;
+        EXPECT_NE(probe.err.find("onto 1 of 1 points"), std::string::npos) << probe.err;
+    }
+}
+
+TEST(ProgramSky, OlderGenskyIsAnOption) {
+    const TemporaryFolder folder;
+    write_text(folder / "s.rad",
+               "! gensky 12 9 14 -a 51 -o 0 -m 0 -u\nvoid plastic grey\n0\n0\n5 .2 .2 .2 0 0\n"
+               "grey polygon plate\n0\n0\n12 0 0 0 1 0 0 1 1 0 0 1 0\nskyfunc glow g\n0\n0\n4 1 1 1 0\n"
+               "g source up\n0\n0\n4 0 0 1 180\n");
+    const auto light = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"solve", folder / "s.rad", "-o", folder / "s.h5", "-q", "--error", "0.1"};
+        words.insert(words.end(), more.begin(), more.end());
+        EXPECT_EQ(run_program(words).status, 0);
+        const Finished probe =
+            run_program({"probe", folder / "s.h5", "--points", "-", "-o", "-"}, "x,y,z,nx,ny,nz\n0.5,0.5,1,0,0,1\n");
+        return std::stod(probe.out.substr(probe.out.find("0.5,0.5,1,0,0,1,") + 16));
+    };
+    const double today = light({}), older = light({"--older-gensky"});
+    EXPECT_GT(older, 1.01 * today);  // the sun of an uniform sky stands higher by a degree: 8.6 sin h + 0.123
+    EXPECT_LT(older, 1.1 * today);
+}
+
 TEST(ProgramSky, WhatIsWrongIsAUsageError) {
     const TemporaryFolder folder;
     const std::string scene = write_court(folder), out = folder / "s.h5";

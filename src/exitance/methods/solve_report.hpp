@@ -5,6 +5,7 @@
 #include "exitance/reconstruct/error/certificate.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/solve/global_light.hpp"
+#include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
 
@@ -20,7 +21,12 @@ void record_method(const Stage& stage, const GlobalLight& light, bool has_links,
 void record_certificate(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
                         SolveStatistics& statistics);
 
-/// The same in a line, for those who want to know what the error is made of; in per cent of the mean reflected light.
+/// Measures the light that panes mirror and that the solve leaves out (`mirrored_share`), as the figure
+/// `mirrored_light_share`. If it certainly exceeds the error requested, the solution gets a warning, which is shown,
+/// too, and is not converged. Nothing is recorded for scenes without mirroring panes or light.
+void record_mirrored_light(Solution& solution, const Stage& stage, const SolveOptions& options, Progress& progress);
+
+/// The parts of a certificate's error in one line, in per cent of the mean reflected light.
 std::string describe(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
                      const LocalPassReport& gathered);
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <limits>
 
 #include "exitance/cli/border_points.hpp"
@@ -7,7 +9,9 @@
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/reconstruct/error/path_reference.hpp"
+#include "exitance/reconstruct/mirrored_light.hpp"
 #include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
 namespace {
@@ -22,10 +26,22 @@ std::vector<ProbePoint> zip(const ProbePoints& probes) {
     return out;
 }
 
-Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeReader& reader,
-                         ProbeWriter& writer, BorderPoints& borders) {
+/// Warns if panes mirror light onto some of the points that makes up more than `limit` of the light there.
+void warn_of_mirrored_light(const Scene& scene, std::span<const ProbePoint> points, std::span<const Spectrum> light,
+                            double limit, std::uint64_t seed, Terminal& terminal) {
+    const MirroredAtPoints found = mirrored_at_points(scene, points, light, limit, seed);
+    if (found.above > 0)
+        terminal.progress().warn(
+            fmt::format("panes mirror light of the sky, the sun or lamps onto {} of {} points looked at, up to {:.3g}% "
+                        "of the light "
+                        "there, which is left out",
+                        found.above, found.points, 100 * found.largest));
+}
+
+Result<void> write_light(const ProbeArguments& arguments, const Scene& scene, const RadiosityFunction& light,
+                         ProbeReader& reader, ProbeWriter& writer, BorderPoints& borders, Terminal& terminal) {
     ProbePoints probes;
-    while (true) {
+    for (bool is_first = true;; is_first = false) {
         if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
         if (probes.size() == 0) return writer.commit();
         const std::vector<ProbePoint> points = zip(probes);
@@ -36,6 +52,10 @@ Result<void> write_light(const ProbeArguments& arguments, const RadiosityFunctio
             writer.add(points[i].x, points[i].n, values[i].irradiance,
                        values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt);
         }
+        if (!is_first || arguments.component != Component::total) continue;
+        std::vector<Spectrum> irradiance;
+        for (const Light& value : values) irradiance.push_back(value.irradiance);
+        warn_of_mirrored_light(scene, points, irradiance, default_error, arguments.seed, terminal);
     }
 }
 
@@ -48,6 +68,10 @@ Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene
     const std::vector<ProbePoint> points = zip(probes);
     const std::vector<ReferenceLight> values =
         reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
+    constexpr double exactness = 1e-3;  // of direct light through panes, which errors of paths are beside
+    std::vector<Spectrum> irradiance;
+    for (const ReferenceLight& value : values) irradiance.push_back(value.irradiance);
+    warn_of_mirrored_light(scene, points, irradiance, exactness, arguments.seed, terminal);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SurfaceId surface = values[i].surface;
         const Spectrum& E = values[i].irradiance;
@@ -92,7 +116,8 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     BorderPoints borders;
     const Result<void> written =
         by_paths ? write_reference(arguments, solution->scene, *reader, *writer, borders, terminal, stop)
-                 : write_light(arguments, RadiosityFunction(*solution), *reader, *writer, borders);
+                 : write_light(arguments, solution->scene, RadiosityFunction(*solution), *reader, *writer, borders,
+                               terminal);
     if (!written) return terminal.fail(written.error());
     borders.tell(terminal);
     return ExitCode::done;

@@ -6,6 +6,7 @@
 #include "exitance/methods/classical/classical_input.hpp"
 #include "exitance/methods/classical/vertex_averages.hpp"
 #include "exitance/methods/light/light_functions.hpp"
+#include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/solve/growth_watch.hpp"
@@ -255,6 +256,7 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     solution.interpolant = with_direct(solution.indirect, direct);
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // the balance asks them what escapes
     statistics.energy = energy_balance(solution, direct, stage);
+    if (!stop.requested()) record_mirrored_light(solution, stage, options, progress);
     statistics.seconds["reconstruct"] = watch.restart();
     statistics.seconds["total"] = whole.seconds() - snapshots.writing();
     statistics.peak_memory_bytes = peak_memory_bytes();

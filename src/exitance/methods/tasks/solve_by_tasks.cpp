@@ -9,6 +9,7 @@
 #include "exitance/core/trace.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/light/smoothing.hpp"
+#include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/energy.hpp"
 #include "exitance/solve/tasks/interaction_forecast.hpp"
 #include "exitance/solve/tasks/task_engine.hpp"
@@ -135,6 +136,7 @@ Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options,
     if (!statistics.converged && statistics.stopped_by.empty()) statistics.stopped_by = "iterations";
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // which tell what escapes
     statistics.energy = energy_balance(solution, stage);
+    if (!stop.requested()) record_mirrored_light(solution, stage, options, progress);
     if (task_trace()) task_trace()->add_graph(engine.take_graph());
     statistics.seconds["reconstruct"] = phase.restart();
     statistics.seconds["total"] = watch.seconds();

@@ -17,11 +17,11 @@ struct ReferenceLight {
 };
 
 /// Irradiance at points (at the places that a PlaceFinder finds for them) without any mesh: E(x) = E_dir(x), exact,
-/// plus the mean over paths of what reaches x after one reflection or more. At every vertex of a path the direct light
-/// is estimated by one shadow ray, to an emitter chosen by its unoccluded contribution, and by the path's next ray,
-/// weighted by the balance heuristic; paths end by Russian roulette with the reflectance as survival. `paths` is
-/// rounded up to a multiple of 16. Deterministic by `seed` and a point's place in `points`. Source: [Kajiya86],
-/// [Veach95]. O(points x paths).
+/// plus the mean over paths of what reaches x after one reflection or more. Light of emitters and skies that panes
+/// mirror is left out (mirrored_light.hpp). At every vertex of a path the direct light is estimated by one shadow ray,
+/// to an emitter chosen by its unoccluded contribution, and by the path's next ray, weighted by the balance heuristic;
+/// paths end by Russian roulette with the reflectance as survival. `paths` is rounded up to a multiple of 16.
+/// Deterministic by `seed` and a point's place in `points`. Source: [Kajiya86], [Veach95]. O(points x paths).
 std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const ProbePoint> points, std::size_t paths,
                                             std::uint64_t seed, Progress& progress, const StopRequest& stop);
 
