@@ -6,7 +6,11 @@
 // One thread, CPU seconds. First the whole solve, from scene to solution. Then the visible shares of pairs of elements
 // as its columns ask for them, timed in blocks, and after each block rtcOccluded16 on the same packets, made in
 // advance. A query is everything from two elements to the share that is visible. The answers of both are compared.
+#if EXITANCE_EMBREE_MAJOR == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include <array>
 #include <cmath>
@@ -30,6 +34,38 @@ double cpu_seconds() {
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
+
+#if EXITANCE_EMBREE_MAJOR == 3
+
+using QueryArguments = RTCIntersectContext;
+
+QueryArguments make_arguments() {
+    QueryArguments arguments;
+    rtcInitIntersectContext(&arguments);
+    arguments.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return arguments;
+}
+
+void trace_occluded(const int* valid, RTCScene scene, QueryArguments& arguments, RTCRay16& packet) {
+    rtcOccluded16(valid, scene, &arguments, &packet);
+}
+
+#else
+
+using QueryArguments = RTCOccludedArguments;
+
+QueryArguments make_arguments() {
+    QueryArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    return arguments;
+}
+
+void trace_occluded(const int* valid, RTCScene scene, QueryArguments& arguments, RTCRay16& packet) {
+    rtcOccluded16(valid, scene, &packet, &arguments);
+}
+
+#endif
 
 /// The same triangles in Embree's hands alone, in the coordinates of RayEnds.
 class RawScene {
@@ -59,8 +95,6 @@ class RawScene {
         rtcReleaseGeometry(geometry);
         rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
         rtcCommitScene(scene_);
-        rtcInitIntersectContext(&context_);
-        context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     }
     ~RawScene() {
         rtcReleaseScene(scene_);
@@ -80,13 +114,13 @@ class RawScene {
     }
 
     void trace(std::span<RTCRay16> packets) {
-        for (RTCRay16& packet : packets) rtcOccluded16(all_, scene_, &context_, &packet);
+        for (RTCRay16& packet : packets) trace_occluded(all_, scene_, arguments_, packet);
     }
 
   private:
     RTCDevice device_ = rtcNewDevice(nullptr);
     RTCScene scene_ = rtcNewScene(device_);
-    RTCIntersectContext context_;
+    QueryArguments arguments_ = make_arguments();
     alignas(64) int all_[16] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
 };
 

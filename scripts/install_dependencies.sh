@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
     g++ cmake ninja-build ccache                                             # to build
-    libembree-dev libtbb-dev libcgal-dev libeigen3-dev libhdf5-dev zlib1g-dev libpng-dev libopenexr-dev  # the library
+    libembree-dev libtbb-dev libcgal-dev libhdf5-dev zlib1g-dev libpng-dev libopenexr-dev  # the library
     libtinygltf-dev libjpeg-dev                                              # scenes as glTF, and their textures
     libfmt-dev libcli11-dev nlohmann-json3-dev                               # the program
     libcpp-httplib-dev                                                       # the viewer's server

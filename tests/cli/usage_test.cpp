@@ -57,7 +57,7 @@ TEST(ProgramUsage, VersionNamesTheLibraries) {
     const Finished version = run_program({"--version"});
     EXPECT_EQ(version.status, 0);
     EXPECT_EQ(version.out.find("exitance "), 0u);
-    for (const char* library : {"Embree 3.", "oneTBB 2", "CGAL 5", "HDF5 1."})
+    for (const char* library : {"Embree ", "oneTBB 2", "CGAL ", "HDF5 1."})
         EXPECT_NE(version.out.find(library), std::string::npos) << version.out;
 }
 

@@ -1,4 +1,5 @@
-# Installs BUILD into a fresh prefix, then configures, builds and runs a project that only knows that prefix.
+# Installs BUILD into a fresh prefix, then configures, builds and runs a project that only knows that prefix: a program that
+# links the static library, and one that links a shared object made of it.
 
 set(prefix ${BUILD}/tests/package/prefix)
 set(user_build ${BUILD}/tests/package/build)
@@ -13,3 +14,4 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${user_build} -G ${GENERATO
     -D CMAKE_CXX_COMPILER=${COMPILER})
 run(${CMAKE_COMMAND} --build ${user_build})
 run(${user_build}/user)
+run(${user_build}/host)

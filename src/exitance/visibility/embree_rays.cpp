@@ -1,8 +1,13 @@
+#if EXITANCE_EMBREE_MAJOR == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "exitance/core/check.hpp"
@@ -52,12 +57,46 @@ struct Face {
     RegionId region;
 };
 
+#if EXITANCE_EMBREE_MAJOR == 3
+
 RTCIntersectContext make_context() {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     return context;
 }
+
+/// Traces the rays whose entry of `valid` is -1 to their nearest hits.
+void trace_nearest(std::span<const int, width> valid, RTCScene scene, RTCRayHit16& packet) {
+    RTCIntersectContext context = make_context();
+    rtcIntersect16(valid.data(), scene, &context, &packet);
+}
+
+/// Sets the far end of each ray that is blocked to minus infinity; rays whose entry of `valid` is 0 are left out.
+void trace_occluded(std::span<const int, width> valid, RTCScene scene, RTCRay16& packet) {
+    RTCIntersectContext context = make_context();
+    rtcOccluded16(valid.data(), scene, &context, &packet);
+}
+
+#else
+
+/// Traces the rays whose entry of `valid` is -1 to their nearest hits.
+void trace_nearest(std::span<const int, width> valid, RTCScene scene, RTCRayHit16& packet) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid.data(), scene, &packet, &arguments);
+}
+
+/// Sets the far end of each ray that is blocked to minus infinity; rays whose entry of `valid` is 0 are left out.
+void trace_occluded(std::span<const int, width> valid, RTCScene scene, RTCRay16& packet) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcOccluded16(valid.data(), scene, &packet, &arguments);
+}
+
+#endif
 
 template <class Rays>
 void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& direction, float near, float far) {
@@ -237,8 +276,7 @@ struct RayTracer::Content {
             valid[i] = -1, any = true;
         }
         if (!any) return;
-        RTCIntersectContext context = make_context();
-        rtcIntersect16(valid.data(), rtc, &context, &onward);
+        trace_nearest(valid, rtc, onward);
         for (std::size_t i = 0; i < count; ++i) {
             if (valid[i] == 0) continue;
             read(onward, i, from[i], along[i], RegionId(), hits[i]);
@@ -259,8 +297,7 @@ struct RayTracer::Content {
             past = std::nextafter(past * (1 + 0x1p-20f), HUGE_VALF);
             set_ray(packet.ray, 0, local(origin + offset(own)), local_direction(direction), past, HUGE_VALF);
             packet.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
-            RTCIntersectContext context = make_context();
-            rtcIntersect16(valid.data(), rtc, &context, &packet);
+            trace_nearest(valid, rtc, packet);
             if (read(packet, 0, origin, direction, own, hit)) return;
             past = packet.ray.tfar[0];
         }
@@ -287,7 +324,6 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
     const auto side_of = [&](const Vec3& direction) {
         return !behind.is_none() && dot(direction, content_->scene->regions()[own].plane.n) < 0 ? behind : own;
     };
-    RTCIntersectContext context = make_context();
     alignas(64) RTCRayHit16 packet;
     alignas(64) std::array<int, width> valid;
     valid.fill(-1);
@@ -312,7 +348,7 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
             const Float3 at = content_->local(origin + content_->offset(side_of(directions[first + i])));
             packet.ray.org_x[i] = at.x, packet.ray.org_y[i] = at.y, packet.ray.org_z[i] = at.z;
         }
-        rtcIntersect16(valid.data(), content_->rtc, &context, &packet);
+        trace_nearest(valid, content_->rtc, packet);
         for (std::size_t i = 0; i < count; ++i) {
             const Point& origin = origins[shared ? 0 : first + i];
             const Vec3& direction = directions[first + i];
@@ -336,7 +372,6 @@ std::size_t RayTracer::nearest(std::span<const Vec3> directions, const Point& or
 /// ends(i): where ray i begins and ends, off its surfaces.
 template <class Ends>
 std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& ends) const {
-    RTCIntersectContext context = make_context();
     alignas(64) RTCRay16 packet;
     alignas(64) std::array<int, width> valid;
     for (std::size_t first = 0; first < blocked.size(); first += width) {
@@ -346,7 +381,7 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
             const auto [a, b] = ends(first + i);
             set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
         }
-        rtcOccluded16(valid.data(), rtc, &context, &packet);
+        trace_occluded(valid, rtc, packet);
         for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
     }
     return blocked.size();
@@ -380,7 +415,6 @@ RayEnds RayTracer::ray_ends(std::span<const Point> points, RegionId region) cons
 
 std::uint32_t RayTracer::occluded(const RayEnds& from, const RayEnds& to) const {
     static_assert(RayEnds::size == width);
-    RTCIntersectContext context = make_context();
     alignas(64) RTCRay16 packet;
     alignas(64) std::array<int, width> valid;
     for (std::size_t k = 0; k < width; ++k) {
@@ -391,7 +425,7 @@ std::uint32_t RayTracer::occluded(const RayEnds& from, const RayEnds& to) const 
         packet.mask[k] = 0xffffffffu, packet.id[k] = 0, packet.flags[k] = 0;
         valid[k] = -1;
     }
-    rtcOccluded16(valid.data(), content_->rtc, &context, &packet);
+    trace_occluded(valid, content_->rtc, packet);
     std::uint32_t blocked = 0;
     for (std::size_t k = 0; k < width; ++k) blocked |= static_cast<std::uint32_t>(packet.tfar[k] < 0) << k;
     return blocked;
