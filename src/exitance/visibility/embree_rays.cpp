@@ -13,6 +13,7 @@
 #include "exitance/core/check.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/geometry/triangulation.hpp"
+#include "exitance/scene/opposed_faces.hpp"
 #include "exitance/scene/other_side.hpp"
 #include "exitance/visibility/glass/ray_fates.hpp"
 #include "exitance/visibility/rays.hpp"
@@ -142,6 +143,7 @@ struct RayTracer::Content {
     std::vector<SurfaceId> surface_of;  ///< Of every triangle.
     Field<SurfaceId, Face> faces;
     Field<SurfaceId, SurfaceId> other_side;  ///< Of sheets; empty where there are none.
+    OpposedFaces opposed;                    ///< Of sheets whose two sides have different outlines.
     Glass glass;
 
     explicit Content(const Scene& s)
@@ -153,6 +155,7 @@ struct RayTracer::Content {
           rtc(rtcNewScene(device)),
           faces(s.surfaces().size()),
           other_side(other_sides_of_surfaces(s)),
+          opposed(s, other_side, lift_off),
           glass{RayFates(s.panes())} {
         Triangles all;
         auto& [corners, triangles] = all;
@@ -243,7 +246,16 @@ struct RayTracer::Content {
         // In the surface's plane the quotient means nothing; there what Embree found is as good as it gets.
         hit.distance = std::abs(distance - found) <= 1e-3 * found ? distance : found;
         hit.front = slope < 0;
-        return true;
+        return hit.front || !opposed.has(hit.surface) || turn_over(origin, direction, own, hit);
+    }
+
+    /// Where a back was met, and a face that looks towards the ray stands in its place, that one is met. False if it is
+    /// of the ray's own region, so that the ray has to go on from there.
+    bool turn_over(const Point& origin, const Vec3& direction, RegionId own, RayHit& hit) const {
+        const SurfaceId facing = opposed.facing(origin + hit.distance * direction, direction);
+        if (facing.is_none()) return true;
+        hit.surface = facing, hit.region = faces[facing].region, hit.front = true;
+        return hit.region != own || own.is_none();
     }
 
     bool is_mirrored(const RTCRayHit16& packet, std::size_t lane) const {

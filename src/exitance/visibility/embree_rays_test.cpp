@@ -164,5 +164,36 @@ TEST(RayTracer, MeetsTheSideOfASheetThatFacesTheRay) {
     }
 }
 
+/// The sides of a sheet as one parallelogram above and two triangles below it, turned about a skew axis, scaled and
+/// moved.
+Scene sheet_of_unlike_sides(double scale, const Vec3& shift) {
+    const Vec3 u = normalized(Vec3{2, 1, -0.5}), v = normalized(cross(Vec3{0.3, -0.2, 1}, u));
+    const auto at = [&](double a, double b) { return scale * (a * u + b * v) + shift; };
+    return test::make({{{at(0, 0), at(1, 0), at(1, 1), at(0, 1)}},
+                       {{at(0, 0), at(0, 1), at(1, 0)}},
+                       {{at(1, 0), at(0, 1), at(1, 1)}}});
+}
+
+TEST(RayTracer, MeetsTheSideThatFacesTheRayWhereTheSidesHaveDifferentOutlines) {
+    for (const auto& [scale, shift] : {std::pair{1.0, Vec3{}}, {1e-3, Vec3{}}, {1e3, Vec3{640, -720, 270}}}) {
+        const Scene scene = sheet_of_unlike_sides(scale, shift);
+        const RayTracer tracer(scene);
+        const Normal above = scene.surfaces()[SurfaceId(0)].normal;
+        const Vec3 u = scene.outline(SurfaceId(0))[1] - shift, v = scene.outline(SurfaceId(0))[3] - shift;
+        RandomStream random(1, Stream::visibility);
+        for (int i = 0; i < 200; ++i) {
+            const Point target = shift + random.uniform() * u + random.uniform() * v;
+            for (const double side : {2.0, -2.0}) {
+                const Vec3 d = -side * scale * above + (random.uniform() - 0.5) * u;
+                RayHit hit;
+                tracer.nearest(std::span(&d, 1), target - d, RegionId(), std::span(&hit, 1));
+                ASSERT_FALSE(hit.surface.is_none()) << scale;
+                EXPECT_TRUE(hit.front) << scale << ' ' << side;
+                EXPECT_EQ(dot(scene.surfaces()[hit.surface].normal, above) > 0, side > 0);
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace exitance
