@@ -261,6 +261,8 @@ async function check_stop(page) {
     await page.waitForFunction('document.body.dataset.first', null, {timeout: 120000});
     await page.click('#stop');
     await page.waitForFunction('document.body.dataset.ended', null, {timeout: 120000});
+    const said = await page.textContent('#phase');
+    check(/^stopped: /.test(said) && !/reached/.test(said), `the end of a stopped solve: ${said}`);
     await page.click('#save');
     await page.waitForFunction(() => /saved/.test(document.getElementById('phase').textContent));
     program.kill();
@@ -284,6 +286,9 @@ async function check_scene(page) {
     await page.waitForFunction('document.body.dataset.ended', null, {timeout: 120000});
     const snapshots = Number(await page.evaluate('document.body.dataset.snapshots'));
     check(snapshots >= 2, `a running solve showed its light ${snapshots} times`);
+    const said = await page.textContent('#phase');
+    check(/^reached: estimated error \d/.test(said), `the end of a solve: ${said}`);
+    if (process.env.KEEP) await page.screenshot({path: path.join(process.env.KEEP, 'solved.png')});
     await page.click('#save');
     await page.waitForFunction(() => /saved/.test(document.getElementById('phase').textContent));
     check(fs.existsSync(path.join(folder, 'saved.h5')), 'its light is saved');
@@ -297,6 +302,7 @@ async function check_scene(page) {
         args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']});
     const page = await browser.newPage({viewport: {width: size[0], height: size[1]}, bypassCSP: true});
     page.on('pageerror', error => check(false, 'page: ' + error));
+    page.on('console', message => { if (message.type() === 'error') check(false, `console: ${message.text()} (${message.location().url})`); });
     await check_solution(page);
     await check_sliders(page);
     if (scene) await check_layers(page);

@@ -47,6 +47,7 @@ function query(path: string, words: Record<string, string>, change: Change): str
 
 async function answer(path: string, method = 'GET'): Promise<Response> {
     const response = await fetch(path, {method});
+    if (response.status === 204) throw new Refused(204, `${path.split('?')[0]}: there is no light yet`);
     if (!response.ok) throw new Refused(response.status, `${path.split('?')[0]}: ${await response.text()}`);
     return response;
 }
@@ -67,7 +68,7 @@ export async function load_changes(): Promise<Changes> {
         const found = await (await answer('/groups')).json() as Partial<Changes>;
         return {groups: found.groups ?? [], materials: found.materials ?? []};
     } catch (error) {
-        if (error instanceof Refused && error.status === 404) return {groups: [], materials: []};
+        if (error instanceof Refused && [204, 404].includes(error.status)) return {groups: [], materials: []};
         throw error;
     }
 }

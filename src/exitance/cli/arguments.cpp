@@ -49,9 +49,10 @@ std::vector<std::string> with_flag_values(const std::vector<std::string>& words)
 }
 
 template <class Arguments>
-Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words) {
+Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words, const std::string& at_limit) {
     Arguments arguments;
     declare(app, arguments);
+    declare_limits(app, arguments.limits, at_limit);
     declare_common(app, arguments);
     app.allow_extras();
     try {
@@ -70,14 +71,22 @@ Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words) 
 
 struct Verb {
     std::string name, does, example;
-    Result<Parsed> (*parse)(CLI::App&, const std::vector<std::string>&);
+    Result<Parsed> (*read)(CLI::App&, const std::vector<std::string>&, const std::string& at_limit);
+    /// What happens when a limit of time or memory is passed.
+    std::string at_limit = "the run ends without a result, with status 5";
+
+    Result<Parsed> parse(CLI::App& app, const std::vector<std::string>& words) const {
+        return read(app, words, at_limit);
+    }
 };
 
 const std::vector<Verb>& verbs() {
     static const std::vector<Verb> all{
-        {"solve", "Computes the light in a scene.", "exitance solve room.obj -o room.h5", parse_verb<SolveArguments>},
+        {"solve", "Computes the light in a scene.", "exitance solve room.obj -o room.h5", parse_verb<SolveArguments>,
+         "the light found so far is written, with status 4"},
         {"probe", "Evaluates irradiance and radiosity at points.",
-         "exitance probe room.h5 --points desks.csv -o light.csv", parse_verb<ProbeArguments>},
+         "exitance probe room.h5 --points desks.csv -o light.csv", parse_verb<ProbeArguments>,
+         "the rows finished so far are written, with status 4"},
         {"compare", "Tells how far a solution is from a reference.", "exitance compare room.h5 reference.csv",
          parse_verb<CompareArguments>},
         {"stats", "Tells what a solution took: counts, times, memory, error, energy balance.", "exitance stats room.h5",
@@ -86,12 +95,14 @@ const std::vector<Verb>& verbs() {
          "exitance mix room.h5 lamp=0.5 --reflectance wall=0.8,0.8,0.7 -o dimmed.h5", parse_verb<MixArguments>},
         {"export", "Writes a solution for other programs.", "exitance export room.h5 -o room.glb",
          parse_verb<ExportArguments>},
-        {"render", "Makes a picture of a solution.", "exitance render room.h5 -o room.png",
-         parse_verb<RenderArguments>},
+        {"render", "Makes a picture of a solution.", "exitance render room.h5 -o room.png", parse_verb<RenderArguments>,
+         "the whole picture is written with fewer samples, with status 4"},
         {"bake", "Writes light maps: pictures of the light on every surface, and a model that shows them.",
-         "exitance bake room.h5 -o lightmaps", parse_verb<BakeArguments>},
+         "exitance bake room.h5 -o lightmaps", parse_verb<BakeArguments>,
+         "the maps of finished light groups are written, with status 4 (5 before all light is done)"},
         {"report", "Writes a page with pictures, tables, measuring planes, energy balance and error.",
-         "exitance report room.h5 -o room.html", parse_verb<ReportArguments>},
+         "exitance report room.h5 -o room.html", parse_verb<ReportArguments>,
+         "the page is written with the parts that are finished, with status 4"},
         {"daylight", "Writes the daylight of a year at sensors: illuminances, autonomy, daylight factors.",
          "exitance daylight room.h5 --epw city.epw --points desks.pts -o year", parse_verb<DaylightArguments>},
         {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
@@ -101,11 +112,12 @@ const std::vector<Verb>& verbs() {
         {"luminaire", "Tells the facts of a photometric file; draws its polar diagram and its opening.",
          "exitance luminaire downlight.ies -o downlight.svg", parse_verb<LuminaireArguments>},
         {"experiment", "Runs a study of methods: tables, plots, and a page of conclusions.",
-         "exitance experiment blocker --quick -o blocker", parse_verb<ExperimentArguments>},
+         "exitance experiment blocker --quick -o blocker", parse_verb<ExperimentArguments>,
+         "the page is written with the runs that are finished, with status 4"},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
         {"view", "Shows a solution in a browser, or a scene while it is solved.", "exitance view room.h5",
-         parse_verb<ViewArguments>},
+         parse_verb<ViewArguments>, "solving stops, and the light found so far stays on show"},
     };
     return all;
 }

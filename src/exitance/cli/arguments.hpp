@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exitance/cli/exit_code.hpp"
+#include "exitance/cli/run_limits.hpp"
 #include "exitance/core/result.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
@@ -26,6 +27,7 @@ enum class ProgressStyle { automatic, bar, plain, json, none };
 
 /// What every verb understands.
 struct CommonArguments {
+    LimitArguments limits;
     bool json = false;   ///< Facts as JSON on stdout.
     bool quiet = false;  ///< Nothing but errors on stderr.
     bool verbose = false;
@@ -43,7 +45,6 @@ struct SolveArguments : CommonArguments {
     std::string output;
     SolveOptions options;
     ClassicalOptions classical;
-    std::optional<double> time_limit;        ///< Of the whole run, seconds.
     std::string importance;                  ///< Points that light is looked at; empty: everywhere.
     std::string trace;                       ///< Where to write what parallel loops did; empty: nowhere.
     std::optional<double> checkpoint_every;  ///< Seconds.
@@ -180,7 +181,6 @@ struct ViewFactorArguments : CommonArguments {
     std::size_t check = 100;  ///< Entries that rays check.
     std::size_t check_rays = 1u << 14;
     std::uint64_t seed = 1;
-    std::optional<double> time_limit;  ///< Of the whole run, seconds.
     int threads = 0;
 };
 

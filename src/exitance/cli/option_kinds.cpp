@@ -62,6 +62,16 @@ void declare_common(CLI::App& app, CommonArguments& arguments) {
     app.add_flag("-v,--verbose", arguments.verbose, "Say more on the error stream");
 }
 
+void declare_limits(CLI::App& app, LimitArguments& limits, const std::string& at_limit) {
+    add_positive(app, "--time-limit", limits.time_limit, "SECONDS", "Wall time of the whole run; then " + at_limit)
+        ->group("Limits");
+    app.add_option_function<std::string>(
+           "--memory-limit", [&limits](const std::string& w) { limits.memory_limit = read_bytes("--memory-limit", w); },
+           "Resident memory of the process, such as 4G; beyond it the same")
+        ->type_name("SIZE")
+        ->group("Limits");
+}
+
 void declare_json(CLI::App& app, CommonArguments& arguments) {
     app.add_flag("--json", arguments.json, "Facts as JSON on standard output");
 }

@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <limits>
 #include <utility>
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/processes.hpp"
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/solve/classical_solve.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/solve/settle_options.hpp"
@@ -30,16 +28,10 @@
 namespace exitance {
 namespace {
 
-StopRequest::Clock::time_point after(double seconds) {
-    using Seconds = std::chrono::duration<double>;
-    const Seconds limit(std::min(seconds, 1e9));  // what a clock can hold
-    return StopRequest::Clock::now() + std::chrono::duration_cast<StopRequest::Clock::duration>(limit);
-}
-
-/// What is left of a limit for the solve itself: what is read once has to be written, too, together with its light.
-double time_to_solve(double limit, double elapsed, double read_seconds) {
+/// Seconds that are left for the solve itself: the scene that was read has to be written, too, together with its light.
+double time_to_solve(const SolveArguments& arguments, const RunLimits& limits, double read_seconds) {
     constexpr double written_against_read = 5;
-    return std::max(0.5 * limit, limit - written_against_read * read_seconds) - elapsed;
+    return limits.seconds_left() - std::min(0.5 * *arguments.limits.time_limit, written_against_read * read_seconds);
 }
 
 /// Whoever reads the solution later learns what was repaired.
@@ -143,8 +135,8 @@ void close_checkpoint(const std::optional<CheckpointFile>& file, bool stopped, T
     if (!stopped) file->remove();
 }
 
-ExitCode code_of(const SolveStatistics& statistics, const SignalGuard& signals) {
-    if (const std::optional<ExitCode> signal = signals.received()) return *signal;
+ExitCode code_of(const SolveStatistics& statistics, const RunLimits& limits) {
+    if (const std::optional<ExitCode> signal = limits.signal()) return *signal;
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
 }
 
@@ -161,9 +153,7 @@ std::optional<Error> no_estimate(const SolveArguments& arguments, const SolveSta
 }
 
 /// The scene as it is solved; programs that make parts of it end by the time limit.
-LoadedScene read_scene(SolveArguments& arguments, const Stopwatch& run_time) {
-    StopRequest stop;
-    if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit - run_time.seconds()));
+LoadedScene read_scene(SolveArguments& arguments, const StopRequest& stop) {
     LoadOptions& load = arguments.scene.load;
     load.stop = &stop;
     load.photometric = arguments.photometric;
@@ -233,7 +223,9 @@ void tell(const SolveArguments& arguments, const Solution& solution, Terminal& t
 /// exitance solve SCENE -o SOLUTION
 ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
+    RunLimits& limits = terminal.limits();
     SolveArguments arguments = given;
+    arguments.options.memory_limit_bytes = arguments.limits.memory_limit;
     if (const Result<void> settled = settle_options(arguments); !settled) return terminal.fail(settled.error());
     if (arguments.scene.load.sky)
         for (const std::string& warning : arguments.scene.load.sky->warnings) terminal.progress().warn(warning);
@@ -242,7 +234,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     Tracing tracing(arguments.trace, terminal.progress());
 
     const Stopwatch reading;
-    LoadedScene checked = read_scene(arguments, run_time);
+    LoadedScene checked = read_scene(arguments, limits.stop());
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
     if (const Result<void> few = check_light_groups(arguments, *checked.scene); !few) return terminal.fail(few.error());
@@ -252,18 +244,18 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (arguments.photometric) checked.scene->declare_photometric(*arguments.photometric);
 
     // From here on there is something to save.
-    StopRequest asked, agreed;
-    const SignalGuard signals(asked);
+    StopRequest& asked = limits.keep();
+    StopRequest agreed;
     const StopTogether together(asked, agreed);
     const StopRequest& stop = processes() > 1 ? agreed : asked;
-    if (arguments.time_limit)
-        asked.set_deadline(after(time_to_solve(*arguments.time_limit, run_time.seconds(), read_seconds)));
+    if (arguments.limits.time_limit)
+        asked.set_deadline(seconds_from_now(time_to_solve(arguments, limits, read_seconds)));
     std::optional<CheckpointFile> checkpoint;
     if (const Result<void> opened = open_checkpoint(arguments, *checked.scene, terminal, checkpoint); !opened)
         return terminal.fail(opened.error());
     Result<Solution> solution = find_light(arguments, std::move(*checked.scene), checkpoint, tracing.progress(), stop);
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
-    const std::optional<ExitCode> signal = signal_of_any(signals.received());
+    const std::optional<ExitCode> signal = signal_of_any(limits.signal());
     if (!solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
@@ -278,15 +270,15 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!groups) return terminal.fail(groups.error());
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);
     SolveStatistics& statistics = solution->statistics;
-    // The processes have agreed on a stop, which the first of them knows the reason of.
-    if (processes() > 1 && statistics.stopped_by == "interrupt" && !signal) statistics.stopped_by = "time limit";
+    // The solver sees a request to stop, of which the first process knows the reason.
+    if (statistics.stopped_by == "interrupt" && !signal) statistics.stopped_by = limits.reason();
     if (const Result<void> saved = save(arguments, *solution, *groups, tracing, stop, run_time); !saved)
         return terminal.fail(saved.error());
     terminal.progress().finish();
     close_checkpoint(checkpoint, stopped, terminal);
     if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
     tell(arguments, *solution, terminal);
-    return signal ? *signal : as_first(code_of(statistics, signals));
+    return signal ? *signal : as_first(code_of(statistics, limits));
 }
 
 }  // namespace exitance

@@ -93,15 +93,8 @@ void declare_classical(CLI::App& app, SolveArguments& arguments) {
     }
 }
 
-void declare_limits(CLI::App& app, SolveArguments& arguments) {
-    SolveOptions& o = arguments.options;
-    add_positive(app, "--time-limit", arguments.time_limit, "SECONDS", "Stop then and write what there is")
-        ->group("Limits");
-    app.add_option_function<std::string>(
-           "--memory-limit", [&o](const std::string& w) { o.memory_limit_bytes = read_bytes("--memory-limit", w); },
-           "Such as 4G")
-        ->type_name("SIZE")
-        ->group("Limits");
+/// Options by which a long solve is planned, interrupted and resumed.
+void declare_checkpoints(CLI::App& app, SolveArguments& arguments) {
     add_positive(app, "--checkpoint-every", arguments.checkpoint_every, "SECONDS",
                  "Keep the state in FILE.checkpoint beside the output")
         ->group("Limits");
@@ -137,7 +130,7 @@ void declare(CLI::App& app, SolveArguments& arguments) {
     declare_method(app, arguments);
     declare_classical(app, arguments);
     declare_discontinuity(app, o);
-    declare_limits(app, arguments);
+    declare_checkpoints(app, arguments);
     declare_json(app, arguments);
     declare_work(app, arguments, o.threads);
     add_choice(app, "--quantity", quantity_kinds, arguments.photometric,

@@ -19,7 +19,8 @@ std::string place(const Finding& finding) {
 
 Terminal::Terminal(const CommonArguments& arguments)
     : quiet_(arguments.quiet || !is_first_process()),
-      progress_(is_first_process() ? resolve(arguments.progress) : ProgressStyle::none, quiet_, arguments.verbose) {}
+      progress_(is_first_process() ? resolve(arguments.progress) : ProgressStyle::none, quiet_, arguments.verbose),
+      limits_(arguments.limits) {}
 
 void Terminal::print(std::string_view text) {
     progress_.clear();
@@ -37,6 +38,11 @@ ExitCode Terminal::fail(const Error& error) {
     fmt::print(stderr, "error: {}{}{}\n", error.where, error.where.empty() ? "" : ": ", error.message);
     if (!error.hint.empty()) fmt::print(stderr, "hint: {}\n", error.hint);
     return exit_code(error.code);
+}
+
+ExitCode Terminal::fail_stopped(const std::string& message) {
+    if (const std::optional<ExitCode> signal = limits_.signal()) return *signal;
+    return fail(limits_.error(message));
 }
 
 void Terminal::show(const std::vector<Finding>& findings) {

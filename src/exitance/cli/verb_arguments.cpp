@@ -171,7 +171,6 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     add_count(app, "--check", arguments.check, 0, "Entries drawn by lot that rays check; default 100");
     add_count(app, "--check-rays", arguments.check_rays, 64, "Rays an entry so checked; default 16384");
     add_count(app, "--seed", arguments.seed, 0, "Of the lot and of the rays; default 1");
-    add_positive(app, "--time-limit", arguments.time_limit, "SECONDS", "End then, with nothing written");
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }

@@ -9,9 +9,13 @@ namespace exitance {
 namespace {
 
 constexpr unsigned default_visibility_samples = 16;
-constexpr std::size_t column_memory = std::size_t{1} << 30;  ///< Bytes of columns that are kept for later shots.
 
 }  // namespace
+
+std::size_t column_memory_bytes(const SolveOptions& options) {
+    constexpr std::size_t most = std::size_t{1} << 30;
+    return options.memory_limit_bytes ? std::min(most, *options.memory_limit_bytes / 4) : most;
+}
 
 ShootingSetup::ShootingSetup(const MethodInput& input, const DirectProjection& first)
     : tree(first.tree),
@@ -46,7 +50,7 @@ std::span<const float> ShootingSetup::column(std::size_t patch) {
     std::vector<float>& kept = columns_[patch];
     if (kept.size() == numbering.leaves.size()) return kept;
     const std::size_t bytes = 4 * numbering.leaves.size();
-    std::vector<float>& out = kept_bytes_ + bytes <= column_memory ? kept : fresh_;
+    std::vector<float>& out = kept_bytes_ + bytes <= column_memory_bytes(input_.options) ? kept : fresh_;
     if (&out == &kept) kept_bytes_ += bytes;
     out.resize(numbering.leaves.size());
     transfer_.column(numbering.leaves, patches[patch], out);

@@ -7,6 +7,9 @@
 
 namespace exitance {
 
+/// Bytes of columns that shooting keeps for later shots: a quarter of the memory limit, at most 1 GiB.
+std::size_t column_memory_bytes(const SolveOptions& options);
+
 /// What the shooting methods share: elements in patches, columns of form factors that are kept while they fit, and the
 /// light that is there before the first shot.
 class ShootingSetup {

@@ -25,7 +25,7 @@ void part_times(const PhaseTimes& phases, std::map<std::string, double>& seconds
 }  // namespace
 
 Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
-                             CheckpointStore* checkpoints) {
+                             CheckpointStore* checkpoints, const ShowLight& show) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
     if (const Result<void> passes = check_diffusing_panes(scene, options); !passes) return passes.error();
@@ -34,7 +34,7 @@ Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress&
     if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);
     const Stopwatch watch;
     PhaseTimes phases(progress);
-    Result<Solution> solution = Solver(std::move(scene), options, phases, stop, checkpoints).run();
+    Result<Solution> solution = Solver(std::move(scene), options, phases, stop, checkpoints, show).run();
     if (!solution) return solution;
     phases.close();
     part_times(phases, solution->statistics.seconds);

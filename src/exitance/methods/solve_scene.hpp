@@ -1,10 +1,15 @@
 #pragma once
 
+#include <functional>
+
 #include "exitance/core/checkpoint.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
+
+/// Receives the light that a solve has found so far, with its estimate; it is not converged.
+using ShowLight = std::function<void(Solution)>;
 
 /// The whole job: scene to solution, which takes the scene with it.
 ///
@@ -17,7 +22,11 @@ namespace exitance {
 /// With a store for checkpoints, the state is kept from time to time: between the steps of an attempt and between
 /// slices of the local pass. A solve that goes on from there gives the same bits, statistics aside, as one that never
 /// stopped.
+///
+/// `show` is called after every attempt but the last, which is returned. The first attempt then aims at a relative
+/// error of 0.32, and each further one, which goes on from what there is, at 0.4 times what was reached, down to the
+/// error requested. Not with checkpoints.
 Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
-                             CheckpointStore* checkpoints = nullptr);
+                             CheckpointStore* checkpoints = nullptr, const ShowLight& show = {});
 
 }  // namespace exitance

@@ -86,7 +86,7 @@ void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress
         std::vector<ProbePoint> points;
         for (const std::size_t i : part)
             for (const Normal& n : normals) points.push_back({places[i], n});
-        const std::vector<Light> found = light.at(points);
+        const std::vector<Light> found = light.at_until(stop, points);
         for (std::size_t k = 0; k < found.size(); ++k)
             grid.irradiance[part[k / normals.size()]] +=
                 normals.size() > 1 ? found[k].irradiance / static_cast<double>(normals.size()) : found[k].irradiance;

@@ -7,6 +7,7 @@ namespace exitance {
 namespace {
 
 constexpr unsigned free_space_rays = 4096;
+constexpr std::size_t points_a_task = 32;
 
 Light light_on(const Material& material, const Spectrum& irradiance) {
     return {irradiance, material.exitance + material.reflectance * irradiance, true};
@@ -54,28 +55,53 @@ Spectrum RadiosityFunction::irradiance_on(RegionId region, const Point& x, Compo
 
 std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Component component) const {
     std::vector<Light> out(points.size());
-    parallel_ranges(points.size(), 32, [&](std::size_t begin, std::size_t end) {
+    evaluate(points, 0, component, out);
+    return out;
+}
+
+std::vector<Light> RadiosityFunction::at_until(const StopRequest& stop, std::span<const ProbePoint> points,
+                                               Component component) const {
+    constexpr double step_seconds = 0.5;
+    const std::size_t least = points_a_task * static_cast<std::size_t>(threads());
+    std::vector<Light> out;
+    for (std::size_t step = least; out.size() < points.size() && !stop.requested();) {
+        const Stopwatch watch;
+        const std::size_t first = out.size();
+        out.resize(std::min(points.size(), first + step));
+        evaluate(points, first, component, std::span(out).subspan(first));
+        if (2 * watch.seconds() < step_seconds)
+            step *= 2;
+        else if (watch.seconds() > 2 * step_seconds)
+            step = std::max(least, step / 2);
+    }
+    return out;
+}
+
+void RadiosityFunction::evaluate(std::span<const ProbePoint> points, std::size_t first, Component component,
+                                 std::span<Light> results) const {
+    parallel_ranges(results.size(), points_a_task, [&](std::size_t begin, std::size_t end) {
         ClusteredLight::Workspace workspace;
         GatherWorkspace gathering;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = first + k;
+            Light& out = results[k];
             const Normal& n = points[i].n;
             const auto& [x, surface, region, is_between_sides] = places_.find(points[i].x, n);
             if (!surface.is_none()) {
                 const bool is_covered = stage_->occluders.is_covered(x, n, region);
-                out[i] = light_on(solution_.scene.material(surface),
-                                  is_covered ? Spectrum() : irradiance_on(region, x, component, workspace));
-                out[i].is_between_sides = is_between_sides;
+                out = light_on(solution_.scene.material(surface),
+                               is_covered ? Spectrum() : irradiance_on(region, x, component, workspace));
+                out.is_between_sides = is_between_sides;
                 continue;
             }
-            out[i].is_between_sides = is_between_sides;
+            out.is_between_sides = is_between_sides;
             if (component != Component::indirect)
-                out[i].irradiance += stage_->clustered.at(x, n, region, accuracy_, workspace).irradiance;
+                out.irradiance += stage_->clustered.at(x, n, region, accuracy_, workspace).irradiance;
             const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), i);
             if (component != Component::direct)
-                out[i].irradiance += gathered({x, n}, RegionId(), free_space_rays, key, gathering);
+                out.irradiance += gathered({x, n}, RegionId(), free_space_rays, key, gathering);
         }
     });
-    return out;
 }
 
 Spectrum RadiosityFunction::interpolated(RegionId region, const Point& x) const {

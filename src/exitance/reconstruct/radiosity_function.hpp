@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 
+#include "exitance/core/progress.hpp"
 #include "exitance/direct/clustered_light.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/mesh/growing_cells/cell_function.hpp"
@@ -44,6 +45,10 @@ class RadiosityFunction {
     /// the direct light and by rays that read the solution where they hit. About 5 us a point and visible emitter.
     std::vector<Light> at(std::span<const ProbePoint> points, Component component = Component::total) const;
 
+    /// The same values, in steps of about half a second; after a stop the result ends with the last finished step.
+    std::vector<Light> at_until(const StopRequest& stop, std::span<const ProbePoint> points,
+                                Component component = Component::total) const;
+
     /// The same from the elements that `export` writes, without exact direct light; zero off the surfaces.
     std::vector<Light> interpolant_at(std::span<const ProbePoint> points) const;
 
@@ -67,6 +72,9 @@ class RadiosityFunction {
     const Stage& stage() const { return *stage_; }
 
   private:
+    /// Light at a part of `points`, whose places among them name their random numbers.
+    void evaluate(std::span<const ProbePoint> points, std::size_t first, Component component,
+                  std::span<Light> out) const;
     Spectrum interpolated(RegionId region, const Point& x) const;
     Spectrum irradiance_on(RegionId region, const Point& x, Component component,
                            ClusteredLight::Workspace& workspace) const;

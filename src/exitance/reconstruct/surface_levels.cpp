@@ -73,7 +73,8 @@ std::vector<SurfacePoints> measure_surfaces(const RadiosityFunction& light, std:
             const RegionId region = scene.surfaces()[faces[face_of[i]]].region;
             open[i] = is_in_open(light.stage(), points[i].x, points[i].n, region);
         });
-        const std::vector<Light> found = light.at(points);
+        const std::vector<Light> found = light.at_until(stop, points);
+        if (found.size() < points.size()) break;
         for (std::size_t i = 0; i < points.size(); ++i)
             if (open[i] && found[i].on_surface) out[face_of[i]].light.push_back(found[i]);
     }

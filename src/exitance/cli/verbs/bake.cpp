@@ -11,12 +11,14 @@
 namespace exitance {
 namespace {
 
-/// The names of the light groups of a solution, each of which has its own maps from now on.
+/// Bakes and writes maps of every light group by itself. Returns the names of the groups that were finished before a
+/// stop.
 Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, const Solution& whole,
-                                             const LightGroups& groups, const BakeOptions& options,
-                                             Progress& progress) {
+                                             const LightGroups& groups, const BakeOptions& options, Progress& progress,
+                                             const StopRequest& stop) {
     std::vector<std::string> names;
     for (const LightGroup& group : groups.groups) {
+        if (stop.requested()) break;
         Solution solution = whole;
         LightGroups dimmed = groups;
         LightChange change;
@@ -24,8 +26,9 @@ Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, con
             change.dim.emplace_back(other.emitters.name, &other == &group ? 1 : 0);
         if (const Result<void> changed = change_light(solution, dimmed, change); !changed) return changed.error();
         progress.phase("group " + group.emitters.name);
-        const Result<LightMaps> maps = bake_light_maps(RadiosityFunction(solution), options, progress, StopRequest());
+        const Result<LightMaps> maps = bake_light_maps(RadiosityFunction(solution), options, progress, stop);
         if (!maps) return maps.error();
+        if (stop.requested()) break;
         const Result<void> written =
             write_group_light_maps(solution.scene, *maps, names.size(), arguments.format, arguments.output);
         if (!written) return written.error();
@@ -38,7 +41,6 @@ Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, con
 
 /// exitance bake SOLUTION -o FOLDER
 ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
-    const StopRequest stop;  // signals end the program at once: files are whole, and lightmaps.json is the last
     set_threads(arguments.threads);
     LightGroups groups;
     const Result<Solution> solution =
@@ -49,11 +51,14 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     const Stopwatch watch;
     BakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
+    RunLimits& limits = terminal.limits();
+    const StopRequest& stop = limits.keep();
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     if (!maps) return terminal.fail(maps.error());
+    if (stop.requested()) return terminal.fail_stopped("the light maps are not finished");
     options.density = maps->density;  // all groups have the same charts
     const Result<std::vector<std::string>> names =
-        bake_groups(arguments, *solution, groups, options, terminal.progress());
+        bake_groups(arguments, *solution, groups, options, terminal.progress(), stop);
     terminal.progress().finish();
     if (!names) return terminal.fail(names.error());
     LightMapFormat format = arguments.format;
@@ -69,7 +74,10 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     terminal.note(fmt::format("{} texels on surfaces at {} per metre, in {} {} ({}); {:.1f} s", maps->texels,
                               maps->density, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps", sizes,
                               watch.seconds()));
-    return ExitCode::done;
+    if (names->size() == groups.groups.size()) return ExitCode::done;
+    terminal.note(fmt::format("stopped by the {}: {} of {} light groups have maps of their own", limits.reason(),
+                              names->size(), groups.groups.size()));
+    return limits.stopped_code();
 }
 
 }  // namespace exitance

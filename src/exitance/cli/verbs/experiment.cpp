@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "exitance/cli/nearest.hpp"
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
@@ -64,19 +63,23 @@ ExitCode run(const ExperimentArguments& arguments, Terminal& terminal) {
     if (arguments.output.empty())
         return terminal.fail({ErrorCode::usage, "is missing", "-o", "exitance experiment blocker -o blocker"});
     set_threads(arguments.threads);
-    StopRequest stop;
-    const SignalGuard signals(stop);
+    RunLimits& limits = terminal.limits();
+    const StopRequest& stop = limits.keep();
     std::error_code failed;
     const std::string program = std::filesystem::read_symlink("/proc/self/exe", failed).string();
     const Result<StudyReport> report =
         conduct_study(*study, {arguments.output, program, arguments.quick, arguments.methods, arguments.threads},
                       terminal.progress(), stop);
     terminal.progress().finish();
-    if (!report && signals.received()) return *signals.received();
+    if (!report && limits.signal()) return *limits.signal();
     if (!report) return terminal.fail(report.error());
     for (const std::string& warning : report->warnings) terminal.note("warning: " + warning);
     if (!arguments.quiet) terminal.print(as_text(*report));
-    return signals.received().value_or(ExitCode::done);
+    if (limits.signal()) return *limits.signal();
+    if (!stop.requested()) return ExitCode::done;
+    terminal.note(
+        fmt::format("stopped by the {}: the same command goes on from the runs that are finished", limits.reason()));
+    return ExitCode::demand_not_reached;
 }
 
 }  // namespace exitance

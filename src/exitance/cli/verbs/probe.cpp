@@ -38,20 +38,31 @@ void warn_of_mirrored_light(const Scene& scene, std::span<const ProbePoint> poin
                         found.above, found.points, 100 * found.largest));
 }
 
-Result<void> write_light(const ProbeArguments& arguments, const Scene& scene, const RadiosityFunction& light,
-                         ProbeReader& reader, ProbeWriter& writer, BorderPoints& borders, Terminal& terminal) {
+/// What was written before the end of the points or a stop.
+struct WrittenRows {
+    std::size_t count = 0;
+    bool are_all = false;
+};
+
+Result<WrittenRows> write_light(const ProbeArguments& arguments, const Scene& scene, const RadiosityFunction& light,
+                                ProbeReader& reader, ProbeWriter& writer, BorderPoints& borders, Terminal& terminal,
+                                const StopRequest& stop) {
     ProbePoints probes;
+    WrittenRows rows;
     for (bool is_first = true;; is_first = false) {
         if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
-        if (probes.size() == 0) return writer.commit();
+        rows.are_all = probes.size() == 0;
+        if (rows.are_all || stop.requested()) return rows;
         const std::vector<ProbePoint> points = zip(probes);
         const std::vector<Light> values =
-            arguments.interpolant ? light.interpolant_at(points) : light.at(points, arguments.component);
-        for (std::size_t i = 0; i < points.size(); ++i) {
+            arguments.interpolant ? light.interpolant_at(points) : light.at_until(stop, points, arguments.component);
+        for (std::size_t i = 0; i < values.size(); ++i) {
             borders.add(values[i].is_between_sides);
             writer.add(points[i].x, points[i].n, values[i].irradiance,
                        values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt);
         }
+        rows.count += values.size();
+        if (values.size() < points.size()) return rows;
         if (!is_first || arguments.component != Component::total) continue;
         std::vector<Spectrum> irradiance;
         for (const Light& value : values) irradiance.push_back(value.irradiance);
@@ -60,8 +71,9 @@ Result<void> write_light(const ProbeArguments& arguments, const Scene& scene, co
 }
 
 /// Paths in place of the solution. All points together, since a point's random numbers go by its place.
-Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeReader& reader,
-                             ProbeWriter& writer, BorderPoints& borders, Terminal& terminal, const StopRequest& stop) {
+Result<WrittenRows> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeReader& reader,
+                                    ProbeWriter& writer, BorderPoints& borders, Terminal& terminal,
+                                    const StopRequest& stop) {
     ProbePoints probes;
     if (const Result<void> read = reader.next(probes, std::numeric_limits<std::size_t>::max()); !read)
         return read.error();
@@ -71,8 +83,9 @@ Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene
     constexpr double exactness = 1e-3;  // of direct light through panes, which errors of paths are beside
     std::vector<Spectrum> irradiance;
     for (const ReferenceLight& value : values) irradiance.push_back(value.irradiance);
-    warn_of_mirrored_light(scene, points, irradiance, exactness, arguments.seed, terminal);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    warn_of_mirrored_light(scene, std::span(points).first(values.size()), irradiance, exactness, arguments.seed,
+                           terminal);
+    for (std::size_t i = 0; i < values.size(); ++i) {
         const SurfaceId surface = values[i].surface;
         const Spectrum& E = values[i].irradiance;
         borders.add(values[i].is_between_sides);
@@ -80,7 +93,7 @@ Result<void> write_reference(const ProbeArguments& arguments, const Scene& scene
         if (!surface.is_none()) B = scene.material(surface).exitance + scene.material(surface).reflectance * E;
         writer.add(points[i].x, points[i].n, E, B, values[i].standard_error);
     }
-    return writer.commit();
+    return WrittenRows{values.size(), values.size() == points.size()};
 }
 
 /// Options that would be read by nothing.
@@ -100,7 +113,6 @@ std::optional<Error> find_misuse(const ProbeArguments& a) {
 /// exitance probe SOLUTION --points POINTS -o LIGHT
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
-    const StopRequest stop;  // signals end the program at once
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
@@ -113,14 +125,23 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
         arguments.output, {.standard_errors = by_paths, .unit = told ? std::optional(unit) : std::nullopt});
     if (!writer) return terminal.fail(writer.error());
 
+    RunLimits& limits = terminal.limits();
+    std::optional<RadiosityFunction> light;
+    if (!by_paths) light.emplace(*solution);
+    const StopRequest& stop = limits.keep();
     BorderPoints borders;
-    const Result<void> written =
-        by_paths ? write_reference(arguments, solution->scene, *reader, *writer, borders, terminal, stop)
-                 : write_light(arguments, solution->scene, RadiosityFunction(*solution), *reader, *writer, borders,
-                               terminal);
-    if (!written) return terminal.fail(written.error());
+    const Scene& scene = solution->scene;
+    const Result<WrittenRows> rows =
+        by_paths ? write_reference(arguments, scene, *reader, *writer, borders, terminal, stop)
+                 : write_light(arguments, scene, *light, *reader, *writer, borders, terminal, stop);
+    terminal.progress().finish();
+    if (!rows) return terminal.fail(rows.error());
+    if (!rows->are_all && rows->count == 0) return terminal.fail_stopped("no point was finished");
+    if (const Result<void> written = writer->commit(); !written) return terminal.fail(written.error());
     borders.tell(terminal);
-    return ExitCode::done;
+    if (rows->are_all) return ExitCode::done;
+    terminal.note(fmt::format("stopped by the {}: the first {} points are finished", limits.reason(), rows->count));
+    return limits.stopped_code();
 }
 
 }  // namespace exitance

@@ -18,6 +18,7 @@
 #include "exitance/io/pictures/mesh_colours.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/reconstruct/pictures/timed_picture.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -147,23 +148,55 @@ std::string numbered(const std::string& output, std::size_t number) {
     return fmt::format("{}.{:04}{}", output.substr(0, output.size() - end.size()), number, end);
 }
 
-/// A picture a camera, all with the exposure of the first.
+/// Seconds that a pixel takes to be toned, drawn upon, compressed and written: 0.2 to 0.5 us in pictures of 640 x 400
+/// to 8192 x 8192 pixels, as .png and .exr.
+constexpr double write_seconds_a_pixel = 0.5e-6;
+
+/// A request to stop that leaves time to write the picture.
+const StopRequest& keep_picture(const RenderArguments& arguments, RunLimits& limits) {
+    StopRequest& stop = limits.keep();
+    const double write_seconds = write_seconds_a_pixel * static_cast<double>(arguments.size.pixels());
+    if (arguments.limits.time_limit)
+        stop.set_deadline(
+            seconds_from_now(limits.seconds_left() - std::min(write_seconds, 0.5 * limits.seconds_left())));
+    return stop;
+}
+
+/// What the user is told of a picture that a stop has left coarser than requested.
+std::string describe_stop(const TimedPicture& taken, const RenderArguments& arguments, const std::string& reason) {
+    if (taken.samples > 0)
+        return fmt::format("stopped by the {}: the picture has {} of {} samples a pixel", reason, taken.samples,
+                           arguments.samples);
+    return fmt::format(
+        "stopped by the {}: there was no time for one sample a pixel, so the picture is made of squares of {} x {} "
+        "pixels or less",
+        reason, taken.block, taken.block);
+}
+
+/// Numbered pictures, one for each camera, all with the exposure of the first. `done`: those that were finished.
 ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>& cameras,
-                     const RadiosityFunction& light, Terminal& terminal) {
-    const StopRequest stop;
+                     const RadiosityFunction& light, Terminal& terminal, std::size_t& done) {
+    RunLimits& limits = terminal.limits();
+    const StopRequest& stop = keep_picture(arguments, limits);
     RenderArguments frame = arguments;
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
+    for (done = 0; done < cameras.size(); ++done) {
+        const std::size_t i = done;
         PictureOptions options{cameras[i], arguments.size, static_cast<int>(arguments.samples)};
         options.gather = static_cast<unsigned>(arguments.gather);
         const Picture picture = take_picture(light, options, terminal.progress(), stop);
+        if (stop.requested()) break;
         if (!frame.exposure_scale) frame.exposure_scale = automatic_exposure(picture) * std::exp2(arguments.exposure);
         frame.output = numbered(arguments.output, i + 1);
         const Result<void> written = write_picture(frame, light, cameras[i], picture, terminal);
         if (!written) return terminal.fail(written.error());
     }
     terminal.progress().finish();
-    terminal.note(fmt::format("{} pictures with --exposure {:.4g}x", cameras.size(), *frame.exposure_scale));
-    return ExitCode::done;
+    if (done > 0) terminal.note(fmt::format("{} pictures with --exposure {:.4g}x", done, *frame.exposure_scale));
+    if (done == cameras.size()) return ExitCode::done;
+    if (done == 0) return terminal.fail_stopped("no picture was finished");
+    terminal.note(
+        fmt::format("stopped by the {}: {} of {} pictures are finished", limits.reason(), done, cameras.size()));
+    return limits.stopped_code();
 }
 
 /// A video: pictures at equal times along the path, in a folder that is gone afterwards.
@@ -183,9 +216,32 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
     if (!folder) return terminal.fail(folder.error());
     RenderArguments frames = arguments;
     frames.output = folder->path() + "/frame.png";
-    if (const ExitCode code = render_path(frames, cameras, light, terminal); code != ExitCode::done) return code;
+    std::size_t finished = 0;
+    const ExitCode code = render_path(frames, cameras, light, terminal, finished);
+    if (finished == 0) return code;
     const Result<void> written = write_film(folder->path(), rate, arguments.output);
-    return written ? ExitCode::done : terminal.fail(written.error());
+    return written ? code : terminal.fail(written.error());
+}
+
+/// One picture, as fine as the limits allow.
+ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunction& light, Terminal& terminal) {
+    const Result<Camera> camera = choose_camera(arguments, light);
+    if (!camera) return terminal.fail(camera.error());
+    if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(*camera)));
+    PictureOptions options{*camera, arguments.size, static_cast<int>(arguments.samples)};
+    options.gather = static_cast<unsigned>(arguments.gather);
+    TimedPicture taken;
+    taken.is_complete = true;
+    RunLimits& limits = terminal.limits();
+    if (!arguments.shadow_classes || arguments.isolux)
+        taken = take_picture_in_time(light, options, terminal.progress(), keep_picture(arguments, limits));
+    terminal.progress().finish();
+    if (taken.block == 0 && !taken.is_complete) return terminal.fail_stopped("not even a coarse picture was finished");
+    const Result<void> written = write_picture(arguments, light, *camera, taken.picture, terminal);
+    if (!written) return terminal.fail(written.error());
+    if (taken.is_complete) return ExitCode::done;
+    terminal.note(describe_stop(taken, arguments, limits.reason()));
+    return limits.stopped_code();
 }
 
 }  // namespace
@@ -193,7 +249,6 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
 /// exitance render SOLUTION -o PICTURE
 ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
-    const StopRequest stop;  // signals end the program at once
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
@@ -209,18 +264,10 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
         if (is_film(arguments.output)) return render_film(arguments, *stations, light, terminal);
         std::vector<Camera> cameras;
         for (const CameraStation& station : *stations) cameras.push_back(station.camera);
-        return render_path(arguments, cameras, light, terminal);
+        std::size_t done = 0;
+        return render_path(arguments, cameras, light, terminal, done);
     }
-    const Result<Camera> camera = choose_camera(arguments, light);
-    if (!camera) return terminal.fail(camera.error());
-    if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(*camera)));
-    PictureOptions options{*camera, arguments.size, static_cast<int>(arguments.samples)};
-    options.gather = static_cast<unsigned>(arguments.gather);
-    const bool shows_light = !arguments.shadow_classes || arguments.isolux;
-    const Picture picture = shows_light ? take_picture(light, options, terminal.progress(), stop) : Picture{};
-    terminal.progress().finish();
-    const Result<void> written = write_picture(arguments, light, *camera, picture, terminal);
-    return written ? ExitCode::done : terminal.fail(written.error());
+    return render_picture(arguments, light, terminal);
 }
 
 }  // namespace exitance

@@ -1,6 +1,7 @@
 #include "exitance/io/report/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -14,6 +15,7 @@
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/reconstruct/pictures/timed_picture.hpp"
 #include "exitance/reconstruct/surface_levels.hpp"
 
 namespace exitance {
@@ -32,14 +34,20 @@ std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene
     return out;
 }
 
-/// What a camera sees, as an eye would and in false colours.
+/// What a camera sees, as an eye would and in false colours. Of a picture that a stop has left coarse the caption says
+/// so.
 void add_pictures(const ReportArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                   ReportContent& content, Terminal& terminal, const StopRequest& stop) {
     PictureOptions options{camera, arguments.size, 8};
-    const Picture picture = take_picture(light, options, terminal.progress(), stop);
+    const TimedPicture taken = take_picture_in_time(light, options, terminal.progress(), stop);
+    if (taken.block == 0) return content.unfinished.push_back("pictures from " + describe(camera));
+    const std::string note = taken.is_complete   ? ""
+                             : taken.samples > 0 ? fmt::format("; stopped after {} of 8 samples a pixel", taken.samples)
+                                                 : fmt::format("; stopped at squares of {} pixels", taken.block);
+    const Picture& picture = taken.picture;
     ToneMap tones;
     tones.curve = ToneCurve::filmic, tones.scale = automatic_exposure(picture);
-    content.pictures.push_back({fmt::format("Radiosity times {:.4g}, toned by a filmic curve", tones.scale),
+    content.pictures.push_back({fmt::format("Radiosity times {:.4g}, toned by a filmic curve{}", tones.scale, note),
                                 describe(camera), display_image(picture, tones)});
     const bool lux = content.unit.is_lux();
     const Quantity quantity = lux ? Quantity::illuminance : Quantity::irradiance;
@@ -48,8 +56,8 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     Image image = false_colour_image(shown, quantity, scale);
     if (lux) draw_isolux(image, shown, scale, title(quantity, lux));
     draw_legend(image, title(quantity, lux), scale);
-    content.pictures.push_back(
-        {lux ? "Illuminance in lx" : "Irradiance in W/m^2, mean of the bands", describe(camera), std::move(image)});
+    content.pictures.push_back({(lux ? "Illuminance in lx" : "Irradiance in W/m^2, mean of the bands") + note,
+                                describe(camera), std::move(image)});
 }
 
 /// The largest faces, and how many there are besides.
@@ -80,7 +88,10 @@ void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal
     BakeOptions options;
     options.density = std::min(64.0, std::sqrt(texels / area));
     Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
-    if (maps) content.viewer = std::move(*maps);
+    if (stop.requested())
+        content.unfinished.push_back("the viewer");
+    else if (maps)
+        content.viewer = std::move(*maps);
 }
 
 Result<void> add_working_planes(const ReportArguments& arguments, const Scene& scene, std::vector<GridLight>& grids) {
@@ -120,6 +131,28 @@ std::optional<Error> find_misuse(const ReportArguments& arguments) {
     return Error{ErrorCode::usage, "reports are written as .html", arguments.output, "name the output something.html"};
 }
 
+/// Measures what was requested by name. What a stop leaves unfinished is left out.
+void add_measurements(const ReportArguments& arguments, std::span<const Observer> observers,
+                      const RadiosityFunction& light, ReportContent& content, Terminal& terminal,
+                      const StopRequest& stop) {
+    std::vector<GridLight> finished;
+    for (GridLight& grid : content.grids) {
+        measure(light, grid, terminal.progress(), stop);
+        if (!stop.requested()) finished.push_back(std::move(grid));
+    }
+    if (finished.size() < content.grids.size())
+        content.unfinished.push_back(
+            fmt::format("{} of {} measuring planes", content.grids.size() - finished.size(), content.grids.size()));
+    content.grids = std::move(finished);
+    const LightUnit lux(UnitChoice::lux, light.solution().scene.is_photometric(),
+                        arguments.unit.efficacy.value_or(daylight_efficacy));
+    for (const Observer& observer : observers)
+        if (!stop.requested()) content.observers.push_back({observer, find_glare(light, observer, lux)});
+    if (content.observers.size() < observers.size())
+        content.unfinished.push_back(
+            fmt::format("{} of {} observers", observers.size() - content.observers.size(), observers.size()));
+}
+
 /// What a page shows besides planes and observers.
 Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction& light, ReportContent& content,
                       Terminal& terminal, const StopRequest& stop) {
@@ -132,14 +165,31 @@ Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction&
         cameras.push_back(*camera);
     }
     content.view = cameras.front();
-    for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
     constexpr std::size_t surface_points = 50000, error_points = 400;
     constexpr unsigned error_rays = 2048;
     const std::vector<SurfaceId> faces = largest_faces(scene, content.surfaces_left_out);
     content.surfaces = measure_surfaces(light, faces, surface_points, terminal.progress(), stop);
+    if (stop.requested()) content.surfaces.clear(), content.unfinished.push_back("surfaces and materials");
     content.error = find_error_percentile(light, error_points, error_rays, terminal.progress(), stop);
+    if (stop.requested()) content.error = {}, content.unfinished.push_back("the error at 99 of 100 places");
+    for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
     add_viewer(light, content, terminal, stop);
     return {};
+}
+
+/// Writes the files. Without a page they are left out where nothing at all was finished.
+ExitCode write(const ReportArguments& arguments, const ReportContent& content, Terminal& terminal) {
+    const bool is_stopped = !content.unfinished.empty();
+    if (is_stopped && arguments.output.empty() && content.grids.empty() && content.observers.empty())
+        return terminal.fail_stopped("no table was finished");
+    Result<void> written;
+    if (!arguments.output.empty()) written = write_report(content, arguments.output);
+    if (written && !arguments.tables.empty()) written = write_report_tables(content, arguments.tables);
+    if (!written) return terminal.fail(written.error());
+    if (!is_stopped) return ExitCode::done;
+    terminal.note(
+        fmt::format("stopped by the {}, without {}", terminal.limits().reason(), fmt::join(content.unfinished, ", ")));
+    return terminal.limits().stopped_code();
 }
 
 }  // namespace
@@ -153,7 +203,6 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
         if (!grid) return terminal.fail(grid.error());
         content.grids.push_back(std::move(*grid));
     }
-    const StopRequest stop;  // signals end the program at once: nothing is written before all is there
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
@@ -164,19 +213,13 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     const RadiosityFunction light(*solution);
     content.solution = &*solution, content.unit = unit_of(arguments.unit, solution->scene, terminal);
     content.maintenance = arguments.maintenance;
+    const StopRequest& stop = terminal.limits().keep();
+    add_measurements(arguments, *observers, light, content, terminal, stop);
     if (!arguments.output.empty())
         if (const Result<void> added = add_page(arguments, light, content, terminal, stop); !added)
             return terminal.fail(added.error());
-    for (GridLight& grid : content.grids) measure(light, grid, terminal.progress(), stop);
-    const LightUnit lux(UnitChoice::lux, solution->scene.is_photometric(),
-                        arguments.unit.efficacy.value_or(daylight_efficacy));
-    for (const Observer& observer : *observers)
-        content.observers.push_back({observer, find_glare(light, observer, lux)});
     terminal.progress().finish();
-    Result<void> written;
-    if (!arguments.output.empty()) written = write_report(content, arguments.output);
-    if (written && !arguments.tables.empty()) written = write_report_tables(content, arguments.tables);
-    return written ? ExitCode::done : terminal.fail(written.error());
+    return write(arguments, content, terminal);
 }
 
 }  // namespace exitance

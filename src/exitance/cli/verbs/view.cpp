@@ -130,49 +130,63 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                }));
 }
 
-/// A solve that shows its light as it converges: rounds of falling error, each a solution that can be looked at.
+/// A solve that shows its light as it converges.
 class RunningSolve {
   public:
     RunningSolve(const ViewArguments& arguments, Scene scene, Gallery& gallery, Terminal& terminal)
-        : arguments_(arguments), scene_(std::move(scene)), gallery_(gallery), progress_(events_, terminal.progress()) {}
+        : arguments_(arguments),
+          scene_(std::move(scene)),
+          gallery_(gallery),
+          progress_(events_, terminal.progress()),
+          limits_(terminal.limits()) {}
 
     void serve(ViewServer& server) {
         server.events("/data/events",
                       [this](std::size_t& next, std::string& text) { return events_.wait(next, text); });
         server.post("/data/stop", [this](const Parameters&) {
-            stop_.interrupt();
+            limits_.stop().interrupt();
             return ViewAnswer{200, "text/plain", "stopping"};
         });
         server.post("/data/save", [this](const Parameters&) { return save(); });
     }
 
     void run() {
-        constexpr double coarse = 0.32, ratio = 0.4;  // a round takes several times as long as the one before
-        std::string message = "done";
-        for (double error = std::max(coarse, arguments_.error); !stop_.requested(); error *= ratio) {
-            SolveOptions options = arguments_.options;
-            options.error = std::max(error, arguments_.error);
-            progress_.set_round(fmt::format("to {:.3g}%: ", 100 * *options.error));
-            Result<Solution> solution = solve_scene(scene_, options, progress_, stop_);
-            if (!solution) {
-                message = solution.error().message;
-                break;
-            }
-            if (stop_.requested() && !solution->statistics.relative_error_estimate && gallery_.newest()) break;
-            solution->options = with_scene_options(options_json(options), arguments_.scene.load);
-            const std::size_t count = gallery_.add(std::move(*solution));
+        SolveOptions options = arguments_.options;
+        options.error = arguments_.error;
+        options.memory_limit_bytes = arguments_.limits.memory_limit;
+        const auto show = [&](Solution solution) {
+            solution.options = with_scene_options(options_json(options), arguments_.scene.load);
+            const std::size_t count = gallery_.add(std::move(solution));
             events_.tell("light", fmt::format(R"({{"count": {}}})", count));
-            if (*options.error <= arguments_.error) break;
-        }
+        };
+        Result<Solution> solution = solve_scene(std::move(scene_), options, progress_, limits_.stop(), nullptr, show);
+        std::string message = solution ? describe_end(solution->statistics) : solution.error().message;
+        // A solve that was stopped before its first estimate has nothing better than what is shown already.
+        if (solution && (solution->statistics.relative_error_estimate || !gallery_.newest()))
+            show(std::move(*solution));
         std::replace_if(
             message.begin(), message.end(), [](char c) { return c == '"' || c == '\\' || (c >= 0 && c < ' '); }, '\'');
-        events_.end(fmt::format(R"({{"message": "{}"}})", stop_.requested() ? "stopped" : message));
+        events_.end(fmt::format(R"({{"message": "{}"}})", message));
     }
 
   private:
+    /// "reached: estimated error 1.8%, 2% requested", "stopped by the time limit: ..."
+    std::string describe_end(const SolveStatistics& statistics) const {
+        const std::string error =
+            statistics.relative_error_estimate
+                ? fmt::format("estimated error {:.2g}%", 100 * *statistics.relative_error_estimate)
+                : "the error is not known";
+        const std::string why = statistics.stopped_by == "interrupt" ? limits_.reason() : statistics.stopped_by;
+        const std::string end = statistics.converged  ? "reached"
+                                : why == "interrupt"  ? "stopped"
+                                : why == "iterations" ? "not reached"
+                                                      : "stopped by the " + why;
+        return fmt::format("{}: {}, {:.2g}% requested", end, error, 100 * arguments_.error);
+    }
+
     ViewAnswer save() {
         const Viewed* viewed = gallery_.newest();
-        if (!viewed) return view_absent;
+        if (!viewed) return {200, "text/plain", "there is no light yet"};
         const Result<void> written = write_solution(arguments_.save, viewed->solution);
         if (!written) return {500, "text/plain", written.error().message};
         return {200, "text/plain", "saved as " + arguments_.save};
@@ -183,7 +197,7 @@ class RunningSolve {
     Gallery& gallery_;
     ViewEvents events_;
     ViewProgress progress_;
-    StopRequest stop_;
+    RunLimits& limits_;
 };
 
 /// Listens, tells where, and answers until a signal ends the program.
@@ -193,6 +207,7 @@ ExitCode serve(ViewServer& server, const ViewArguments& arguments, RunningSolve*
     terminal.print(fmt::format("http://127.0.0.1:{}/", *port));
     std::fflush(stdout);
     terminal.note(fmt::format("open http://127.0.0.1:{}/ in a browser; Ctrl+C ends the viewer", *port));
+    terminal.limits().keep(RunLimits::Signals::end_program);
     std::jthread solver;
     if (running) solver = std::jthread([running] { running->run(); });
     server.listen();

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "exitance/cli/json_output.hpp"
-#include "exitance/cli/signals.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/atomic_file.hpp"
@@ -68,23 +66,15 @@ void show_findings(const CheckedScene& checked, Terminal& terminal) {
     terminal.show(findings);
 }
 
-StopRequest::Clock::time_point after(double seconds) {
-    const std::chrono::duration<double> limit(std::min(seconds, 1e9));  // what a clock can hold
-    return StopRequest::Clock::now() + std::chrono::duration_cast<StopRequest::Clock::duration>(limit);
-}
-
 }  // namespace
 
 /// exitance viewfactors SCENE -o MATRIX
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
-    StopRequest stop;
-    if (arguments.time_limit) stop.set_deadline(after(*arguments.time_limit));
-    const SignalGuard signals(stop);
+    RunLimits& limits = terminal.limits();
+    const StopRequest& stop = limits.keep();
     set_threads(arguments.threads);
     if (const Result<AtomicFile> file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
-    const auto fail = [&](const Error& error) {
-        return signals.received() ? *signals.received() : terminal.fail(error);
-    };
+    const auto fail = [&](const Error& error) { return limits.signal() ? *limits.signal() : terminal.fail(error); };
 
     LoadOptions load = arguments.scene.load;
     load.stop = &stop;

@@ -25,6 +25,7 @@ std::string type_of(const fs::path& file) {
 /// takes over a second for the page's script, to spare what costs nothing on one machine.
 void give(httplib::Response& response, ViewAnswer answer) {
     response.status = answer.status;
+    if (answer.body.empty()) return;
     const auto body = std::make_shared<const std::string>(std::move(answer.body));
     response.set_content_provider(body->size(), answer.type.c_str(),
                                   [body](std::size_t from, std::size_t length, httplib::DataSink& sink) {

@@ -15,6 +15,7 @@ std::optional<std::vector<double>> view_numbers(const ViewServer::Parameters& pa
                                                 std::size_t count);
 
 inline const ViewAnswer view_misunderstood{400, "text/plain", "not understood"};
-inline const ViewAnswer view_absent{404, "text/plain", "there is no light yet"};
+/// There is no light yet. A page asks before it knows; browsers would log a status of 400 or above as an error.
+inline const ViewAnswer view_absent{204, "text/plain", ""};
 
 }  // namespace exitance

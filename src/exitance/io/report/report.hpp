@@ -41,6 +41,8 @@ struct ReportContent {
     std::optional<LightMaps> viewer;  ///< What the embedded viewer shows; none where it would be too large.
     Camera view;                      ///< Where that begins.
     std::string statistics;           ///< As `stats --json` prints them.
+    /// Parts that were requested and not finished, because a limit or a signal has stopped the run.
+    std::vector<std::string> unfinished;
 };
 
 /// Writes the page, which refers to nothing outside of itself, and beside it its numbers as JSON (report.html,

@@ -150,7 +150,7 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
         "  \"error\": {{\"median\": {}, \"error_p99\": {}, \"check_noise\": {}, \"check_points\": {}}},\n"
         "  \"pictures\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  \"observers\": {},\n  \"materials\": {},\n  "
         "\"surfaces\": {},\n"
-        "  \"surfaces_left_out\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
+        "  \"surfaces_left_out\": {},\n  \"unfinished\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
         EXITANCE_VERSION, lux ? "lx" : "W/m^2", json_text(scene.file()), scene.surfaces().size(), figure(figures.area),
         point(size), scene.emitters().size(), scene.lights().size(), figure(content.error.median),
         figure(content.error.p99), figure(content.error.noise), content.error.points,
@@ -168,6 +168,7 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
                      figure(m.irradiance));
              }),
         list(figures.faces, face_json), content.surfaces_left_out,
+        list(content.unfinished, [](const std::string& part) { return json_text(part); }),
         content.statistics.empty() ? "null" : content.statistics,
         content.solution->options.empty() ? "null" : content.solution->options);
 }

@@ -56,6 +56,14 @@ std::string overview(const ReportContent& content, const ReportFigures& figures)
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
+std::string unfinished(const ReportContent& content) {
+    if (content.unfinished.empty()) return "";
+    std::string parts;
+    for (const std::string& part : content.unfinished) parts += (parts.empty() ? "" : ", ") + escaped(part);
+    return "<p class=\"warning\">The report was stopped by a limit. These parts are not finished and left out: " +
+           parts + ".</p>\n";
+}
+
 Result<std::string> pictures(const ReportContent& content) {
     std::string html;
     for (const ReportPicture& picture : content.pictures) {
@@ -233,7 +241,7 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
             "content=\"width=device-width\">\n<title>Light in {0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
             "<h1>Light in {0}</h1>\n",
             escaped(name), style) +
-        overview(content, figures) + section("pictures", "Pictures", *shown) +
+        overview(content, figures) + unfinished(content) + section("pictures", "Pictures", *shown) +
         (viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>") +
         section("grids", "Measuring planes", grids(content, figures)) +
         section("glare", "Glare", observers_html(content)) +

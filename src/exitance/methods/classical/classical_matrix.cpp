@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exitance/core/available_memory.hpp"
 #include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/methods/classical/classical_input.hpp"
@@ -80,7 +81,8 @@ Result<void> check_memory(const ClassicalInput& input, FormFactorKind kind, doub
                          : kind == FormFactorKind::hemicube ? 8 * n * std::min(n, cells)
                                                             : 4 * n * ray_budget(input).average;
     const auto used = static_cast<double>(peak_memory_bytes()),
-               limit = static_cast<double>(input.options.memory_limit_bytes.value_or(machine_memory_bytes()));
+               limit = static_cast<double>(
+                   input.options.memory_limit_bytes.value_or(resident_memory_bytes() + available_memory_bytes()));
     if (used + bytes <= limit) return {};
     return Error{
         ErrorCode::limit,

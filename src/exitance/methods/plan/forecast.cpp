@@ -11,6 +11,7 @@
 #include "exitance/methods/growing_cells/cells_method.hpp"
 #include "exitance/methods/patch_steps.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
+#include "exitance/methods/plan/method_memory.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"
 #include "exitance/reconstruct/error/certificate.hpp"
@@ -29,8 +30,7 @@ constexpr double shooting_share = 0.48;  ///< Of all pairs of elements: those wh
 constexpr double gathered_by_patches = 3;  ///< Elements that are gathered on, by patches of substructuring.
 constexpr double random_sweeps = 1.9;      ///< Light sent in random directions by light reflected first.
 constexpr unsigned shooting_samples = 16;
-constexpr double shooting_memory = 0x1p30;  ///< Bytes of columns that shooting keeps.
-constexpr double lights_an_element = 20;    ///< Nodes of the projection and of the exported mesh, and cuts.
+constexpr double lights_an_element = 20;  ///< Nodes of the projection and of the exported mesh, and cuts.
 constexpr unsigned pilot_rays = 64;
 constexpr std::size_t pilot_points = 512;
 
@@ -178,10 +178,9 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
     const StopRequest never;
     Stage stage(scene);
     survey(stage, options, never);
-    Plan plan = make_plan(stage, options, false);
+    Plan plan = make_plan(stage, options);
     if (options.memory_limit_bytes)
-        if (const Result<bool> fits = fit_into_memory(plan.knobs, stage.pieces, plan.options); !fits)
-            return fits.error();
+        if (const Result<bool> fits = fit_into_memory(plan.knobs, stage, plan.options); !fits) return fits.error();
     const bool patches = plan.options.method == Method::substructuring;
     MeshSize mesh = plan.knobs.solve_mesh;
     if (patches && !options.mesh_size)
@@ -209,15 +208,10 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
         out.rays = method_rays(plan, pilot, projected, solved) + gathered * rays_an_element +
                    certificate_rays(plan, solved, gathered, rays_an_element);
     out.seconds = out.rays * pilot.gather_seconds + solved * lights_an_element * pilot.light_seconds;
-    const bool shoots = plan.options.method == Method::progressive || patches;
-    const double columns = shoots ? std::min(shooting_memory, 4 * shooting_share * solved * projected)
-                                  : 4 * solved * plan.knobs.solve_rays.average;
-    out.memory_bytes = static_cast<double>(peak_memory_bytes()) + columns + bytes_a_leaf * (solved + leaves);
-    if (plan.options.method == Method::growing_cells) {
-        const CellsForecast cells =
-            forecast_cells(units_of(stage, plan.knobs, plan.options), pilot.facing, pilot.blocked);
-        out.rays += cells.rays, out.memory_bytes += cells.bytes;
-    }
+    out.memory_bytes = static_cast<double>(peak_memory_bytes()) +
+                       method_bytes(stage, plan.options, plan.knobs, solved) + bytes_a_leaf * (solved + leaves);
+    if (plan.options.method == Method::growing_cells)
+        out.rays += forecast_cells(units_of(stage, plan.knobs, plan.options), pilot.facing, pilot.blocked).rays;
     return out;
 }
 

@@ -6,6 +6,7 @@
 
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/core/memory.hpp"
+#include "exitance/methods/plan/method_memory.hpp"
 #include "exitance/transport/distributed.hpp"
 
 namespace exitance {
@@ -28,28 +29,24 @@ double bytes_in_use() {
     return largest_of_all(sum_on_node(own) / static_cast<double>(processes_on_node()));
 }
 
-double predicted_bytes(const Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
-    const auto elements = static_cast<double>(predict_elements(pieces, knobs.solve_mesh.edge) +
-                                              predict_elements(pieces, knobs.gather_mesh.edge));
-    const bool galerkin = options.basis && is_galerkin(*options.basis);
-    // Links while they are sorted; entries with their sources. Half of all pairs see each other.
-    const double words_a_pair = galerkin                                           ? 15
-                                : options.form_factors == FormFactorKind::hemicube ? 2
-                                : options.form_factors == FormFactorKind::analytic ? 1
-                                                                                   : 0;
-    const double entries =
-        words_a_pair > 0 ? words_a_pair * elements * elements : 4 * elements * knobs.solve_rays.average;
-    const double of_pieces = std::min(elements, 2 * static_cast<double>(pieces.size()));
-    const double leaves = leaves_a_piece * of_pieces + leaves_an_element * (elements - of_pieces);
-    return bytes_a_leaf * leaves + 4 * entries;
+double predicted_leaves(double elements, const Stage& stage) {
+    const double of_pieces = std::min(elements, static_cast<double>(stage.pieces.size()));
+    return leaves_a_piece * of_pieces + leaves_an_element * (elements - of_pieces);
+}
+
+double predicted_bytes(const Knobs& knobs, const Stage& stage, const SolveOptions& options) {
+    const double solved = static_cast<double>(predict_elements(stage.pieces, knobs.solve_mesh.edge)),
+                 gathered = static_cast<double>(predict_elements(stage.pieces, knobs.gather_mesh.edge));
+    const double leaves = predicted_leaves(solved, stage) + predicted_leaves(gathered, stage);
+    return bytes_a_leaf * leaves + method_bytes(stage, options, knobs, solved);
 }
 
 }  // namespace
 
-Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options) {
+Result<bool> fit_into_memory(Knobs& knobs, const Stage& stage, const SolveOptions& options) {
     const double limit = static_cast<double>(*options.memory_limit_bytes);
     const double used = bytes_in_use(), share = share_of_process();
-    const auto needed = [&] { return share * predicted_bytes(knobs, pieces, options); };
+    const auto needed = [&] { return share * predicted_bytes(knobs, stage, options); };
     bool unchanged = true;
     for (double before = 0; used + needed() > limit; unchanged = false) {
         const double now = needed();

@@ -2,6 +2,7 @@
 
 #include "exitance/accuracy/accuracy.hpp"
 #include "exitance/core/result.hpp"
+#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 
@@ -16,6 +17,6 @@ constexpr double own_memory = 0.15;
 /// Coarsens the knobs until what they will need, on top of what is in use, fits into the options' memory limit. True
 /// when nothing had to be changed; an error when even the coarsest mesh does not fit. The limit is that of a process,
 /// and pages that those of a node have in common count for each by its share: n of them need n limits of the node. All.
-Result<bool> fit_into_memory(Knobs& knobs, const std::vector<Piece>& pieces, const SolveOptions& options);
+Result<bool> fit_into_memory(Knobs& knobs, const Stage& stage, const SolveOptions& options);
 
 }  // namespace exitance

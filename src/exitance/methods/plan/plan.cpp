@@ -39,7 +39,7 @@ void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop) 
     stage.rooms = find_light_rooms(stage, options.seed, stop);
 }
 
-Plan make_plan(const Stage& stage, const SolveOptions& asked, bool hurry) {
+Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error) {
     MethodChoice choice = choose_method(stage, asked);
     Plan plan{.options = std::move(choice.options), .why = std::move(choice.why)};
     const Method method = plan.options.method;
@@ -54,8 +54,7 @@ Plan make_plan(const Stage& stage, const SolveOptions& asked, bool hurry) {
         fit_links(plan, stage);
     else
         notice_unused_links(plan);
-    const double target = plan.options.error_target(),
-                 error = hurry ? std::max(calibrated::hurried_error, target) : target;
+    const double error = std::max(first_error, plan.options.error_target());
     const std::vector<Piece> lit = stage.lit_pieces();
     plan.knobs = knobs_for_error(error, lit, plan.options);
     plan.sums = choice.forecast.takes_sums();

@@ -23,7 +23,8 @@ struct Plan {
 /// Looks for the sides of the stage that get no light and for its rooms; what a plan rests on.
 void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop);
 
-/// The plan for a stage that is surveyed. `hurry`: a coarse answer is to come first, since there is little time.
-Plan make_plan(const Stage& stage, const SolveOptions& asked, bool hurry);
+/// The plan for a stage that is surveyed. The first attempt aims at `first_error` where that is above the error
+/// requested: a coarse answer comes first.
+Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error = 0);
 
 }  // namespace exitance

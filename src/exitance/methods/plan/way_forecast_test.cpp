@@ -33,7 +33,7 @@ Scene round_room(int corners) {
 }
 
 Plan plan_at(const Scene& scene, double error) {
-    return make_plan(Stage(scene), {.error = error}, false);
+    return make_plan(Stage(scene), {.error = error});
 }
 
 // What is expected below was measured with each way forced, `solve --threads 1`, user time; none of these scenes is
@@ -77,7 +77,7 @@ TEST(WayForecast, DeliversByTheLinksThatWereAskedForWhereTheyTakeLessThanSums) {
     const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
     const Stage stage(shaft);
     const auto delivers = [&](double error) {
-        return make_plan(stage, {.method = Method::wavelet, .error = error}, false).knobs.links_deliver;
+        return make_plan(stage, {.method = Method::wavelet, .error = error}).knobs.links_deliver;
     };
     EXPECT_FALSE(delivers(0.02));
     EXPECT_TRUE(delivers(0.002));

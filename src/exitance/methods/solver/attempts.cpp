@@ -12,8 +12,10 @@
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/plan/attempt_forecast.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
+#include "exitance/methods/plan/method_memory.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/reconstruct/continuous.hpp"
+#include "exitance/reconstruct/energy.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/direct_share.hpp"
 #include "exitance/solve/growth_watch.hpp"
@@ -23,11 +25,13 @@
 namespace exitance {
 
 void Solver::solve_indirect_light() {
-    const std::optional<double> demand = options_.error_demand();
     for (;; ++attempt_, step_ = Step::project) {
         const Stopwatch watch;
         attempt();
+        if (refusal_) return;
         if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+        if (show_ && options_.error_demand()) lower_error();
+        const std::optional<double> demand = options_.error_demand();
         if (!demand || has_reached(*demand)) {
             if (has_diverged(light_->report)) return stop_early("divergence");
             if (statistics().stopped_by.empty() || demand)
@@ -36,7 +40,8 @@ void Solver::solve_indirect_light() {
         }
         if (light_->limited_by_memory) stop_early("memory limit");
         if (statistics().stopped_by == "memory limit") return;
-        if (attempt_ == most_attempts) return stop_early("iterations");
+        if (attempt_ == most_attempts + shown_) return stop_early("iterations");
+        if (show_) show_light();
         const std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
         if (!next) return stop_early("time limit");
         if (!next->forecast.empty()) progress_.note(next->forecast);
@@ -48,10 +53,31 @@ void Solver::solve_indirect_light() {
         knobs_ = next->finer.knobs, takes_step_ = next->is_step;
         if (next->finer.method && !takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
         if (options_.memory_limit_bytes) {
-            const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
+            const Result<bool> fits = fit_into_memory(knobs_, stage_, options_);
             if (!fits || !*fits) return stop_early("memory limit");
         }
     }
+}
+
+void Solver::lower_error() {
+    constexpr double step = 0.4;  // an attempt takes about three times as long as one with 1 / 0.4 of its error
+    const double before = *options_.error;
+    while (*options_.error > requested_error_ && has_reached(*options_.error))
+        options_.error = std::max(requested_error_, step * std::min(*options_.error, certificate_.largest()));
+    if (*options_.error == before) return;
+    ++shown_;
+    if (!has_reached(*options_.error)) return;
+    step_ = Step::certify;
+    attempt();
+}
+
+void Solver::show_light() {
+    Solution shown = solution_;
+    InterpolantReport report;
+    shown.interpolant = shown.direct_in_elements ? shown.indirect : plain_elements(report);
+    shown.statistics.energy = energy_balance(shown, direct_, stage_);
+    shown.statistics.converged = false;
+    show_(std::move(shown));
 }
 
 std::optional<Solver::NextAttempt> Solver::next_in_time(double demand, double last_seconds) const {
@@ -112,6 +138,14 @@ void Solver::project_direct() {
     statistics().seconds["mesh"] += watch.seconds();
 }
 
+bool Solver::has_memory() {
+    const auto leaves = static_cast<double>(direct_.tree.leaves().size());
+    const Result<void> fits = check_method_memory(stage_, options_, knobs_, leaves);
+    if (fits) return true;
+    refusal_ = fits.error();
+    return false;
+}
+
 void Solver::project_coarsely() {
     const Knobs fine =
         std::exchange(knobs_, knobs_for_error(calibrated::interrupted_error, stage_.lit_pieces(), options_));
@@ -123,6 +157,7 @@ void Solver::attempt() {
     if (step_ == Step::project) {
         fresh_ = !light_;
         if (fresh_) project_direct();
+        if (fresh_ && !has_memory()) return;
         if (takes_step_) take_step();
         if (stop_.requested()) return;  // where there is no light of another attempt, direct light is all there is
         reach(Step::solve);

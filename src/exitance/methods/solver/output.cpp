@@ -38,6 +38,21 @@ bool Solver::make_discontinuity() {
     return follows_shadows;
 }
 
+double Solver::interpolant_scale() const {
+    return certificate_.mean_reflected > 0 ? certificate_.mean_reflected
+                                           : mean_direct_light(stage_, direct_).of_errors();
+}
+
+ElementFunction Solver::plain_elements(InterpolantReport& report) const {
+    const double error = options_.error_interpolant.value_or(calibrated::interpolant_error * options_.error_target());
+    // Fits weigh errors by `light_weight`, which is not 1 on black surfaces.
+    const bool is_black = !(certificate_.mean_reflected > 0) && !(mean_direct_light(stage_, direct_).reflected > 0);
+    const double counted = interpolant_scale() * (is_black ? mean(light_weight(Material{})) : 1);
+    return make_interpolant(stage_, direct_, solution_.indirect, solution_.direct_share,
+                            {.tolerance = error * counted, .light_in = light_in_, .seed = options_.seed}, report,
+                            stop_);
+}
+
 void Solver::make_output_mesh() {
     const Stopwatch watch;
     progress_.phase("reconstruct");
@@ -48,19 +63,9 @@ void Solver::make_output_mesh() {
         solution_.interpolant = solution_.indirect;
         statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
     } else {
-        const DirectMeans means = mean_direct_light(stage_, direct_);
-        const double scale = certificate_.mean_reflected > 0 ? certificate_.mean_reflected : means.of_errors();
-        // Fits weigh errors by `light_weight`, which is not 1 on black surfaces.
-        const bool is_black = !(means.reflected > 0) && !(certificate_.mean_reflected > 0);
-        const double counted = is_black ? scale * mean(light_weight(Material{})) : scale;
         InterpolantReport report;
-        solution_.interpolant = make_interpolant(
-            stage_, direct_, solution_.indirect, solution_.direct_share,
-            {.tolerance =
-                 options_.error_interpolant.value_or(calibrated::interpolant_error * options_.error_target()) * counted,
-             .light_in = light_in_,
-             .seed = options_.seed},
-            report, stop_);
+        solution_.interpolant = plain_elements(report);
+        const double scale = interpolant_scale();
         const double own = scale > 0 ? report.error / scale : 0;
         if (statistics().relative_error_estimate && !report.interrupted)
             statistics().relative_error_estimate_interpolant = std::hypot(own, *statistics().relative_error_estimate);

@@ -16,10 +16,11 @@
 namespace exitance {
 
 Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
-               CheckpointStore* checkpoints)
+               CheckpointStore* checkpoints, const ShowLight& show)
     : progress_(progress),
       stop_(stop),
       checkpoints_(checkpoints),
+      show_(show),
       solution_{.scene = std::move(scene)},
       stage_(solution_.scene) {
     release_freed_memory();
@@ -29,7 +30,11 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
     release_freed_memory();
     // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
     // another run may go on: its light is not to depend on how long this one had.
-    plan_ = make_plan(stage_, asked, seconds_left(stop) < calibrated::near_deadline && !checkpoints_);
+    const bool hurries = seconds_left(stop) < calibrated::near_deadline && !checkpoints_;
+    constexpr double first_shown_error = 0.32;  // the coarsest that still looks like the scene
+    plan_ = make_plan(stage_, asked, show ? first_shown_error : hurries ? calibrated::hurried_error : 0);
+    requested_error_ = options_.error_target();
+    if (show && options_.error_demand()) options_.error = std::max(first_shown_error, requested_error_);
     for (const std::string& notice : plan_.notices) warn(notice);
     if (!plan_.why.empty())
         progress.note(fmt::format("method {}: {}", name_in(method_names, options_.method), plan_.why));
@@ -40,13 +45,15 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
 
 Result<Solution> Solver::run() {
     if (options_.memory_limit_bytes) {
-        const Result<bool> fits = fit_into_memory(knobs_, stage_.pieces, options_);
+        const Result<bool> fits = fit_into_memory(knobs_, stage_, options_);
         if (!fits) return fits.error();
         if (!*fits) stop_early("memory limit");
     }
     if (options_.bounces != 0 && stage_.has_indirect_light()) {
         resume();
         if (step_ != Step::output) solve_indirect_light(), warn_of_bodies();
+        if (refusal_ && !has_light()) return *refusal_;
+        if (refusal_) stop_early("memory limit");
         if (light_ && has_diverged(light_->report)) warn(divergence_warning);
     } else if (resume(); step_ != Step::output) {
         if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();

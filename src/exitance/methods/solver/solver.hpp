@@ -6,6 +6,7 @@
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reconstruct/element_gather.hpp"
 #include "exitance/reconstruct/error/certificate.hpp"
+#include "exitance/reconstruct/interpolant.hpp"
 #include "exitance/reconstruct/local_pass.hpp"
 #include "exitance/reconstruct/quick_function.hpp"
 
@@ -17,7 +18,7 @@ namespace exitance {
 class Solver {
   public:
     Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
-           CheckpointStore* checkpoints);
+           CheckpointStore* checkpoints, const ShowLight& show);
     Result<Solution> run();
 
   private:
@@ -43,11 +44,20 @@ class Solver {
 
     static constexpr int most_attempts = 9;
 
+    // Light that is shown while it improves.
+    /// Lowers the error that attempts aim at, where that is reached. Where it is certified anew at the error requested,
+    /// by as many rays as that takes, no attempt is needed for nothing.
+    void lower_error();
+    /// Passes on what is delivered, as plain elements.
+    void show_light();
+
     // Attempts: method, local pass, certificate, until the certificate is content.
     void solve_indirect_light();
     /// One attempt: what the last one found is kept as far as it is good enough.
     void attempt();
     void project_direct();
+    /// Is there memory for the method on what was projected? Else `refusal_` is set.
+    bool has_memory();
     /// Plain elements for when no time is left for a mesh that follows shadows.
     void project_coarsely();
     void find_light();
@@ -120,6 +130,10 @@ class Solver {
     /// stop left no time for any: then plain elements are made.
     bool make_discontinuity();
     void make_output_mesh();
+    /// What the error of exported elements is relative to, W/m^2.
+    double interpolant_scale() const;
+    /// Direct and reflected light together as plain elements that meet the error that attempts aim at.
+    ElementFunction plain_elements(InterpolantReport& report) const;
 
     Plan plan_;
     SolveOptions& options_ = plan_.options;  ///< As asked for, with the method that was chosen.
@@ -128,6 +142,10 @@ class Solver {
     Progress& progress_;
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
+    const ShowLight& show_;
+    std::optional<Error> refusal_;  ///< The method was not started, since it needs more memory than there is.
+    double requested_error_ = 0;    ///< options_.error is above it while light is shown and improves.
+    int shown_ = 0;                 ///< Attempts that aimed at a larger error.
     Solution solution_;
     Stage stage_;
     DirectProjection direct_;

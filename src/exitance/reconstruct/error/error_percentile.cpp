@@ -48,7 +48,7 @@ ErrorPercentile find_error_percentile(const RadiosityFunction& light, std::size_
         parallel_ranges(std::min(at_once, points.size() - first), 4, [&](std::size_t begin, std::size_t end) {
             DirectLight::Workspace visibility;
             GatherWorkspace gathering;
-            for (std::size_t i = first + begin; i < first + end; ++i)
+            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
                 places[i] = look(light, locator, points[i], rays, i, visibility, gathering);
         });
     }

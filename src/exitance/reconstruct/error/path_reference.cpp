@@ -1,5 +1,7 @@
 #include "exitance/reconstruct/error/path_reference.hpp"
 
+#include <algorithm>
+
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/error/path_tracer.hpp"
 
@@ -12,6 +14,7 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
     const PlaceFinder places(scene);
     const std::uint32_t each = static_cast<std::uint32_t>((paths + randomisations - 1) / randomisations);
     std::vector<ReferenceLight> out(points.size());
+    std::vector<std::uint8_t> is_finished(points.size());
     progress.phase("paths");
     progress.advance(0);
     for (std::size_t first = 0; first < points.size() && !stop.requested(); first += chunk) {
@@ -22,7 +25,8 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
             const MeasuredPlace place = places.find(points[i].x, n);
             const auto& [x, surface, region, is_between_sides] = place;
             out[i].surface = surface, out[i].is_between_sides = is_between_sides;
-            if (!surface.is_none() && stage.occluders.is_covered(x, n, region)) return;
+            is_finished[i] = !surface.is_none() && stage.occluders.is_covered(x, n, region);
+            if (is_finished[i]) return;
             DirectLight::Workspace workspace;
             std::array<Spectrum, randomisations> batch{};
             for (std::size_t k = 0; k < randomisations; ++k) {
@@ -40,9 +44,11 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
             for (std::size_t b = 0; b < bands; ++b)
                 out[i].standard_error[b] = std::sqrt(square[b] / (randomisations * (randomisations - 1.0)));
             out[i].irradiance += stage.direct.irradiance(x, n, region, workspace);
+            is_finished[i] = 1;
         });
         progress.advance(static_cast<double>(first + count) / static_cast<double>(points.size()));
     }
+    out.resize(static_cast<std::size_t>(std::find(is_finished.begin(), is_finished.end(), 0) - is_finished.begin()));
     return out;
 }
 

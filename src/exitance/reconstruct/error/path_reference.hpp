@@ -21,7 +21,8 @@ struct ReferenceLight {
 /// mirror is left out (mirrored_light.hpp). At every vertex of a path the direct light is estimated by one shadow ray,
 /// to an emitter chosen by its unoccluded contribution, and by the path's next ray, weighted by the balance heuristic;
 /// paths end by Russian roulette with the reflectance as survival. `paths` is rounded up to a multiple of 16.
-/// Deterministic by `seed` and a point's place in `points`. Source: [Kajiya86], [Veach95]. O(points x paths).
+/// Deterministic by `seed` and a point's place in `points`. After a stop the result ends before the first point that is
+/// not finished. Source: [Kajiya86], [Veach95]. O(points x paths).
 std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const ProbePoint> points, std::size_t paths,
                                             std::uint64_t seed, Progress& progress, const StopRequest& stop);
 

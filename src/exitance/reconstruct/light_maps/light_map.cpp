@@ -36,13 +36,14 @@ std::vector<Tile> cut_into_tiles(std::span<const Chart> charts) {
 class TileBaker {
   public:
     TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
-              const MeshTexels& mesh)
+              const MeshTexels& mesh, const StopRequest& stop)
         : stage_(light.stage()),
           finder_(light.places()),
           outlines_(outlines),
           mesh_(mesh),
           light_(light, texel_points, 0, 1, SpotPoints::mirrored) {
         light_.use(mesh.light());
+        light_.use(stop);
     }
 
     void bake(const Tile& tile, const Chart& chart, LightMap& map) {
@@ -157,7 +158,7 @@ Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOpti
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles.size()));
         parallel_ranges(std::min(at_once, tiles.size() - first), grain, [&](std::size_t begin, std::size_t end) {
-            TileBaker baker(light, outlines, mesh);
+            TileBaker baker(light, outlines, mesh, stop);
             for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
                 const Chart& chart = out.charts[tiles[i].chart];
                 baker.bake(tiles[i], chart, out.maps[chart.map]);

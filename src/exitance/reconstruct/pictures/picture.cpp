@@ -6,6 +6,7 @@
 #include "exitance/core/parallel.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/reconstruct/pictures/tile_light.hpp"
+#include "exitance/reconstruct/pictures/timed_picture.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -29,23 +30,46 @@ std::vector<Vec2> places_about_pixel(int samples, std::uint64_t seed) {
     return places;
 }
 
-/// Makes one tile of a picture after the other. One a thread.
+int tile_columns(PictureSize size) {
+    return (size.width + tile_side - 1) / tile_side;
+}
+
+std::size_t tile_count(PictureSize size) {
+    return static_cast<std::size_t>(tile_columns(size)) *
+           static_cast<std::size_t>((size.height + tile_side - 1) / tile_side);
+}
+
+/// A pass over a whole picture: its pixels are squares of `block` x `block` pixels of the picture requested.
+struct Pass {
+    int block = 1;
+    int samples = 1;  ///< Rays of a square.
+
+    PictureSize size(PictureSize whole) const {
+        return {(whole.width + block - 1) / block, (whole.height + block - 1) / block};
+    }
+};
+
+/// Makes one tile of a pass after the other. One a thread.
 class TilePainter {
   public:
-    TilePainter(const RadiosityFunction& light, const PictureOptions& options, std::span<const Vec2> places,
-                double brightness)
+    TilePainter(const RadiosityFunction& light, const PictureOptions& options, const Pass& pass,
+                std::span<const Vec2> places, double brightness, const StopRequest& stop)
         : scene_(light.solution().scene),
           tracer_(light.stage().tracer),
           options_(options),
+          pass_(pass),
+          size_(pass.size(options.size)),
           rays_(options.camera, options.size),
           places_(places),
           light_(light, static_cast<std::uint32_t>(places.size()), options.gather, options.seed, SpotPoints::any,
-                 brightness) {}
+                 brightness) {
+        light_.use(stop);
+    }
 
-    /// The tile whose upper left pixel is (x0, y0).
+    /// Paints the tile whose upper left pixel is (x0, y0) into a picture of the pass's size.
     void paint(int x0, int y0, Picture& picture) {
-        const int x1 = std::min(x0 + tile_side, options_.size.width);
-        const int y1 = std::min(y0 + tile_side, options_.size.height);
+        const int x1 = std::min(x0 + tile_side, size_.width);
+        const int y1 = std::min(y0 + tile_side, size_.height);
         trace(x0, x1, y0, y1);
         spots_.clear(), points_.clear();
         std::size_t pixel_in_tile = 0;
@@ -62,8 +86,13 @@ class TilePainter {
 
   private:
     std::uint32_t at(int x, int y) const {
-        return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options_.size.width) +
-               static_cast<std::uint32_t>(x);
+        return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(size_.width) + static_cast<std::uint32_t>(x);
+    }
+
+    /// Place of a ray in the picture requested, in pixels: pixel `i` of the pass along one axis, `place` pixels from
+    /// its middle. Squares that reach over the border have their rays within it.
+    double at_pixel(int i, double place, int pixels) const {
+        return pass_.block == 1 ? i + 0.5 + place : std::min(pass_.block * (i + 0.5 + place), pixels - 0.5);
     }
 
     /// Traces the rays of all pixels, one pixel after the other.
@@ -74,7 +103,9 @@ class TilePainter {
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
                 for (const Vec2& place : places_) {
-                    if (!rays_.ray(x + 0.5 + place.x, y + 0.5 + place.y, origin, direction)) continue;
+                    const double u = at_pixel(x, place.x, options_.size.width);
+                    const double v = at_pixel(y, place.y, options_.size.height);
+                    if (!rays_.ray(u, v, origin, direction)) continue;
                     origins_.push_back(origin), directions_.push_back(direction);
                 }
                 ends_.push_back(directions_.size());
@@ -145,6 +176,8 @@ class TilePainter {
     const Scene& scene_;
     const RayTracer& tracer_;
     const PictureOptions& options_;
+    const Pass pass_;
+    const PictureSize size_;  ///< Of the pass.
     CameraRays rays_;
     std::span<const Vec2> places_;
     TileLight light_;
@@ -181,28 +214,102 @@ double usual_brightness(const RadiosityFunction& light, const PictureOptions& op
     return *middle;
 }
 
-}  // namespace
-
-Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
-                     const StopRequest& stop) {
-    progress.phase("render");
-    Picture picture{options.size, std::vector<Pixel>(options.size.pixels())};
-    const std::vector<Vec2> places = places_about_pixel(options.samples, options.seed);
-    const double brightness = usual_brightness(light, options);
-    const auto columns = static_cast<std::size_t>((options.size.width + tile_side - 1) / tile_side);
-    const std::size_t tiles = columns * static_cast<std::size_t>((options.size.height + tile_side - 1) / tile_side);
+/// Paints one pass. `finished`: 1 for each of its tiles, row by row, but 0 for those that a stop left unfinished.
+Picture paint(const RadiosityFunction& light, const PictureOptions& options, const Pass& pass, double brightness,
+              Progress& progress, const StopRequest& stop, std::vector<std::uint8_t>& finished) {
+    Picture picture{pass.size(options.size), {}};
+    picture.pixels.resize(picture.size.pixels());
+    const std::vector<Vec2> places = places_about_pixel(pass.samples, options.seed);
+    const auto columns = static_cast<std::size_t>(tile_columns(picture.size));
+    const std::size_t tiles = tile_count(picture.size);
+    finished.assign(tiles, 0);
     // A painter's memory serves several tiles; where a tile is long work, the threads are better off with one each.
     const std::size_t at_once = options.gather > 0 ? 16 : 256, grain = options.gather > 0 ? 1 : 8;
     for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
         parallel_ranges(std::min(at_once, tiles - first), grain, [&](std::size_t begin, std::size_t end) {
-            TilePainter painter(light, options, places, brightness);
-            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
+            TilePainter painter(light, options, pass, places, brightness, stop);
+            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
                 painter.paint(static_cast<int>(i % columns) * tile_side, static_cast<int>(i / columns) * tile_side,
                               picture);
+                finished[i] = !stop.requested();
+            }
         });
     }
     return picture;
+}
+
+/// Copies the finished tiles of a pass into the whole picture, each pixel to its square.
+void copy_finished(const Picture& from, const Pass& pass, std::span<const std::uint8_t> finished, Picture& to) {
+    const auto columns = static_cast<std::size_t>(tile_columns(from.size));
+    for (int y = 0; y < to.size.height; ++y)
+        for (int x = 0; x < to.size.width; ++x) {
+            const int i = x / pass.block, k = y / pass.block;
+            if (!finished[static_cast<std::size_t>(k / tile_side) * columns + static_cast<std::size_t>(i / tile_side)])
+                continue;
+            to.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(to.size.width) +
+                      static_cast<std::size_t>(x)] =
+                from.pixels[static_cast<std::size_t>(k) * static_cast<std::size_t>(from.size.width) +
+                            static_cast<std::size_t>(i)];
+        }
+}
+
+/// From one ray for a square of 128 x 128 pixels to all samples in every pixel, each four times the rays of the last.
+std::vector<Pass> passes_to(int samples) {
+    std::vector<Pass> passes;
+    for (int block = 128; block > 1; block /= 2) passes.push_back({block, 1});
+    for (int few = 1; few < samples; few *= 4) passes.push_back({1, few});
+    passes.push_back({1, samples});
+    return passes;
+}
+
+/// The finest pass after `last` that the time left allows, if a ray takes as long as in that one; at least the next.
+std::size_t next_pass(std::span<const Pass> passes, std::size_t last, PictureSize whole, double seconds,
+                      const StopRequest& stop) {
+    const auto seconds_on = [&](const Pass& pass, std::size_t at_once) {
+        return static_cast<double>(pass.size(whole).pixels()) * pass.samples / static_cast<double>(at_once);
+    };
+    // A pass of few tiles keeps few threads busy.
+    const auto busy = [&](const Pass& pass) {
+        return std::min(tile_count(pass.size(whole)), static_cast<std::size_t>(threads()));
+    };
+    const double rate = seconds / seconds_on(passes[last], busy(passes[last])), left = stop.seconds_left();
+    std::size_t next = passes.size() - 1;
+    while (next > last + 1 && rate * seconds_on(passes[next], busy(passes[next])) > left) --next;
+    return next;
+}
+
+}  // namespace
+
+Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
+                     const StopRequest& stop) {
+    progress.phase("render");
+    std::vector<std::uint8_t> finished;
+    return paint(light, options, {1, options.samples}, usual_brightness(light, options), progress, stop, finished);
+}
+
+TimedPicture take_picture_in_time(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
+                                  const StopRequest& stop) {
+    progress.phase("render");
+    const double brightness = usual_brightness(light, options);
+    const std::vector<Pass> passes = passes_to(options.samples);
+    TimedPicture out{.picture = {options.size, std::vector<Pixel>(options.size.pixels())}};
+    for (std::size_t i = 0; i < passes.size();) {
+        const Pass& pass = passes[i];
+        const Stopwatch watch;
+        std::vector<std::uint8_t> finished;
+        Picture painted = paint(light, options, pass, brightness, progress, stop, finished);
+        const bool is_whole = std::find(finished.begin(), finished.end(), 0) == finished.end();
+        if (is_whole) out.samples = pass.block == 1 ? pass.samples : 0, out.block = pass.block;
+        if (is_whole && pass.block == 1)
+            out.picture = std::move(painted);
+        else if (out.block > 0)
+            copy_finished(painted, pass, finished, out.picture);
+        out.is_complete = is_whole && i + 1 == passes.size();
+        if (stop.requested()) break;
+        i = i + 1 == passes.size() ? passes.size() : next_pass(passes, i, options.size, watch.seconds(), stop);
+    }
+    return out;
 }
 
 std::vector<bool> element_edges(const ElementTree& tree, const Scene& scene, const RayTracer& tracer,

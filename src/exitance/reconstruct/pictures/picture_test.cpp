@@ -4,6 +4,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/reconstruct/pictures/automatic_camera.hpp"
+#include "exitance/reconstruct/pictures/timed_picture.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 #include "support/sample_solution.hpp"
@@ -245,6 +246,73 @@ TEST(AutomaticCamera, LooksIntoARoomThroughItsOpenSide) {
     EXPECT_LT(camera.eye.y, 0);
     EXPECT_NEAR(camera.eye.x, 0.5, 1e-12);
     EXPECT_GT(camera.target.y, camera.eye.y);
+}
+
+/// Requests a stop when a pass begins, counted from 1.
+class StopAtPass : public Progress {
+  public:
+    StopAtPass(StopRequest& stop, int pass) : stop_(stop), pass_(pass) {}
+    void advance(double fraction, std::string_view) override {
+        if (fraction == 0 && --pass_ == 0) stop_.interrupt();
+    }
+
+  private:
+    StopRequest& stop_;
+    int pass_;
+};
+
+TimedPicture stopped_picture(const Solution& s, const PictureOptions& options, int pass) {
+    StopRequest stop;
+    StopAtPass progress(stop, pass);
+    return take_picture_in_time(RadiosityFunction(s), options, progress, stop);
+}
+
+void expect_same_light(const Picture& a, const Picture& b) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        ASSERT_EQ(a.pixels[i].radiosity, b.pixels[i].radiosity) << "pixel " << i;
+        ASSERT_EQ(a.pixels[i].irradiance, b.pixels[i].irradiance) << "pixel " << i;
+        ASSERT_EQ(a.pixels[i].front, b.pixels[i].front) << "pixel " << i;
+    }
+}
+
+TEST(TakePictureInTime, HasTheBitsOfTakePictureWhereTimeSuffices) {
+    const Solution s = sample_solution();
+    const Camera camera{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70};
+    const PictureOptions options{camera, {150, 90}, 5};
+    const Picture whole = picture_of(s, camera, {150, 90}, 5);
+    for (const double seconds : {0.0, 1e6}) {
+        StopRequest stop;
+        if (seconds > 0) stop.set_deadline(StopRequest::Clock::now() + std::chrono::seconds(1000000));
+        Progress quiet;
+        const TimedPicture taken = take_picture_in_time(RadiosityFunction(s), options, quiet, stop);
+        EXPECT_TRUE(taken.is_complete);
+        EXPECT_EQ(taken.samples, 5);
+        EXPECT_EQ(taken.block, 1);
+        expect_same_light(taken.picture, whole);
+    }
+}
+
+TEST(TakePictureInTime, IsWholeInSquaresWhereAStopCutsTheNextPassShort) {
+    const Solution s = sample_solution();
+    const TimedPicture taken = stopped_picture(s, {{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70}, {300, 200}, 16}, 2);
+    EXPECT_FALSE(taken.is_complete);
+    EXPECT_EQ(taken.samples, 0);
+    EXPECT_EQ(taken.block, 128);
+    const auto pixel = [&](int x, int y) { return taken.picture.pixels[static_cast<std::size_t>(300 * y + x)]; };
+    for (int y = 0; y < 200; ++y)
+        for (int x = 0; x < 300; ++x) {
+            EXPECT_EQ(pixel(x, y).front, 1) << x << " " << y;
+            EXPECT_EQ(pixel(x, y).irradiance, pixel(x - x % 128, y - y % 128).irradiance);
+        }
+    EXPECT_NE(pixel(0, 0).irradiance, pixel(299, 199).irradiance);
+}
+
+TEST(TakePictureInTime, SaysThatNothingIsPaintedWhereTheFirstPassIsCutShort) {
+    const TimedPicture taken =
+        stopped_picture(sample_solution(), {{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70}, {300, 200}, 16}, 1);
+    EXPECT_EQ(taken.block, 0);
+    EXPECT_FALSE(taken.is_complete);
 }
 
 }  // namespace

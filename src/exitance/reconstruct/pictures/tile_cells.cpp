@@ -69,6 +69,7 @@ const Spot* TileLight::spot_at(std::span<const Spot> spots, int x, int y) const 
 /// Direct light at one place of a spot, by clusters of emitters or by shared rays; asked for once.
 Spectrum TileLight::light_by_rays(const Spot& spot) {
     const std::size_t pixel = pixel_of(spot);
+    if (is_stopped()) return {};
     if (is_found_[pixel]) return found_[pixel];
     const Stage& stage = light_.stage();
     Point at = points_[spot.first];

@@ -87,6 +87,7 @@ TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsi
 
 /// What is known of the emitters from everywhere on these spots of one region; false where they are too slender to ask.
 bool TileLight::prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out) {
+    if (is_stopped()) return false;
     const Stage& stage = light_.stage();
     const RegionId region = spots.front().region;
     const Normal& n = stage.scene.regions()[region].plane.n;
@@ -135,6 +136,7 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const 
 
 /// What is not exact direct light, mean over a spot.
 Spectrum TileLight::elements(const Spot& spot) {
+    if (is_stopped()) return {};
     if (gather_ == 0)
         return probed_mean(spot.count, Spectrum(),
                            [&](std::uint32_t i) { return light_.elements(spot.region, points_[spot.first + i]); });
@@ -149,6 +151,7 @@ Spectrum TileLight::elements(const Spot& spot) {
 
 /// Direct light, less what the mesh has there where that is integrated.
 Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const Point& x) {
+    if (is_stopped()) return {};
     const Stage& stage = light_.stage();
     const Spectrum meshed = spot.meshed ? mesh_->at(spot.region, x) : Spectrum();
     if (known) return direct_share_ * stage.direct.irradiance(*known, x, visibility_) - meshed;
@@ -259,6 +262,7 @@ void TileLight::evaluate(std::span<const Point> points, std::vector<Spot>& spots
     std::sort(spots.begin(), spots.end(), [&](const Spot& a, const Spot& b) { return key(a) < key(b); });
     for (std::size_t first = 0, last = 0; first < spots.size(); first = last) {
         while (last < spots.size() && spots[last].region == spots[first].region) ++last;
+        if (is_stopped()) return;
         evaluate_region(std::span(spots).subspan(first, last - first));
     }
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "exitance/core/progress.hpp"
 #include "exitance/direct/shared_rays.hpp"
 #include "exitance/reconstruct/gather.hpp"
 #include "exitance/reconstruct/mesh_light.hpp"
@@ -42,6 +43,8 @@ class TileLight {
 
     /// The mesh whose means spots may have; it must outlive this.
     void use(const MeshLight& mesh) { mesh_ = &mesh; }
+    /// A request to stop, which must outlive this: once it is made, evaluate() returns at once with unfinished spots.
+    void use(const StopRequest& stop) { stop_ = &stop; }
 
     /// Fills in the irradiance of every spot and brings the spots into an order of its own. `points` are places in the
     /// open on the spots' regions, metres.
@@ -66,6 +69,7 @@ class TileLight {
         }
     }
 
+    bool is_stopped() const { return stop_ && stop_->requested(); }
     void evaluate_region(std::span<Spot> spots);
     const ReceiverLight* look_at_block(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& room);
     bool prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out);
@@ -89,6 +93,7 @@ class TileLight {
 
     const RadiosityFunction& light_;
     const MeshLight* mesh_ = nullptr;
+    const StopRequest* stop_ = nullptr;
     std::uint32_t samples_;
     unsigned gather_;
     std::uint64_t seed_;

@@ -1,0 +1,104 @@
+#include "exitance/cli/run_limits.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "exitance/core/available_memory.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/transport/distributed.hpp"
+
+namespace exitance {
+namespace {
+
+using Clock = StopRequest::Clock;
+
+/// Time for code that checks the StopRequest to end by itself, with a message of its own and without its child
+/// programs.
+constexpr std::chrono::milliseconds grace{200};
+/// Time between two looks at the memory. Pages are first written at about 1 GB/s a core: 10 MB a core in this time.
+constexpr std::chrono::milliseconds memory_interval{10};
+
+}  // namespace
+
+Clock::time_point seconds_from_now(double seconds) {
+    const std::chrono::duration<double> limit(std::min(seconds, 1e9));  // what a clock can hold
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+}
+
+RunLimits::RunLimits(const LimitArguments& limits) : limits_(limits) {
+    if (limits_.time_limit) {
+        const Clock::time_point deadline = seconds_from_now(*limits_.time_limit);
+        stop_.set_deadline(deadline);
+        end_ = deadline + grace;
+    }
+    if (limits_.time_limit || limits_.memory_limit) watcher_ = std::jthread([this] { watch(); });
+}
+
+RunLimits::~RunLimits() {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+    changed_.notify_all();
+}
+
+StopRequest& RunLimits::keep(Signals signals) {
+    const std::lock_guard lock(mutex_);
+    keeps_ = true;
+    if (!signals_ && signals == Signals::request_stop) signals_.emplace(stop_);
+    changed_.notify_all();
+    return stop_;
+}
+
+double RunLimits::seconds_left() const {
+    if (!limits_.time_limit) return std::numeric_limits<double>::infinity();
+    return std::chrono::duration<double>(end_ - grace - Clock::now()).count();
+}
+
+std::string RunLimits::reason() const {
+    return over_memory_ ? "memory limit" : stop_.interrupted() ? "interrupt" : "time limit";
+}
+
+Error RunLimits::error(const std::string& message) const {
+    return over_memory_ ? Error{ErrorCode::limit,
+                                fmt::format("the run takes more than {:.0f} MiB, and {}",
+                                            static_cast<double>(*limits_.memory_limit) / 0x1p20, message),
+                                "--memory-limit", "raise the limit"}
+                        : Error{ErrorCode::limit,
+                                fmt::format("{:g} s have passed, and {}", limits_.time_limit.value_or(0), message),
+                                "--time-limit", "raise the limit"};
+}
+
+bool RunLimits::is_over_memory() const {
+    return limits_.memory_limit &&
+           resident_memory_bytes(1.0 / static_cast<double>(processes_on_node())) > *limits_.memory_limit;
+}
+
+void RunLimits::watch() {
+    std::unique_lock lock(mutex_);
+    while (!is_over_) {
+        const bool looks = limits_.memory_limit && !over_memory_;
+        if (looks)
+            changed_.wait_until(lock, std::min(end_, Clock::now() + memory_interval));
+        else if (keeps_ || !limits_.time_limit)
+            changed_.wait(lock);
+        else
+            changed_.wait_until(lock, end_);
+        if (is_over_) return;
+        const bool passes_memory = looks && is_over_memory();
+        if (passes_memory) over_memory_ = true, stop_.interrupt();
+        if (!keeps_ && (passes_memory || Clock::now() >= end_) && is_first_process()) end_without_result();
+    }
+}
+
+void RunLimits::end_without_result() const {
+    const Error passed = error("there is no result to keep yet");
+    fmt::print(stderr, "{}error: {}: {}\nhint: {}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", passed.where,
+               passed.message, passed.hint);
+    remove_unfinished_files();
+    _exit(static_cast<int>(ExitCode::no_result));
+}
+
+}  // namespace exitance
