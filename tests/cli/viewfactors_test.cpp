@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "cli/small_scene.hpp"
 
@@ -32,7 +35,7 @@ TEST(ProgramViewFactors, TheTableHasARowAFaceAndClosedRoomsSumToOne) {
         ASSERT_EQ(fields.size(), 10u);
         const double row_sum = std::stod(fields[2]);
         EXPECT_LE(row_sum, 1.0001);
-        // The floor and the lamp's front see none of the lamp's black back; 1e-4 is the tolerance by default.
+        // The floor and the lamp's front see none of the lamp's black back, so that their rows are closed.
         if (rows == 0 || rows == 6) {
             EXPECT_NEAR(row_sum, 1, 1e-4);
         }
@@ -48,13 +51,37 @@ TEST(ProgramViewFactors, ToleranceOutOfRangeIsAUsageErrorAndAnUnwritableFolderLe
     EXPECT_EQ(run_program({"viewfactors", write_broken_scene(folder), "-o", folder / "f.csv"}).status, 3);
 }
 
+TEST(ProgramViewFactors, RowErrorsAndTheirCheckAreReported) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder);
+    const Finished words = run_program({"viewfactors", scene, "-o", folder / "a.h5", "--error", "3e-3"});
+    ASSERT_EQ(words.status, 0) << words.err;
+    EXPECT_NE(words.out.find("error of rows at most"), std::string::npos) << words.out;
+    EXPECT_NE(words.out.find("4 random rows"), std::string::npos) << words.out;
+    const Finished json = run_program({"viewfactors", scene, "-o", folder / "b.h5", "--error", "3e-3", "--json"});
+    ASSERT_EQ(json.status, 0) << json.err;
+    const nlohmann::json facts = nlohmann::json::parse(json.out);
+    EXPECT_LE(facts["row_error"], 3e-3);
+    EXPECT_LE(facts["row_error_checked"], 6e-3);  // the rays' noise is within R
+    EXPECT_GT(facts["entries"], 20);
+    EXPECT_EQ(facts["dropped"], 0);
+    EXPECT_LE(facts["closure_defect"], 1e-2);  // of one row's own noise
+    EXPECT_TRUE(facts["reciprocity_defect"].is_number());
+    EXPECT_EQ(read_text(folder / "a.h5"), read_text(folder / "b.h5"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.h5.rows"));
+    EXPECT_EQ(
+        run_program({"viewfactors", scene, "-o", folder / "c.h5", "--error", "1e-3", "--tolerance", "1e-3"}).status, 2);
+}
+
 TEST(ProgramViewFactors, RaysSpeakInTheSummaryAndInJson) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
-    const Finished words = run_program({"viewfactors", scene, "-o", folder / "a.mtx", "--check", "20"});
+    const Finished words =
+        run_program({"viewfactors", scene, "-o", folder / "a.mtx", "--tolerance", "1e-4", "--check", "20"});
     ASSERT_EQ(words.status, 0) << words.err;
     EXPECT_NE(words.out.find("20 entries drawn by lot, 0 off by more than"), std::string::npos) << words.out;
-    const Finished json = run_program({"viewfactors", scene, "-o", folder / "b.mtx", "--check", "20", "--json"});
+    const Finished json =
+        run_program({"viewfactors", scene, "-o", folder / "b.mtx", "--tolerance", "1e-4", "--check", "20", "--json"});
     ASSERT_EQ(json.status, 0) << json.err;
     const nlohmann::json facts = nlohmann::json::parse(json.out);
     EXPECT_EQ(facts["check"]["entries"], 20);
@@ -91,24 +118,56 @@ std::size_t files_in(const TemporaryFolder& folder) {
     return count;
 }
 
-TEST(ProgramViewFactors, ATimeLimitEndsTheWorkWithNothingWritten) {
+TEST(ProgramViewFactors, ALimitBeforeTheFirstRowLeavesNothing) {
     const TemporaryFolder folder;
     const std::string scene = write_long_work(folder);
-    const Finished run = run_program(
-        {"viewfactors", scene, "-o", folder / "f.csv", "--tolerance", "1e-9", "--time-limit", "0.2", "--check", "0"});
-    EXPECT_EQ(run.status, 5) << run.out;
-    EXPECT_NE(run.err.find("stopped"), std::string::npos) << run.err;
-    EXPECT_EQ(files_in(folder), 1u);
+    for (const char* demand : {"--error", "--tolerance"}) {
+        const Finished run =
+            run_program({"viewfactors", scene, "-o", folder / "f.csv", demand, "1e-6", "--time-limit", "1e-4"});
+        EXPECT_EQ(run.status, 5) << run.out;
+        EXPECT_NE(run.err.find("stopped"), std::string::npos) << run.err;
+        EXPECT_EQ(files_in(folder), 1u);
+    }
 }
 
-TEST(ProgramViewFactors, ASignalEndsTheWorkWithNothingWritten) {
+/// Sends a signal once the first rows are kept beside the output; returns the exit status.
+int interrupt_after_rows(const std::vector<std::string>& words, const std::string& rows, int signal) {
+    RunningProgram program(words);
+    std::error_code none;
+    for (int k = 0; k < 60'000; ++k) {
+        if (std::filesystem::exists(rows, none) && std::filesystem::file_size(rows, none) > 1000) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    program.send(signal);
+    return program.finish().status;
+}
+
+TEST(ProgramViewFactors, ASignalKeepsFinishedRowsAndResumeGivesTheSameBytes) {
     const TemporaryFolder folder;
     const std::string scene = write_long_work(folder);
-    RunningProgram program({"viewfactors", scene, "-o", folder / "f.csv", "--tolerance", "1e-9"});
-    ASSERT_TRUE(program.wait_for("default"));  // the scene is read: faces without a material are told
-    program.send(SIGTERM);
-    EXPECT_EQ(program.finish().status, 143);
-    EXPECT_EQ(files_in(folder), 1u);
+    const std::vector<std::string> work{"viewfactors", scene, "-o", folder / "f.h5", "--error", "1e-2", "--check", "0"};
+    EXPECT_EQ(interrupt_after_rows(work, folder / "f.h5.rows", SIGTERM), 4);
+    EXPECT_TRUE(std::filesystem::exists(folder / "f.h5"));
+    std::vector<std::string> on = work;
+    on.push_back("--resume");
+    interrupt_after_rows(on, folder / "f.h5.rows", SIGKILL);
+    EXPECT_EQ(run_program(on).status, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder / "f.h5.rows"));
+    std::vector<std::string> whole = work;
+    whole[3] = folder / "whole.h5";
+    EXPECT_EQ(run_program(whole).status, 0);
+    EXPECT_EQ(read_text(folder / "f.h5"), read_text(folder / "whole.h5"));
+}
+
+TEST(ProgramViewFactors, ResumeOfOtherWorkIsRefused) {
+    const TemporaryFolder folder;
+    const std::string scene = write_long_work(folder);
+    const std::string output = folder / "f.h5";
+    interrupt_after_rows({"viewfactors", scene, "-o", output, "--error", "1e-2", "--check", "0"}, output + ".rows",
+                         SIGKILL);
+    const Finished other = run_program({"viewfactors", scene, "-o", output, "--error", "2e-2", "--resume"});
+    EXPECT_EQ(other.status, 3);
+    EXPECT_NE(other.err.find("other options"), std::string::npos) << other.err;
 }
 
 TEST(ProgramViewFactors, ReadsView3dAndStl) {

@@ -177,10 +177,13 @@ struct ExperimentArguments : CommonArguments {
 struct ViewFactorArguments : CommonArguments {
     SceneArguments scene;
     std::string output;
-    double tolerance = 1e-4;  ///< Relative error of every entry above 1e-6.
-    std::size_t check = 100;  ///< Entries that rays check.
-    std::size_t check_rays = 1u << 14;
+    std::optional<double> error;            ///< Error of every row; 1e-3 if neither this nor a tolerance is given.
+    std::optional<double> tolerance;        ///< Relative error of every entry above 1e-6, in place of an error of rows.
+    double smallest = 0;                    ///< Entries below are dropped.
+    std::optional<std::size_t> check;       ///< Rows that rays check, or entries if there is a tolerance.
+    std::optional<std::size_t> check_rays;  ///< Per row or entry.
     std::uint64_t seed = 1;
+    bool resume = false;  ///< Go on from the rows that an earlier run kept.
     int threads = 0;
 };
 

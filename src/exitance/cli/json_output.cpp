@@ -294,26 +294,49 @@ std::string error_json(const ErrorMeasure& error) {
     return dump(json, 2);
 }
 
+namespace {
+
+Json json_of(const RayCheck& check) {
+    return {{"entries", check.entries},
+            {"rays", check.rays},
+            {"wrong", check.wrong},
+            {"largest_deviation_in_standard_errors", check.largest_deviation},
+            {"largest_relative_deviation", check.largest_relative},
+            {"relative_standard_error_there", check.relative_error_there},
+            {"median_relative_standard_error", check.usual_relative_error}};
+}
+
+Json json_of(const RowCheck& check) {
+    return {{"rows", check.rows.size()}, {"rays", check.rays}, {"wrong", check.wrong}};
+}
+
+}  // namespace
+
 std::string view_factors_json(const ViewFactorFacts& facts) {
-    const RayCheck& check = facts.check;
-    const Json json{
+    Json json{
         {"surfaces", facts.surfaces},
-        {"tolerance", facts.tolerance},
+        {"rows_finished", facts.finished_rows},
+        {"entries", facts.entries},
+        {"smallest", facts.smallest},
+        {"dropped", facts.dropped},
         {"reciprocity_defect", facts.reciprocity_defect},
-        {"entry_reciprocity_defect", facts.entry_defect},
-        {"pairs_computed_again", facts.mended},
-        {"pairs_unsettled", facts.unsettled},
-        {"check",
-         {{"entries", check.entries},
-          {"rays", check.rays},
-          {"wrong", check.wrong},
-          {"largest_deviation_in_standard_errors", check.largest_deviation},
-          {"largest_relative_deviation", check.largest_relative},
-          {"relative_standard_error_there", check.relative_error_there},
-          {"median_relative_standard_error", check.usual_relative_error}}},
         {"row_sum", {{"least", facts.least_row_sum}, {"most", facts.most_row_sum}}},
         {"seconds", facts.seconds},
     };
+    if (facts.tolerance) {
+        json["tolerance"] = *facts.tolerance;
+        json["entry_reciprocity_defect"] = facts.entry_defect;
+        json["pairs_computed_again"] = facts.mended;
+        json["pairs_unsettled"] = facts.unsettled;
+        json["check"] = json_of(facts.check);
+    } else {
+        json["error"] = facts.error;
+        json["row_error"] = facts.row_error;
+        json["row_error_checked"] = facts.row_check.rows.empty() ? Json() : Json(facts.row_check.error);
+        json["closure_defect"] = facts.closure_defect;
+        json["rows_unclosed"] = facts.unclosed;
+        json["check"] = json_of(facts.row_check);
+    }
     return dump(json, 2);
 }
 

@@ -14,6 +14,7 @@
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/solve/solve_options.hpp"
 #include "exitance/view_factors/ray_check.hpp"
+#include "exitance/view_factors/row_check.hpp"
 
 namespace exitance {
 
@@ -56,10 +57,17 @@ struct ViewFactorFacts {
     std::size_t surfaces = 0;
     double seconds = 0;
     double reciprocity_defect = 0;
-    double least_row_sum = 0, most_row_sum = 0;
-    double tolerance = 0, entry_defect = 0;
+    double closure_defect = 0;
+    double least_row_sum = HUGE_VAL, most_row_sum = 0;
+    std::size_t entries = 0, finished_rows = 0;
+    double error = 0, smallest = 0;     ///< As requested.
+    std::optional<double> tolerance;    ///< As requested, in place of the error of rows.
+    double row_error = 0, dropped = 0;  ///< The largest of all finished rows.
+    std::size_t unclosed = 0;           ///< Rows whose closure defect is not explained by their variance.
+    double entry_defect = 0;
     std::size_t mended = 0, unsettled = 0;
-    RayCheck check;
+    RayCheck check;      ///< Of entries, with a tolerance.
+    RowCheck row_check;  ///< Of rows, without.
 };
 
 /// `viewfactors --json`.

@@ -160,17 +160,28 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
                    "Matrix to write: .csv, .vf as View3D does, or sparse: .mtx (Matrix Market), .h5")
         ->type_name("FILE")
         ->required();
-    const auto read_tolerance = [&arguments](const std::string& word) {
-        arguments.tolerance = read_number("--tolerance", word);
-        if (arguments.tolerance < 1e-12 || arguments.tolerance > 0.1)
-            throw CLI::ValidationError("--tolerance", fmt::format("must be between 1e-12 and 0.1, not {}", word));
+    const auto add_range = [&app](const char* name, std::optional<double>& value, double least, double most,
+                                  const char* help) {
+        const auto read = [=, &value](const std::string& word) {
+            value = read_number(name, word);
+            if (*value < least || *value > most)
+                throw CLI::ValidationError(name, fmt::format("must be between {} and {}, not {}", least, most, word));
+        };
+        return app.add_option_function<std::string>(name, read, help)->type_name("R");
     };
-    app.add_option_function<std::string>("--tolerance", read_tolerance,
-                                         "Relative error of entries above 1e-6; default 1e-4")
-        ->type_name("R");
-    add_count(app, "--check", arguments.check, 0, "Entries drawn by lot that rays check; default 100");
-    add_count(app, "--check-rays", arguments.check_rays, 64, "Rays an entry so checked; default 16384");
-    add_count(app, "--seed", arguments.seed, 0, "Of the lot and of the rays; default 1");
+    CLI::Option* const error = add_range("--error", arguments.error, 1e-7, 0.5,
+                                         "Error of every row: standard deviation of its sampled entries plus bounds of "
+                                         "the others; default 1e-3. For heat balances");
+    add_range("--tolerance", arguments.tolerance, 1e-12, 0.1,
+              "Relative error of every entry above 1e-6, in place of --error. Slower; for single entries")
+        ->excludes(error);
+    add_positive(app, "--smallest", arguments.smallest, "F", "Leave out entries below F; default: none");
+    add_count(app, "--check", arguments.check, 0,
+              "Random rows that rays check, default 4; with --tolerance random entries, default 100");
+    add_count(app, "--check-rays", arguments.check_rays, 64,
+              "Rays per checked row, by default 0.2 / R^2 from 8192 to 524288; per checked entry, default 16384");
+    add_count(app, "--seed", arguments.seed, 0, "Seed of all random numbers; default 1");
+    app.add_flag("--resume", arguments.resume, "Go on from the rows in FILE.rows, which a stopped run leaves");
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }

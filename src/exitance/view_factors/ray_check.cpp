@@ -9,7 +9,7 @@
 
 #include "exitance/core/parallel.hpp"
 #include "exitance/core/random.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/view_factors/face_sampler.hpp"
 #include "exitance/visibility/rays.hpp"
 
 namespace exitance {
@@ -20,46 +20,6 @@ constexpr std::size_t batches = 64;  ///< Means of so many are near enough to no
 /// checked with as many rays as by default, none was further off than 4.1 (`viewfactors --seed 1` to 8).
 constexpr double beyond_doubt = 6;
 constexpr double near_sizes = 0.2;  ///< Of the larger face's size: what is nearer has kernels without a bound.
-
-/// Draws points of a polygon, evenly.
-class FaceSampler {
-  public:
-    FaceSampler(const Scene& scene, SurfaceId s) : normal_(scene.surfaces()[s].normal) {
-        const std::span<const Point> outline = scene.outline(s);
-        for (const auto& piece : convex_pieces(outline, normal_))
-            for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
-                const Point& o = outline[piece[0]];
-                const Vec3 a = outline[piece[k]] - o, b = outline[piece[k + 1]] - o;
-                area_ += 0.5 * std::max(0.0, dot(normal_, cross(a, b)));
-                triangles_.push_back({o, a, b, area_});
-            }
-        for (const Point& p : outline) box_.add(p);
-    }
-    Point operator()(double u, double v) const {
-        const double wanted = u * area_;
-        std::size_t k = 0;
-        double before = 0;
-        while (k + 1 < triangles_.size() && triangles_[k].area_up_to <= wanted) before = triangles_[k++].area_up_to;
-        const Triangle& t = triangles_[k];
-        const double share = std::clamp((wanted - before) / std::max(t.area_up_to - before, 1e-300), 0.0, 1.0);
-        const double root = std::sqrt(share);
-        return t.o + (root * (1 - v)) * t.a + (root * v) * t.b;
-    }
-    double area() const { return area_; }
-    const Normal& normal() const { return normal_; }
-    const Box& box() const { return box_; }
-
-  private:
-    struct Triangle {
-        Point o;
-        Vec3 a, b;
-        double area_up_to;
-    };
-    Normal normal_;
-    std::vector<Triangle> triangles_;
-    double area_ = 0;
-    Box box_;
-};
 
 /// Means of batches: their mean, and how far it may be off.
 struct BatchSums {
@@ -115,9 +75,7 @@ RayEntry by_directions(const RayTracer& tracer, const FaceSampler& from, RegionI
         const ScrambledSobol points(hash(seed, b));
         for (std::uint32_t k = 0; k < each; ++k) {
             xs[k] = from(points(k, 0), points(k, 1));
-            const double r = std::sqrt(points(k, 2)), phi = 2 * pi * points(k, 3);
-            directions[k] = (r * std::cos(phi)) * frame.u + (r * std::sin(phi)) * frame.v +
-                            std::sqrt(std::max(1e-12, 1 - r * r)) * from.normal();
+            directions[k] = cosine_direction(frame, points(k, 2), points(k, 3));
         }
         tracer.nearest(xs, directions, own, hits);
         const auto met = std::count_if(hits.begin(), hits.end(),
@@ -128,11 +86,17 @@ RayEntry by_directions(const RayTracer& tracer, const FaceSampler& from, RegionI
     return {sums.mean(), std::sqrt(sums.squared_error() + one * one), each * batches};
 }
 
-/// Ranks of entries above the smallest, each once.
-std::vector<std::size_t> draw_entries(const ViewFactors& table, const RayCheckOptions& options) {
-    std::vector<std::size_t> above;
-    for (std::size_t k = 0; k < table.factors.size(); ++k)
-        if (table.factors[k] > ViewFactors::smallest_entry) above.push_back(k);
+struct DrawnEntry {
+    std::uint32_t i, j;
+    double F;
+};
+
+/// Entries above the smallest, each once.
+std::vector<DrawnEntry> draw_entries(const SparseFactors& table, const RayCheckOptions& options) {
+    std::vector<DrawnEntry> above;
+    for (std::uint32_t i = 0; i < table.size(); ++i)
+        for (std::size_t k = table.starts[i]; k < table.starts[i + 1]; ++k)
+            if (table.values[k] > ViewFactors::smallest_entry) above.push_back({i, table.columns[k], table.values[k]});
     const std::size_t count = std::min(options.entries, above.size());
     RandomStream random(options.seed, Stream::reference, table.size());
     for (std::size_t k = 0; k < count; ++k) {  // the first steps of a shuffle
@@ -159,10 +123,10 @@ RayEntry view_factor_by_rays(const Scene& scene, const RayTracer& tracer, Surfac
     return back;
 }
 
-RayCheck check_by_rays(const Scene& scene, const ViewFactors& table, const RayCheckOptions& options,
+RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const RayCheckOptions& options,
                        const StopRequest& stop) {
     RayCheck check;
-    const std::vector<std::size_t> drawn = draw_entries(table, options);
+    const std::vector<DrawnEntry> drawn = draw_entries(table, options);
     if (drawn.empty()) return check;
     const RayTracer tracer(scene);
     std::vector<RayEntry> found(drawn.size());
@@ -170,16 +134,15 @@ RayCheck check_by_rays(const Scene& scene, const ViewFactors& table, const RayCh
     parallel_for(drawn.size(), 1, [&](std::size_t k) {
         if (stop.requested()) stopped = true;
         if (stopped) return;
-        const std::size_t i = drawn[k] / table.size(), j = drawn[k] % table.size();
-        found[k] =
-            view_factor_by_rays(scene, tracer, SurfaceId(static_cast<std::uint32_t>(i)),
-                                SurfaceId(static_cast<std::uint32_t>(j)), options.rays, hash(options.seed, drawn[k]));
+        const auto [i, j, F] = drawn[k];
+        found[k] = view_factor_by_rays(scene, tracer, SurfaceId(i), SurfaceId(j), options.rays,
+                                       hash(options.seed, std::uint64_t{i} * table.size() + j));
     });
     std::vector<double> relative_errors;
     check.is_complete = !stopped;
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         if (found[k].rays == 0) continue;
-        const double F = table.factors[drawn[k]], off = std::abs(F - found[k].F);
+        const double F = drawn[k].F, off = std::abs(F - found[k].F);
         const double relative_error = found[k].standard_error / F;
         ++check.entries, check.rays += found[k].rays;
         relative_errors.push_back(relative_error);

@@ -4,7 +4,7 @@
 
 #include "exitance/core/progress.hpp"
 #include "exitance/scene/scene.hpp"
-#include "exitance/view_factors/view_factors.hpp"
+#include "exitance/view_factors/sparse_factors.hpp"
 
 namespace exitance {
 
@@ -40,7 +40,7 @@ RayEntry view_factor_by_rays(const Scene& scene, const class RayTracer& tracer, 
                              std::size_t rays, std::uint64_t seed);
 
 /// Compares entries with rays. The same on any number of threads.
-RayCheck check_by_rays(const Scene& scene, const ViewFactors& table, const RayCheckOptions& options,
+RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const RayCheckOptions& options,
                        const StopRequest& stop);
 
 }  // namespace exitance

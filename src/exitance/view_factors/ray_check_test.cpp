@@ -29,9 +29,9 @@ Scene squares_with_a_board(bool with_board) {
     return *make_scene(d).scene;
 }
 
-ViewFactors table_of(const Scene& scene) {
+SparseFactors table_of(const Scene& scene) {
     Progress progress;
-    return *compute_view_factors(scene, 1e-5, progress, StopRequest());
+    return sparse_from(*compute_view_factors(scene, 1e-5, progress, StopRequest()));
 }
 
 constexpr double parallel_squares = 0.199824895698387;  // of unit size, one apart [Howell]
@@ -56,8 +56,8 @@ TEST(RayCheck, ATableThatIsRightLiesWithinAFewStandardErrors) {
 
 TEST(RayCheck, AWrongEntryIsFound) {
     const Scene scene = squares_with_a_board(true);
-    ViewFactors table = table_of(scene);
-    table.factors[1] *= 1.2;
+    SparseFactors table = table_of(scene);
+    table.values[0] *= 1.2;
     const RayCheck check = check_by_rays(scene, table, {}, StopRequest());
     EXPECT_GT(check.largest_deviation, 10);
     EXPECT_NEAR(check.largest_relative, 1 - 1 / 1.2, 0.02);

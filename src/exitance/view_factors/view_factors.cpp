@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/core/memory.hpp"
 #include "exitance/core/parallel.hpp"
+#include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/row_worker.hpp"
 #include "exitance/view_factors/view_pairs.hpp"
 
@@ -20,6 +22,10 @@ constexpr std::size_t rows_a_step = 64, pairs_a_step = 512;  ///< Between report
 
 Error stopped(const std::string& what) {
     return {ErrorCode::limit, "stopped " + what, "", "allow more time or a larger --tolerance"};
+}
+
+bool exceeds_memory(std::size_t limit) {
+    return limit != SIZE_MAX && proportional_memory_bytes() > limit;
 }
 
 /// Where both rows hold a pair of faces, computed from either: how far they are apart, of the larger.
@@ -88,18 +94,30 @@ class TableMaker {
         return {};
     }
 
-    Result<void> compute_rows() {
+    /// Computes the rows that are not finished and keeps each.
+    Result<void> compute_rows(std::vector<std::uint8_t>& finished, RawRowStore* store, std::size_t memory_limit) {
         const std::size_t n = table_.size();
         progress_.phase("view factors");
         for (std::size_t first = 0; first < n; first += rows_a_step) {
             const std::size_t count = std::min(rows_a_step, n - first);
+            std::vector<std::uint8_t> made(count);
             parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
                 RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
-                for (std::size_t i = first + from; i < first + to && !stop_.requested(); ++i)
+                for (std::size_t i = first + from; i < first + to && !stop_.requested(); ++i) {
+                    if (finished[i]) continue;
                     worker.compute(i, std::span(table_.factors).subspan(i * n, n));
+                    made[i - first] = !stop_.requested();
+                }
             });
-            if (stop_.requested()) return stopped(fmt::format("after {} of {} rows of view factors", first, n));
-            progress_.advance(static_cast<double>(first + count) / static_cast<double>(n));
+            for (std::size_t k = 0; k < count; ++k) {
+                finished[first + k] |= made[k];
+                if (made[k] && store) store->keep(raw_row(first + k));
+            }
+            if (store) store->flush();
+            if (stop_.requested() || exceeds_memory(memory_limit))
+                return stopped(fmt::format("after {} of {} rows of view factors", first, n));
+            progress_.advance(static_cast<double>(first + count) / static_cast<double>(n),
+                              fmt::format("{} of {} rows", first + count, n));
         }
         return {};
     }
@@ -137,6 +155,14 @@ class TableMaker {
     }
 
   private:
+    RawRow raw_row(std::size_t i) const {
+        RawRow row;
+        row.face = static_cast<std::uint32_t>(i);
+        for (std::uint32_t j = 0; j < table_.size(); ++j)
+            if (table_.row(i)[j] != 0) row.entries.push_back({table_.row(i)[j], j, 0, integrated});
+        return row;
+    }
+
     double& at(std::size_t i, std::size_t j) { return table_.factors[i * table_.size() + j]; }
 
     /// Keeps what agrees better.
@@ -155,44 +181,63 @@ class TableMaker {
     const StopRequest& stop_;
 };
 
-}  // namespace
-
-Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
-                                         const StopRequest& stop) {
-    tolerance = std::clamp(tolerance, 1e-12, 0.1);
-    ViewPairs pairs(scene, stop);
-    if (stop.requested()) return stopped("before the first row of view factors");
-    const std::size_t n = scene.surfaces().size();
+/// A table with nothing but facts of the faces.
+ViewFactors empty_table(const Scene& scene) {
     ViewFactors table;
     for (SurfaceId s : scene.surfaces().ids()) {
         table.areas.push_back(scene.surfaces()[s].area);
         table.emittances.push_back(1 - mean(scene.material(s).reflectance));
     }
-    table.factors.assign(n * n, 0);
-    TableMaker maker(pairs, table, tolerance, progress, stop);
-    if (const Result<void> done = maker.find_hidden(); !done) return done.error();
-    if (const Result<void> done = maker.compute_rows(); !done) return done.error();
-    if (const Result<void> done = maker.mend(); !done) return done.error();
+    table.factors.assign(table.size() * table.size(), 0);
+    return table;
+}
+
+/// Takes over the rows that an earlier run kept; returns 1 for each of them.
+std::vector<std::uint8_t> take_resumed(RawRowStore* store, ViewFactors& table) {
+    std::vector<std::uint8_t> finished(table.size());
+    if (!store) return finished;
+    for (const RawRow& row : store->resumed()) {
+        finished[row.face] = 1;
+        for (const RowEntry& entry : row.entries) table.factors[row.face * table.size() + entry.column] = entry.F;
+    }
+    return finished;
+}
+
+/// All phases of a run. An error of code `limit` leaves `table` with the rows that are `finished`.
+Result<void> fill(const Scene& scene, const EntryFactorOptions& options, RawRowStore* store, Progress& progress,
+                  const StopRequest& stop, ViewFactors& table, std::vector<std::uint8_t>& finished) {
+    ViewPairs pairs(scene, stop);
+    if (stop.requested()) return stopped("before the first row of view factors");
+    TableMaker maker(pairs, table, std::clamp(options.tolerance, 1e-12, 0.1), progress, stop);
+    if (Result<void> done = maker.find_hidden(); !done) return done;
+    if (Result<void> done = maker.compute_rows(finished, store, options.memory_limit_bytes); !done) return done;
+    return maker.mend();
+}
+
+}  // namespace
+
+Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
+                                         const StopRequest& stop) {
+    ViewFactors table = empty_table(scene);
+    std::vector<std::uint8_t> finished(table.size());
+    if (const Result<void> done = fill(scene, {tolerance}, nullptr, progress, stop, table, finished); !done)
+        return done.error();
     add_row_sums(table);
     find_defects(table);
     return table;
 }
 
-ViewFactors merge_rows(const ViewFactors& table, std::span<const std::uint32_t> rows, std::size_t count) {
-    ViewFactors out = table;
-    out.areas.assign(count, 0), out.emittances.assign(count, 1), out.factors.assign(count * count, 0);
-    out.row_sums.clear();
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        if (rows[i] == no_row) continue;
-        const std::size_t to = rows[i];
-        out.areas[to] += table.areas[i], out.emittances[to] = table.emittances[i];
-        for (std::size_t j = 0; j < table.size(); ++j)
-            if (rows[j] != no_row) out.factors[to * count + rows[j]] += table.areas[i] * table.row(i)[j];
-    }
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t j = 0; j < count; ++j)
-            if (out.areas[i] > 0) out.factors[i * count + j] /= out.areas[i];
-    add_row_sums(out);
+SparseFactors compute_entry_factors(const Scene& scene, const EntryFactorOptions& options, RawRowStore* store,
+                                    Progress& progress, const StopRequest& stop) {
+    ViewFactors table = empty_table(scene);
+    std::vector<std::uint8_t> finished = take_resumed(store, table);
+    const bool is_settled = static_cast<bool>(fill(scene, options, store, progress, stop, table, finished));
+    for (std::size_t i = 0; i < table.size(); ++i)  // a row that a stop left half done
+        if (!finished[i]) std::fill_n(table.factors.begin() + std::ptrdiff_t(i * table.size()), table.size(), 0.0);
+    add_row_sums(table);
+    if (is_settled) find_defects(table);
+    SparseFactors out = sparse_from(table, options.smallest);
+    out.finished = std::move(finished), out.is_settled = is_settled;
     return out;
 }
 

@@ -38,11 +38,4 @@ struct ViewFactors {
 Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
                                          const StopRequest& stop);
 
-inline constexpr std::uint32_t no_row = 0xffffffff;
-
-/// A table whose rows are unions of faces: F of a union is the mean of its faces' rows, weighted by area, and the sum
-/// of their columns. `rows` has the row of every face, or no_row for one that only blocks; `count` rows come out.
-/// Defects are those of the faces' table.
-ViewFactors merge_rows(const ViewFactors& table, std::span<const std::uint32_t> rows, std::size_t count);
-
 }  // namespace exitance

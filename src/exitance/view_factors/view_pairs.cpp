@@ -4,29 +4,9 @@
 #include <array>
 
 #include "exitance/core/parallel.hpp"
-#include "exitance/geometry/triangulation.hpp"
 
 namespace exitance {
 namespace {
-
-constexpr std::size_t most_corners = 12;  ///< Of a convex piece.
-
-ViewFace make_face(const Scene& scene, SurfaceId s) {
-    const Surface& surface = scene.surfaces()[s];
-    ViewFace face{
-        scene.outline(s), {surface.normal, dot(surface.normal, scene.outline(s)[0])}, surface.area, {}, {}, 0, false};
-    for (const Point& p : face.outline) face.box.add(p);
-    face.diameter = face.box.diagonal();
-    for (const auto& piece : convex_pieces(face.outline, surface.normal))
-        for (std::size_t first = 1; first + 1 < piece.size(); first += most_corners - 2) {
-            std::vector<Point>& part = face.pieces.emplace_back();
-            part.push_back(face.outline[piece[0]]);
-            for (std::size_t k = first; k < piece.size() && k < first + most_corners - 1; ++k)
-                part.push_back(face.outline[piece[k]]);
-        }
-    face.is_quad = face.pieces.size() == 1 && face.outline.size() <= 4;
-    return face;
-}
 
 /// A box-to-box shaft: planes parallel to an axis that have both boxes on one side. Source: [Haines91].
 class BoxShaft {
@@ -74,8 +54,7 @@ class BoxShaft {
 }  // namespace
 
 ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
-    : occluders_(scene), slack_(std::max(1e-8 * scene.size(), occluders_.rounding())) {
-    for (SurfaceId s : scene.surfaces().ids()) faces_.push_back(make_face(scene, s));
+    : occluders_(scene), slack_(std::max(1e-8 * scene.size(), occluders_.rounding())), faces_(make_view_faces(scene)) {
     blockers_ = make_convex_blockers(occluders_, slack_);
     for (const ConvexBlocker& b : blockers_) {
         Box box;
@@ -102,23 +81,6 @@ std::uint8_t ViewPairs::standing(const ConvexBlocker& blocker, const Plane& plan
         bits |= d > slack_ ? in_front : d < -slack_ ? behind : 0;
     }
     return bits;
-}
-
-bool ViewPairs::face_each_other(std::size_t i, std::size_t j, bool& cut) const {
-    const ViewFace &a = faces_[i], &b = faces_[j];
-    bool any = false, all = true;
-    for (const Point& p : b.outline) {
-        const double d = a.plane.signed_distance(p);
-        any |= d > slack_, all &= d >= -slack_;
-    }
-    if (!any) return false;
-    any = false;
-    for (const Point& p : a.outline) {
-        const double d = b.plane.signed_distance(p);
-        any |= d > slack_, all &= d >= -slack_;
-    }
-    cut = !all;
-    return any;
 }
 
 void ViewPairs::find_blockers(std::size_t face, std::vector<std::uint32_t>& found) const {

@@ -5,22 +5,12 @@
 #include <vector>
 
 #include "exitance/core/progress.hpp"
+#include "exitance/view_factors/view_face.hpp"
 #include "exitance/visibility/convex_blockers.hpp"
 #include "exitance/visibility/joint_shadow.hpp"
 #include "exitance/visibility/occluders.hpp"
 
 namespace exitance {
-
-/// One face of a scene, ready to receive and to send.
-struct ViewFace {
-    std::span<const Point> outline;
-    Plane plane;
-    double area = 0;  ///< m^2
-    Box box;
-    std::vector<std::vector<Point>> pieces;  ///< Convex, of at most 12 corners.
-    double diameter = 0;                     ///< Metres.
-    bool is_quad = false;                    ///< Convex, three or four corners.
-};
 
 /// All faces of a scene and what may stand between any two of them. Immutable once made, shared by all rows.
 class ViewPairs {
@@ -43,7 +33,9 @@ class ViewPairs {
     double slack() const { return slack_; }
 
     /// Is some of each in front of the other? `cut` when only some of one is.
-    bool face_each_other(std::size_t i, std::size_t j, bool& cut) const;
+    bool face_each_other(std::size_t i, std::size_t j, bool& cut) const {
+        return exitance::face_each_other(faces_[i], faces_[j], slack_, cut);
+    }
     /// Blockers with some part in front of a face.
     void find_blockers(std::size_t face, std::vector<std::uint32_t>& found) const;
     /// Those of them that may hide some of j from some of i: not kept apart from both by one of their own faces, and

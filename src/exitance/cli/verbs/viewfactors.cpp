@@ -1,41 +1,78 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/raw_row_file.hpp"
 #include "exitance/io/files/view_factor_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/view3d.hpp"
+#include "exitance/io/solution/checkpoint_file.hpp"
+#include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/ray_check.hpp"
+#include "exitance/view_factors/row_check.hpp"
+#include "exitance/view_factors/row_factors.hpp"
 
 namespace exitance {
 namespace {
 
-ViewFactorFacts facts_of(const ViewFactors& table, double tolerance, const RayCheck& check, double seconds) {
+constexpr double default_error = 1e-3;
+constexpr std::size_t default_checked_rows = 4, default_checked_entries = 100, default_rays_an_entry = 1u << 14;
+
+/// Rays of a checked row. The noise of its squared error is 2 sqrt(sum F^2) / n: at n = 0.2 / R^2 and sum F^2 = 0.1 it
+/// is 3 R^2, so that four rows together tell an error of 2 R from one of R.
+std::size_t default_rays_a_row(double error) {
+    return static_cast<std::size_t>(std::clamp(0.2 / (error * error), 8192.0, 524288.0));
+}
+
+std::size_t unfinished_rows(const SparseFactors& table) {
+    return static_cast<std::size_t>(std::count(table.finished.begin(), table.finished.end(), 0));
+}
+
+ViewFactorFacts facts_of(const SparseFactors& table, double seconds) {
     ViewFactorFacts facts;
-    facts.surfaces = table.size(), facts.seconds = seconds;
-    facts.reciprocity_defect = table.reciprocity_defect;
-    facts.tolerance = tolerance, facts.entry_defect = table.entry_defect;
-    facts.mended = table.mended, facts.unsettled = table.unsettled;
-    facts.check = check;
-    if (table.size() > 0) {
-        const auto [least, most] = std::minmax_element(table.row_sums.begin(), table.row_sums.end());
-        facts.least_row_sum = *least;
-        facts.most_row_sum = *most;
+    facts.surfaces = table.size(), facts.entries = table.entries(), facts.seconds = seconds;
+    facts.finished_rows = table.size() - unfinished_rows(table);
+    facts.reciprocity_defect = table.reciprocity_defect, facts.closure_defect = table.closure_defect;
+    facts.entry_defect = table.entry_defect;
+    facts.mended = table.mended, facts.unsettled = table.unsettled, facts.unclosed = table.unclosed;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        if (!table.finished[i]) continue;
+        if (!table.row_errors.empty()) facts.row_error = std::max(facts.row_error, table.row_errors[i]);
+        if (!table.dropped.empty()) facts.dropped = std::max(facts.dropped, table.dropped[i]);
+        facts.least_row_sum = std::min(facts.least_row_sum, table.row_sums[i]);
+        facts.most_row_sum = std::max(facts.most_row_sum, table.row_sums[i]);
     }
+    if (facts.finished_rows == 0) facts.least_row_sum = 0;
     return facts;
 }
 
-std::string words_of(const ViewFactorFacts& facts) {
+std::string words_of_rows(const ViewFactorFacts& facts) {
+    std::string text = fmt::format("error of rows at most {:.3g} (requested {:g}); {} entries\n", facts.row_error,
+                                   facts.error, facts.entries);
+    if (facts.dropped > 0)
+        text += fmt::format("dropped: entries below {:g}, at most {:.3g} in a row\n", facts.smallest, facts.dropped);
+    text += fmt::format(
+        "rows computed independently: reciprocity defect {:.2g} of a row's largest entry, closure defect {:.2g}\n",
+        facts.reciprocity_defect, facts.closure_defect);
+    if (!facts.row_check.rows.empty())
+        text += fmt::format("rays: {} random rows, {} rays each: error {:.2g}; {} rows above the error requested\n",
+                            facts.row_check.rows.size(), facts.row_check.rays / facts.row_check.rows.size(),
+                            facts.row_check.error, facts.row_check.wrong);
+    return text;
+}
+
+std::string words_of_entries(const ViewFactorFacts& facts) {
     std::string text = fmt::format(
-        "{} surfaces, row sums from {:.6f} to {:.6f}, {:.3g} s\n"
         "reciprocity: entries above 1e-6 agree to {:.2g}, {:.2g} of their rows' largest; {} pairs computed again\n",
-        facts.surfaces, facts.least_row_sum, facts.most_row_sum, facts.seconds, facts.entry_defect,
-        facts.reciprocity_defect, facts.mended);
+        facts.entry_defect, facts.reciprocity_defect, facts.mended);
     const RayCheck& check = facts.check;
     if (check.entries > 0)
         text += fmt::format(
@@ -46,8 +83,14 @@ std::string words_of(const ViewFactorFacts& facts) {
     return text;
 }
 
+std::string words_of(const ViewFactorFacts& facts) {
+    return fmt::format("{} surfaces, row sums from {:.6f} to {:.6f}, {:.3g} s\n", facts.surfaces, facts.least_row_sum,
+                       facts.most_row_sum, facts.seconds) +
+           (facts.tolerance ? words_of_entries(facts) : words_of_rows(facts));
+}
+
 /// What a file of View3D calls surfaces: groups of faces, and some that only block.
-ViewFactors rows_of_view3d(const Scene& scene, const ViewFactors& table) {
+SparseFactors rows_of_view3d(const Scene& scene, const SparseFactors& table) {
     std::vector<std::uint32_t> rows;
     std::size_t count = scene.groups().size();
     for (GroupId g : scene.groups().ids())
@@ -57,7 +100,7 @@ ViewFactors rows_of_view3d(const Scene& scene, const ViewFactors& table) {
     return merge_rows(table, rows, count);
 }
 
-/// That nothing shines does not matter here.
+/// Scenes of view factors need no light.
 void show_findings(const CheckedScene& checked, Terminal& terminal) {
     std::vector<Finding> findings = checked.findings;
     std::erase_if(findings, [](const Finding& f) {
@@ -65,6 +108,136 @@ void show_findings(const CheckedScene& checked, Terminal& terminal) {
     });
     terminal.show(findings);
 }
+
+/// Names the work that rows in a work file belong to.
+std::string work_of(const ViewFactorArguments& arguments, const Scene& scene) {
+    return fmt::format("{} error {} tolerance {} seed {}", scene_fingerprint(scene),
+                       arguments.error.value_or(default_error), arguments.tolerance.value_or(0), arguments.seed);
+}
+
+/// One run of the verb, after the scene was read.
+class ViewFactorRun {
+  public:
+    ViewFactorRun(const ViewFactorArguments& arguments, const Scene& scene, const StopRequest& stop,
+                  const RunLimits& limits, Terminal& terminal)
+        : arguments_(arguments), scene_(scene), stop_(stop), limits_(limits), terminal_(terminal) {}
+
+    ExitCode operator()() {
+        if (const Result<void> opened = open_work_file(); !opened) return terminal_.fail(opened.error());
+        const Stopwatch time;
+        SparseFactors table = compute();
+        ViewFactorFacts facts = facts_of(table, time.seconds());
+        facts.error = error(), facts.tolerance = arguments_.tolerance, facts.smallest = arguments_.smallest;
+        if (facts.finished_rows == 0 && table.size() > 0) return no_rows();
+        const bool is_finished = facts.finished_rows == table.size() && table.is_settled;
+        if (is_finished) check(table, facts);
+        if (ending(arguments_.scene.files.front()) == ".vs3") table = rows_of_view3d(scene_, table);
+        // Finished rows are written after a stop, too.
+        if (const Result<void> written = write_view_factors(arguments_.output, table, StopRequest()); !written)
+            return terminal_.fail(written.error());
+        if (is_finished && rows_) rows_->remove();
+        show(facts);
+        return is_finished ? outcome(facts) : stopped(facts);
+    }
+
+  private:
+    double error() const { return arguments_.error.value_or(default_error); }
+
+    /// Rows are kept beside an output that is, or will be, a plain file.
+    Result<void> open_work_file() {
+        std::error_code ignored;
+        const std::filesystem::file_status status = std::filesystem::status(arguments_.output, ignored);
+        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return {};
+        Result<RawRowFile> file = RawRowFile::open(arguments_.output + ".rows", work_of(arguments_, scene_),
+                                                   arguments_.resume, scene_.surfaces().size());
+        if (!file) return file.error();
+        rows_.emplace(std::move(*file));
+        return {};
+    }
+
+    SparseFactors compute() {
+        RawRowStore* const store = rows_ ? &*rows_ : nullptr;
+        const std::size_t memory = arguments_.limits.memory_limit.value_or(SIZE_MAX);
+        if (arguments_.tolerance) {
+            const EntryFactorOptions options{*arguments_.tolerance, arguments_.smallest, memory};
+            return compute_entry_factors(scene_, options, store, terminal_.progress(), stop_);
+        }
+        const RowFactorOptions options{error(), arguments_.smallest, arguments_.seed, memory};
+        return compute_row_factors(scene_, options, store, terminal_.progress(), stop_);
+    }
+
+    void check(const SparseFactors& table, ViewFactorFacts& facts) {
+        terminal_.progress().phase("check by rays");
+        if (arguments_.tolerance)
+            facts.check = check_by_rays(
+                scene_, table,
+                {arguments_.check.value_or(default_checked_entries),
+                 arguments_.check_rays.value_or(default_rays_an_entry), arguments_.seed, *arguments_.tolerance},
+                stop_);
+        else
+            facts.row_check =
+                check_rows_by_rays(scene_, table,
+                                   {.rows = arguments_.check.value_or(default_checked_rows),
+                                    .rays = arguments_.check_rays.value_or(default_rays_a_row(error())) / 2,
+                                    .seed = arguments_.seed,
+                                    .error = error()},
+                                   stop_);
+    }
+
+    ExitCode no_rows() {
+        if (rows_) rows_->remove();
+        if (limits_.signal()) return *limits_.signal();
+        return terminal_.fail({ErrorCode::limit, "stopped before the first row of view factors was finished", "",
+                               "allow more time or memory, or a larger error"});
+    }
+
+    void show(const ViewFactorFacts& facts) {
+        if (arguments_.json)
+            terminal_.print(view_factors_json(facts));
+        else if (!arguments_.quiet)
+            terminal_.print(words_of(facts));
+    }
+
+    ExitCode stopped(const ViewFactorFacts& facts) {
+        terminal_.note(
+            fmt::format("stopped after {} of {} rows, which are written as they were computed; --resume goes on",
+                        facts.finished_rows, facts.surfaces));
+        if (rows_ && !rows_->is_whole())
+            terminal_.note(fmt::format("warning: {} could not be written to its end", rows_->path()));
+        return limits_.signal() == ExitCode::interrupted ? ExitCode::interrupted : ExitCode::demand_not_reached;
+    }
+
+    ExitCode outcome(const ViewFactorFacts& facts) {
+        bool reached = true;
+        const auto warn = [&](bool condition, const std::string& text) {
+            if (condition) terminal_.note("warning: " + text), reached = false;
+        };
+        if (arguments_.tolerance) {
+            warn(facts.unsettled > 0, fmt::format("the entries of {} pairs of faces still disagree by more than {:g}",
+                                                  facts.unsettled, *arguments_.tolerance));
+            warn(facts.check.wrong > 0, fmt::format("{} of {} entries that rays checked are off by more than {:g}",
+                                                    facts.check.wrong, facts.check.entries, *arguments_.tolerance));
+            return reached ? ExitCode::done : ExitCode::demand_not_reached;
+        }
+        warn(facts.row_error > error(),
+             fmt::format("the error of some row is {:.3g}, above {:g}", facts.row_error, error()));
+        warn(facts.row_check.wrong > 0, fmt::format("{} of {} rows that rays checked are off by more than {:g}",
+                                                    facts.row_check.wrong, facts.row_check.rows.size(), error()));
+        if (facts.unclosed > 0)
+            terminal_.note(
+                fmt::format("warning: {} rows do not add up to 1 with the sky and backs of faces, by more than "
+                            "3.5 standard deviations; they are left as they are",
+                            facts.unclosed));
+        return reached ? ExitCode::done : ExitCode::demand_not_reached;
+    }
+
+    const ViewFactorArguments& arguments_;
+    const Scene& scene_;
+    const StopRequest& stop_;
+    const RunLimits& limits_;
+    Terminal& terminal_;
+    std::optional<RawRowFile> rows_;
+};
 
 }  // namespace
 
@@ -74,41 +247,12 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     const StopRequest& stop = limits.keep();
     set_threads(arguments.threads);
     if (const Result<AtomicFile> file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
-    const auto fail = [&](const Error& error) { return limits.signal() ? *limits.signal() : terminal.fail(error); };
-
     LoadOptions load = arguments.scene.load;
     load.stop = &stop;
     const CheckedScene checked = load_scene(arguments.scene.files, load);
     show_findings(checked, terminal);
     if (!checked.scene) return terminal.fail(checked);
-    const Scene& scene = *checked.scene;
-
-    const Stopwatch time;
-    Result<ViewFactors> table = compute_view_factors(scene, arguments.tolerance, terminal.progress(), stop);
-    if (!table) return fail(table.error());
-    const double seconds = time.seconds();
-    terminal.progress().phase("check by rays");
-    const RayCheck check = check_by_rays(
-        scene, *table, {arguments.check, arguments.check_rays, arguments.seed, arguments.tolerance}, stop);
-    if (!check.is_complete)
-        return fail(
-            {ErrorCode::limit, "stopped while entries were checked by rays", "", "allow more time, or --check 0"});
-    if (ending(arguments.scene.files.front()) == ".vs3") *table = rows_of_view3d(scene, *table);
-    const ViewFactorFacts facts = facts_of(*table, arguments.tolerance, check, seconds);
-    if (const Result<void> written = write_view_factors(arguments.output, *table, stop); !written)
-        return fail(written.error());
-
-    if (arguments.json)
-        terminal.print(view_factors_json(facts));
-    else if (!arguments.quiet)
-        terminal.print(words_of(facts));
-    if (facts.unsettled > 0)
-        terminal.note(fmt::format("warning: the entries of {} pairs of faces still disagree by more than {:g}",
-                                  facts.unsettled, arguments.tolerance));
-    if (check.wrong > 0)
-        terminal.note(fmt::format("warning: {} of {} entries that rays checked are off by more than {:g}", check.wrong,
-                                  check.entries, arguments.tolerance));
-    return facts.unsettled + check.wrong == 0 ? ExitCode::done : ExitCode::demand_not_reached;
+    return ViewFactorRun(arguments, *checked.scene, stop, limits, terminal)();
 }
 
 }  // namespace exitance

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -12,8 +13,8 @@
 namespace exitance {
 namespace {
 
-ViewFactors two_faces() {
-    return {{1, 2}, {0.5, 0.25}, {0, 1.0 / 3, 1.0 / 6, 0}, {1.0 / 3, 1.0 / 6}, 0};
+SparseFactors two_faces() {
+    return sparse_from({{1, 2}, {0.5, 0.25}, {0, 1.0 / 3, 1.0 / 6, 0}, {1.0 / 3, 1.0 / 6}, 0});
 }
 
 TEST(ViewFactorFile, CsvGivesTheSameDoublesBack) {
@@ -69,6 +70,29 @@ TEST(ViewFactorFile, Hdf5HoldsCompressedRows) {
     EXPECT_EQ(file->read<double>("view_factors/data"), (std::vector<double>{1.0 / 3, 1.0 / 6}));
     EXPECT_EQ(file->read<double>("view_factors/areas"), (std::vector<double>{1, 2}));
     EXPECT_FALSE(file->failed());
+}
+
+TEST(ViewFactorFile, Hdf5IsReadBack) {
+    const TemporaryFolder folder;
+    SparseFactors table = two_faces();
+    table.row_errors = {1e-3, 2e-3}, table.combined = true;
+    ASSERT_TRUE(write_view_factors(folder / "F.h5", table, StopRequest()));
+    const Result<SparseFactors> read = read_view_factors(folder / "F.h5");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->starts, table.starts);
+    EXPECT_EQ(read->columns, table.columns);
+    EXPECT_EQ(read->values, table.values);
+    EXPECT_EQ(read->row_errors, table.row_errors);
+    EXPECT_TRUE(read->combined);
+    EXPECT_FALSE(read_view_factors(folder / "absent.h5"));
+}
+
+TEST(ViewFactorFile, RowsThatAreNotFinishedAreLeftOutOfCsvAndToldInMatrixMarket) {
+    SparseFactors table = two_faces();
+    table.finished = {1, 0}, table.starts = {0, 1, 1}, table.columns.resize(1), table.values.resize(1);
+    const std::string csv = view_factors_csv(table), mtx = view_factors_mtx(table);
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+    EXPECT_NE(mtx.find("% 1 rows are not finished\n2 2 1\n"), std::string::npos) << mtx;
 }
 
 TEST(ViewFactorFile, AStopLeavesNothingInAnyFormat) {

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+/// Maps the unit square to points of a face, uniform in area.
+class FaceSampler {
+  public:
+    FaceSampler(const Scene& scene, SurfaceId s);
+
+    /// u, v  in [0, 1)      returns a point of the face, metres
+    Point operator()(double u, double v) const {
+        const double wanted = u * area_;
+        std::size_t k = 0;
+        double before = 0;
+        while (k + 1 < triangles_.size() && triangles_[k].area_up_to <= wanted) before = triangles_[k++].area_up_to;
+        const Triangle& t = triangles_[k];
+        const double share = std::clamp((wanted - before) / std::max(t.area_up_to - before, 1e-300), 0.0, 1.0);
+        const double root = std::sqrt(share);
+        return t.o + (root * (1 - v)) * t.a + (root * v) * t.b;
+    }
+    double area() const { return area_; }  ///< m^2
+    const Normal& normal() const { return normal_; }
+    const Box& box() const { return box_; }
+
+  private:
+    struct Triangle {
+        Point o;
+        Vec3 a, b;
+        double area_up_to;  ///< Sum of the areas up to and including this triangle, m^2.
+    };
+    Normal normal_;
+    std::vector<Triangle> triangles_;
+    double area_ = 0;
+    Box box_;
+};
+
+/// Maps the unit square to directions about frame.n, distributed by the cosine law.
+inline Vec3 cosine_direction(const Frame& frame, double u, double v) {
+    const double r = std::sqrt(u), phi = 2 * pi * v;
+    return (r * std::cos(phi)) * frame.u + (r * std::sin(phi)) * frame.v + std::sqrt(std::max(1e-12, 1 - u)) * frame.n;
+}
+
+}  // namespace exitance

@@ -1,0 +1,87 @@
+#include "exitance/view_factors/row_caster.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "exitance/core/random.hpp"
+
+namespace exitance {
+
+RowCaster::RowCaster(const RowScene& scene)
+    : scene_(scene), of_batch_(scene.faces.size()), hits_(scene.faces.size()), squares_(scene.faces.size()) {
+    for (auto& column : coordinates_) column.resize(block);
+    origins_.reserve(block), directions_.reserve(block), found_.resize(block);
+}
+
+double RowCaster::variance(const Count& count) const {
+    const double k = static_cast<double>(batches_), m = static_cast<double>(rays_a_batch_);
+    const double spread = count.squares - count.hits * count.hits / k;
+    return std::max(0.0, spread) / (k * (k - 1) * m * m);
+}
+
+/// Traces the rays in origins_ and directions_ and counts what they meet.
+void RowCaster::trace(std::size_t face, bool under_others) {
+    const RegionId own = scene_.region(face);
+    if (under_others) {  // rays that begin under another face meet it at once
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < origins_.size(); ++k)
+            if (!scene_.occluders.is_covered(origins_[k], scene_.faces[face].plane.n, own))
+                origins_[kept] = origins_[k], directions_[kept++] = directions_[k];
+        missed_in_batch_ += static_cast<std::uint32_t>(origins_.size() - kept);
+        origins_.resize(kept), directions_.resize(kept);
+        if (kept == 0) return;
+    }
+    const std::span<RayHit> hits(found_.data(), origins_.size());
+    scene_.tracer.nearest(origins_, directions_, own, hits);
+    for (const RayHit& hit : hits) {
+        if (!hit.front || hit.surface.is_none() || hit.surface.value == face) {
+            ++missed_in_batch_;
+            continue;
+        }
+        if (of_batch_[hit.surface.value]++ == 0) met_in_batch_.push_back(hit.surface.value);
+    }
+}
+
+void RowCaster::cast_batch(std::size_t face, bool under_others, std::uint64_t seed) {
+    const ScrambledSobol points(seed);
+    const FaceSampler& sampler = scene_.samplers[face];
+    const Frame frame(sampler.normal());
+    for (std::size_t first = 0; first < rays_a_batch_; first += block) {
+        const std::size_t count = std::min(block, rays_a_batch_ - first);
+        for (int d = 0; d < 4; ++d)
+            points.fill(static_cast<std::uint32_t>(first), d, std::span(coordinates_[d]).first(count));
+        origins_.clear(), directions_.clear();
+        for (std::size_t k = 0; k < count; ++k) {
+            origins_.push_back(sampler(coordinates_[0][k], coordinates_[1][k]));
+            directions_.push_back(cosine_direction(frame, coordinates_[2][k], coordinates_[3][k]));
+        }
+        trace(face, under_others);
+    }
+}
+
+void RowCaster::finish_batch() {
+    for (std::uint32_t column : met_in_batch_) {
+        const double hits = std::exchange(of_batch_[column], 0);
+        if (hits_[column] == 0) met_.push_back(column);
+        hits_[column] += hits, squares_[column] += hits * hits;
+    }
+    met_in_batch_.clear();
+    const double missed = std::exchange(missed_in_batch_, 0);
+    missed_.hits += missed, missed_.squares += missed * missed;
+}
+
+void RowCaster::cast(std::size_t face, std::size_t batches, std::size_t rays_a_batch, bool under_others,
+                     std::uint64_t seed) {
+    batches_ = batches, rays_a_batch_ = rays_a_batch;
+    counts_.clear(), missed_ = {};
+    for (std::size_t b = 0; b < batches; ++b) {
+        cast_batch(face, under_others, hash(seed, b));
+        finish_batch();
+    }
+    std::sort(met_.begin(), met_.end());
+    for (std::uint32_t column : met_)
+        counts_.push_back({column, std::exchange(hits_[column], 0), std::exchange(squares_[column], 0)});
+    met_.clear();
+}
+
+}  // namespace exitance

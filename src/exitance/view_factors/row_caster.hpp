@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/view_factors/row_scene.hpp"
+
+namespace exitance {
+
+/// Casts rays from a face by the cosine law and counts which fronts they meet first:
+///
+///     F_ij = h_ij / n,   h_ij hits of the front of j among n rays.
+///
+/// Rays come in independent batches of Owen-scrambled Sobol points over the face and the directions; the spread of the
+/// batches gives the variances. One object serves one thread.
+class RowCaster {
+  public:
+    explicit RowCaster(const RowScene& scene);
+
+    struct Count {
+        std::uint32_t column;
+        double hits, squares;  ///< Sums over batches of the hits of a batch and of their squares.
+    };
+
+    /// rays_a_batch  a power of two, at least 16      under_others  some of the face may be covered by another one
+    void cast(std::size_t face, std::size_t batches, std::size_t rays_a_batch, bool under_others, std::uint64_t seed);
+
+    std::span<const Count> counts() const { return counts_; }  ///< By column.
+    double missed() const { return missed_.hits; }             ///< Rays that met no front.
+    std::size_t rays() const { return batches_ * rays_a_batch_; }
+    double share(const Count& count) const { return count.hits / static_cast<double>(rays()); }
+    /// Variance of share().
+    double variance(const Count& count) const;
+    double missed_variance() const { return variance(missed_); }
+
+  private:
+    void cast_batch(std::size_t face, bool under_others, std::uint64_t seed);
+    void trace(std::size_t face, bool under_others);
+    void finish_batch();
+
+    static constexpr std::size_t block = 1024;  ///< Rays that are traced in one call.
+    const RowScene& scene_;
+    std::size_t batches_ = 0, rays_a_batch_ = 0;
+    std::vector<std::uint32_t> of_batch_;  ///< Hits of every face in this batch.
+    std::vector<double> hits_, squares_;   ///< Of every face.
+    std::vector<std::uint32_t> met_in_batch_, met_;
+    std::uint32_t missed_in_batch_ = 0;
+    Count missed_{};
+    std::vector<Count> counts_;
+    std::vector<double> coordinates_[4];
+    std::vector<Point> origins_;
+    std::vector<Vec3> directions_;
+    std::vector<RayHit> found_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,141 @@
+#include "exitance/view_factors/row_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/core/random.hpp"
+#include "exitance/view_factors/row_scene.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t block = 1024;
+
+/// Shares of n pseudo-random rays from a face that meet each front first.
+std::vector<double> cast_half(const RowScene& ready, std::size_t face, std::size_t n, RandomStream random,
+                              const StopRequest& stop) {
+    const FaceSampler& sampler = ready.samplers[face];
+    const Frame frame(sampler.normal());
+    std::vector<double> shares(ready.faces.size());
+    std::vector<Point> origins;
+    std::vector<Vec3> directions;
+    std::vector<RayHit> hits(block);
+    for (std::size_t first = 0; first < n && !stop.requested(); first += block) {
+        origins.clear(), directions.clear();
+        for (std::size_t k = first; k < std::min(first + block, n); ++k) {
+            const double u = random.uniform(), v = random.uniform(), s = random.uniform(), t = random.uniform();
+            const Point x = sampler(u, v);
+            if (ready.occluders.is_covered(x, sampler.normal(), ready.region(face))) continue;
+            origins.push_back(x), directions.push_back(cosine_direction(frame, s, t));
+        }
+        if (origins.empty()) continue;
+        ready.tracer.nearest(origins, directions, ready.region(face), std::span(hits).first(origins.size()));
+        for (std::size_t k = 0; k < origins.size(); ++k)
+            if (hits[k].front && hits[k].surface.value != face) shares[hits[k].surface.value] += 1;
+    }
+    for (double& share : shares) share /= static_cast<double>(n);
+    return shares;
+}
+
+std::vector<double> dense_row(const SparseFactors& table, std::size_t i) {
+    std::vector<double> row(table.size());
+    for (std::size_t k = 0; k < table.row_columns(i).size(); ++k) row[table.row_columns(i)[k]] = table.row_values(i)[k];
+    return row;
+}
+
+Point middle_of(const ViewFace& face) {
+    return 0.5 * (face.box.lo + face.box.hi);
+}
+
+/// 1 for a random number of faces that lie next to a random one, 0 for the others.
+std::vector<double> random_group(const RowScene& ready, RandomStream& random) {
+    const std::size_t n = ready.faces.size();
+    const Point middle = middle_of(ready.faces[std::min(n - 1, std::size_t(random.uniform() * double(n)))]);
+    std::vector<std::pair<double, std::size_t>> near(n);
+    for (std::size_t j = 0; j < n; ++j) near[j] = {norm(middle_of(ready.faces[j]) - middle), j};
+    std::sort(near.begin(), near.end());
+    const std::size_t count = std::clamp<std::size_t>(std::size_t(std::pow(double(n), random.uniform())), 1, n);
+    std::vector<double> x(n);
+    for (std::size_t k = 0; k < count; ++k) x[near[k].second] = 1;
+    return x;
+}
+
+/// Variance of sum_j (F - G1)(F - G2) for hits that are multinomial: 2 e'Se + tr(SS), S = (diag G - GG') / n.
+double squared_error_variance(const std::vector<double>& F, const std::vector<double>& G1,
+                              const std::vector<double>& G2, double n) {
+    double linear = 0, mean = 0, two = 0, three = 0;
+    for (std::size_t j = 0; j < F.size(); ++j) {
+        const double G = 0.5 * (G1[j] + G2[j]), e = F[j] - G;
+        linear += G * (F[j] - G1[j]) * (F[j] - G2[j]), mean += G * e, two += G * G, three += G * G * G;
+    }
+    return 2 * std::max(0.0, linear - mean * mean) / n + std::max(0.0, two - 2 * three + two * two) / (n * n);
+}
+
+CheckedRow check_row(const RowScene& ready, const SparseFactors& table, std::size_t face,
+                     const RowCheckOptions& options, const StopRequest& stop) {
+    const double n = static_cast<double>(options.rays);
+    const std::vector<double> F = dense_row(table, face);
+    const std::vector<double> G1 =
+        cast_half(ready, face, options.rays, RandomStream(options.seed, Stream::reference, face, 1), stop);
+    const std::vector<double> G2 =
+        cast_half(ready, face, options.rays, RandomStream(options.seed, Stream::reference, face, 2), stop);
+    CheckedRow checked;
+    checked.face = face;
+    for (std::size_t j = 0; j < F.size(); ++j) checked.squared_error += (F[j] - G1[j]) * (F[j] - G2[j]);
+    const double one = 1 / (n * n);  // one ray more may have hit
+    checked.squared_error_deviation = std::sqrt(squared_error_variance(F, G1, G2, n) + one * one);
+    RandomStream random(options.seed, Stream::reference, face, 3);
+    checked.largest_sum_excess = -HUGE_VAL;
+    for (std::size_t g = 0; g <= options.groups; ++g) {
+        const std::vector<double> x = g == 0 ? std::vector<double>(F.size(), 1) : random_group(ready, random);
+        double sum = 0, share = 0;
+        for (std::size_t j = 0; j < F.size(); ++j)
+            sum += (F[j] - 0.5 * (G1[j] + G2[j])) * x[j], share += 0.5 * (G1[j] + G2[j]) * x[j];
+        const double deviation = std::sqrt(std::max(0.0, share * (1 - share)) / (2 * n) + 0.25 * one);
+        checked.largest_sum_excess = std::max(checked.largest_sum_excess, (std::abs(sum) - options.error) / deviation);
+    }
+    return checked;
+}
+
+std::vector<std::size_t> draw_rows(const SparseFactors& table, const RowCheckOptions& options) {
+    std::vector<std::size_t> faces;
+    for (std::size_t i = 0; i < table.size(); ++i)
+        if (table.finished[i]) faces.push_back(i);
+    RandomStream random(options.seed, Stream::reference, table.size(), 0);
+    const std::size_t count = std::min(options.rows, faces.size());
+    for (std::size_t k = 0; k < count; ++k) {  // the first steps of a shuffle
+        const auto rest = static_cast<double>(faces.size() - k);
+        std::swap(faces[k], faces[std::min(faces.size() - 1, k + std::size_t(random.uniform() * rest))]);
+    }
+    faces.resize(count);
+    return faces;
+}
+
+}  // namespace
+
+RowCheck check_rows_by_rays(const Scene& scene, const SparseFactors& table, const RowCheckOptions& options,
+                            const StopRequest& stop) {
+    RowCheck check;
+    const std::vector<std::size_t> faces = draw_rows(table, options);
+    if (faces.empty()) return check;
+    const RowScene ready(scene);
+    check.rows.resize(faces.size());
+    parallel_for(faces.size(), 1, [&](std::size_t k) {
+        if (!stop.requested()) check.rows[k] = check_row(ready, table, faces[k], options, stop);
+    });
+    if (stop.requested()) {
+        check.rows.clear(), check.is_complete = false;
+        return check;
+    }
+    double sum = 0;
+    for (const CheckedRow& row : check.rows) {
+        sum += row.squared_error / static_cast<double>(faces.size());
+        check.wrong += std::max(row.squared_excess(options.error), row.largest_sum_excess) > RowCheck::beyond_noise;
+    }
+    check.rays = 2 * options.rays * faces.size();
+    check.error = std::sqrt(std::max(0.0, sum));
+    return check;
+}
+
+}  // namespace exitance

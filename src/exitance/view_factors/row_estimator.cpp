@@ -1,0 +1,289 @@
+#include "exitance/view_factors/row_estimator.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "exitance/core/random.hpp"
+#include "exitance/form_factors/pair_form_factor.hpp"
+
+namespace exitance {
+namespace {
+
+/// Purposes of a row's random numbers.
+enum class Use : std::uint64_t { pilot, cast, pair_pilot, pair };
+
+constexpr std::size_t pilot_batches = 4, pilot_rays_a_batch = 256;
+
+/// Costs in rays cast (0.25 us each), measured in an office of 446 polygons and a room with 180 blocks.
+constexpr double pair_cost = 12;  ///< Of looking whether anything stands between two faces, and of a pair's pilot.
+constexpr double shadow_ray_cost = 0.25;
+
+/// Variances fall with the number of samples n by n^-rate: n^-1.25 is the rate of stratified samples in four
+/// dimensions of something that jumps at a surface.
+constexpr double cast_rate = 1.25, pair_rate = 1.25;
+
+constexpr double near_sizes = 0.5;      ///< Of the larger face: nearer pairs have kernels that vary too much.
+constexpr double contour_share = 1e-4;  ///< Of the error: the contour integral's own tolerance.
+constexpr double integrated_share =
+    1e-2;  ///< Of the error: bound of what is integrated, contour sums that cancel included.
+constexpr std::size_t fewest_batches = 8, fewest_rays_a_batch = 16;
+constexpr std::size_t most_rays = std::size_t{1} << 30;
+constexpr int most_attempts = 6;
+
+/// Batches of a power of two of rays, at least n in all.
+std::pair<std::size_t, std::size_t> batches_of(double n, std::size_t fewest, std::size_t smallest) {
+    const double each = std::max(static_cast<double>(smallest), n / static_cast<double>(2 * fewest));
+    const std::size_t rays = std::bit_ceil(static_cast<std::size_t>(std::ceil(each)));
+    const auto batches = static_cast<std::size_t>(std::ceil(n / static_cast<double>(rays)));
+    return {std::max(fewest, batches), rays};
+}
+
+Point middle(const ViewFace& face) {
+    Point sum{};
+    for (const Point& p : face.outline) sum = sum + p;
+    return sum * (1.0 / static_cast<double>(face.outline.size()));
+}
+
+}  // namespace
+
+RowEstimator::RowEstimator(const RowScene& scene, double error, std::uint64_t seed, const StopRequest& stop)
+    : scene_(scene), error_(error), seed_(seed), stop_(stop), caster_(scene), sampler_(scene) {}
+
+/// Standard deviation of one shadow ray's estimate. The pilot's share is pulled off 0 and 1, where few rays tell
+/// little.
+double RowEstimator::Pair::deviation() const {
+    const double n = PairSampler::pilot_rays, p = (visible * n + 0.5) / (n + 1);
+    return unoccluded * std::sqrt(left * p * (1 - p));
+}
+
+/// Share of a cast entry's variance that is left once it is combined with the other row, if both cast equally many
+/// rays: n + n A_i / A_j rays are as good as were cast from i.
+double RowEstimator::left_of_cast(std::size_t face, std::uint32_t column) const {
+    return std::pow(1 + scene_.faces[face].area / scene_.faces[column].area, -cast_rate);
+}
+
+/// The same for a pair's own samples: the rows' numbers are as (U_ij / U_ji)^(2 / (1 + rate)), for equal demands.
+double RowEstimator::left_of_pair(std::size_t face, std::uint32_t column) const {
+    const double ratio = scene_.faces[face].area / scene_.faces[column].area;
+    return std::pow(1 + std::pow(ratio, 2 / (1 + pair_rate)), -pair_rate);
+}
+
+/// Error that is expected of a row once it is combined.
+double RowEstimator::combined_error(const RawRow& row) const {
+    double sum = 0;
+    auto pair = pairs_.begin();
+    for (const RowEntry& entry : row.entries) {
+        while (pair != pairs_.end() && pair->column < entry.column) ++pair;
+        const bool by_pair = pair != pairs_.end() && pair->column == entry.column && !pair->to_cast;
+        sum += double(entry.variance) * (by_pair ? pair->left : left_of_cast(row.face, entry.column));
+    }
+    return std::sqrt(sum) + row.bound;
+}
+
+/// May `other` cover some of the face, so that rays that begin there are stopped at once (Occluders::is_covered)?
+bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
+    const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
+    if (std::abs(dot(a.plane.n, b.plane.n)) < 0.999) return false;
+    const double reach = 1e-5 * scene_.scene.size();
+    for (std::size_t k = 0; k < 3; ++k)
+        if (a.box.lo[k] > b.box.hi[k] + reach || b.box.lo[k] > a.box.hi[k] + reach) return false;
+    const double height = a.plane.signed_distance(b.outline[0]);
+    return std::abs(height) < reach && (dot(a.plane.n, b.plane.n) < 0 || height > scene_.slack);
+}
+
+/// Finds the faces that the face may see, with about their unoccluded view factors.
+void RowEstimator::find_candidates(std::size_t face) {
+    const ViewFace& own = scene_.faces[face];
+    const Point x = middle(own);
+    candidates_.clear();
+    under_others_ = false;
+    for (std::size_t j = 0; j < scene_.faces.size(); ++j) {
+        const ViewFace& other = scene_.faces[j];
+        bool cut = false;
+        if (j == face) continue;
+        if (!face_each_other(own, other, scene_.slack, cut)) {
+            under_others_ = under_others_ || may_be_under(face, j);
+            continue;
+        }
+        const Vec3 d = middle(other) - x;
+        const double squared = std::max(dot(d, d), 1e-300);
+        const double cosines =
+            cut ? squared : std::max(0.0, dot(own.plane.n, d)) * std::max(0.0, -dot(other.plane.n, d));
+        const double about = cosines / (pi * squared * squared) * other.area;
+        candidates_.push_back({std::min(about, 1.0), static_cast<std::uint32_t>(j)});
+    }
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        return a.about > b.about || (a.about == b.about && a.column < b.column);
+    });
+}
+
+/// Candidates from this size on are treated by themselves: the least estimated cost of looking at them and of casting
+/// rays for the others. What the pilot saw of the others tells their number of rays.
+double RowEstimator::smallest_candidate(std::size_t face, double variance) const {
+    const double n = static_cast<double>(pilot_batches * pilot_rays_a_batch);
+    std::vector<double> seen(scene_.faces.size());
+    double left = 1 / n;
+    for (const RowCaster::Count& count : pilot_) {
+        seen[count.column] = count.hits / n * left_of_cast(face, count.column);
+        left += seen[count.column];
+    }
+    double best = HUGE_VAL, least = HUGE_VAL;
+    const auto consider = [&](std::size_t taken, double smallest) {
+        const double rays = std::pow(std::max(left, 1 / n) / (0.5 * variance), 1 / cast_rate);
+        const double cost = static_cast<double>(taken) * pair_cost + rays;
+        if (cost < least) least = cost, best = smallest;
+    };
+    consider(0, HUGE_VAL);
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+        left -= seen[candidates_[k].column];
+        consider(k + 1, candidates_[k].about);
+    }
+    return best;
+}
+
+/// What all pieces of two faces see of each other.
+View RowEstimator::view_of(std::size_t face, std::size_t other) {
+    const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
+    bool any = false, all = true;
+    for (const std::vector<Point>& piece_a : a.pieces)
+        for (const std::vector<Point>& piece_b : b.pieces) {
+            shaft_.set(scene_.occluders, {piece_a, a.plane.n, scene_.region(face), false},
+                       {piece_b, b.plane.n, scene_.region(other), false});
+            const View view = shaft_.classify(blockers_, 0);
+            any |= view != View::none, all &= view == View::open;
+            if (any && !all) return View::mixed;
+        }
+    return !any ? View::none : all ? View::open : View::mixed;
+}
+
+void RowEstimator::classify_pair(std::size_t face, Pair& pair, std::uint32_t round) {
+    const ViewFace &own = scene_.faces[face], &other = scene_.faces[pair.column];
+    const View view = view_of(face, pair.column);
+    pair.is_exact = view != View::mixed;
+    if (view == View::none) return;
+    pair.to_cast = !pair.is_exact &&
+                   (under_others_ || box_distance(own, other) < near_sizes * std::max(own.diameter, other.diameter));
+    if (pair.to_cast) return;
+    pair.unoccluded = exchange_area(own.outline, other.outline, contour_share * error_) / own.area;
+    pair.visible = pair.is_exact ? 1
+                                 : sampler_.visible_share(face, pair.column,
+                                                          hash(seed_, face, round, std::uint64_t(Use::pair_pilot),
+                                                               std::uint64_t(pair.column)));
+}
+
+void RowEstimator::classify(std::size_t face, std::uint32_t round) {
+    const double smallest = smallest_candidate(face, error_ * error_);
+    pairs_.clear();
+    for (const Candidate& candidate : candidates_) {
+        if (candidate.about < smallest || stop_.requested()) break;
+        Pair& pair = pairs_.emplace_back();
+        pair.column = candidate.column, pair.left = left_of_pair(face, candidate.column);
+        classify_pair(face, pair, round);
+    }
+    std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) { return a.column < b.column; });
+    const double n = static_cast<double>(pilot_batches * pilot_rays_a_batch);
+    rest_ = 1 / n;
+    for (const RowCaster::Count& count : pilot_) {
+        const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), count.column,
+                                         [](const Pair& pair, std::uint32_t column) { return pair.column < column; });
+        if (at == pairs_.end() || at->column != count.column || at->to_cast)
+            rest_ += count.hits / n * left_of_cast(face, count.column);
+    }
+}
+
+/// Numbers of samples that reach a variance at the least cost: with variances a^2 n^-r each gets n so that one more
+/// sample takes equally much variance per cost from all.
+RowEstimator::Plan RowEstimator::plan(double variance) {
+    const auto pair_samples = [&](const Pair& pair, double price) {
+        const double a = pair.deviation();
+        return std::max<double>(PairSampler::pilot_rays,
+                                std::pow(pair_rate * a * a / (price * shadow_ray_cost), 1 / (1 + pair_rate)));
+    };
+    const auto cast_samples = [&](double price) {
+        return std::max<double>(fewest_batches * fewest_rays_a_batch,
+                                std::pow(cast_rate * rest_ / price, 1 / (1 + cast_rate)));
+    };
+    const auto variance_at = [&](double price) {
+        double sum = rest_ * std::pow(cast_samples(price), -cast_rate);
+        for (const Pair& pair : pairs_) {
+            if (pair.is_exact || pair.to_cast) continue;
+            const double a = pair.deviation();
+            sum += a * a * std::pow(pair_samples(pair, price), -pair_rate);
+        }
+        return sum;
+    };
+    double low = 1e-40, high = 1;  // variance a unit of cost
+    for (int step = 0; step < 60; ++step) {
+        const double price = std::sqrt(low * high);
+        (variance_at(price) > variance ? high : low) = price;
+    }
+    for (Pair& pair : pairs_) std::tie(pair.batches, pair.rays_a_batch) = batches_of(pair_samples(pair, low), 4, 4);
+    Plan plan;
+    std::tie(plan.batches, plan.rays_a_batch) =
+        batches_of(std::min<double>(most_rays, cast_samples(low)), fewest_batches, fewest_rays_a_batch);
+    return plan;
+}
+
+RawRow RowEstimator::measure(std::size_t face, std::uint32_t round, const Plan& plan) {
+    const double area = scene_.faces[face].area;
+    RawRow row;
+    row.face = static_cast<std::uint32_t>(face), row.round = round;
+    caster_.cast(face, plan.batches, plan.rays_a_batch, under_others_,
+                 hash(seed_, face, round, std::uint64_t(Use::cast), std::uint64_t(0)));
+    row.rays = caster_.rays();
+    row.cast_density = static_cast<double>(row.rays) / area;
+    row.missed = caster_.missed() / static_cast<double>(row.rays), row.missed_variance = caster_.missed_variance();
+    const auto add_cast = [&](const RowCaster::Count& count) {
+        row.entries.push_back({caster_.share(count), count.column, static_cast<float>(caster_.variance(count)),
+                               static_cast<float>(row.cast_density)});
+    };
+    const auto add_pair = [&](const Pair& pair) {
+        if (pair.is_exact) {
+            row.entries.push_back({pair.unoccluded, pair.column, 0, integrated});
+            row.bound += integrated_share * error_ * pair.unoccluded;
+            return;
+        }
+        const PairSampler::Estimate found =
+            sampler_(face, pair.column, pair.unoccluded, pair.visible, pair.batches, pair.rays_a_batch,
+                     hash(seed_, face, round, std::uint64_t(Use::pair), std::uint64_t(pair.column)));
+        const double n = static_cast<double>(pair.batches * pair.rays_a_batch);
+        row.rays += pair.batches * pair.rays_a_batch;
+        // n samples of variance U^2 / 4 are worth 2 n / U cast rays, whose variance is about U / 2 each.
+        row.entries.push_back({found.F, pair.column, static_cast<float>(found.variance),
+                               static_cast<float>(2 * n / (pair.unoccluded * area))});
+    };
+    const std::span<const RowCaster::Count> counts = caster_.counts();
+    std::size_t k = 0;
+    for (const Pair& pair : pairs_) {
+        for (; k < counts.size() && counts[k].column < pair.column; ++k) add_cast(counts[k]);
+        if (pair.to_cast) continue;
+        if (k < counts.size() && counts[k].column == pair.column) ++k;
+        add_pair(pair);
+    }
+    for (; k < counts.size(); ++k) add_cast(counts[k]);
+    return row;
+}
+
+std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t round, double share) {
+    find_candidates(face);
+    caster_.cast(face, pilot_batches, pilot_rays_a_batch, under_others_,
+                 hash(seed_, face, round, std::uint64_t(Use::pilot), std::uint64_t(0)));
+    pilot_.assign(caster_.counts().begin(), caster_.counts().end());
+    classify(face, round);
+    const double wanted = share * error_;
+    double aim = wanted;
+    RawRow row;
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        if (stop_.requested()) return {};
+        const std::uint64_t key = hash(round, static_cast<std::uint64_t>(attempt));
+        row = measure(face, static_cast<std::uint32_t>(key), plan(aim * aim));
+        row.round = round;
+        const double error = combined_error(row);
+        if (error <= wanted) break;
+        aim *= std::min(0.8, 0.9 * wanted / error);
+    }
+    return row;
+}
+
+}  // namespace exitance

@@ -1,0 +1,141 @@
+#include "exitance/view_factors/row_factors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "exitance/core/memory.hpp"
+#include "exitance/core/parallel.hpp"
+#include "exitance/view_factors/combine_rows.hpp"
+#include "exitance/view_factors/row_estimator.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t rows_a_step = 64;  ///< Between reports, and looks at memory.
+
+/// Share of R that rows aim at in the first pass, for the error expected of them once they are combined.
+constexpr double first_share = 1;
+/// Rows above R after the second pass are computed again, with this share of the error that would do if all of their
+/// variance were their own, so many times at most.
+constexpr double repeated_share = 0.75;
+constexpr std::uint32_t most_repeats = 4;
+
+class RowRun {
+  public:
+    RowRun(const Scene& scene, const RowFactorOptions& options, RawRowStore* store, Progress& progress,
+           const StopRequest& stop)
+        : scene_(scene), options_(options), store_(store), progress_(progress), stop_(stop) {}
+
+    SparseFactors operator()() {
+        SparseFactors out;
+        for (SurfaceId s : scene_.surfaces().ids()) {
+            out.areas.push_back(scene_.surfaces()[s].area);
+            out.emittances.push_back(1 - mean(scene_.material(s).reflectance));
+        }
+        rows_.resize(out.size()), shares_.assign(out.size(), first_share);
+        finished_.assign(out.size(), 0);
+        if (store_) resumed_ = store_->resumed();
+        std::vector<std::size_t> faces(out.size());
+        std::iota(faces.begin(), faces.end(), 0);
+        const CombineOptions combine{options_.smallest, options_.error};
+        for (std::uint32_t round = 0; compute_rows(faces, round); ++round) {
+            progress_.phase("combine rows");
+            combine_rows(rows_, combine, out);
+            faces = round < most_repeats ? faces_above(out) : std::vector<std::size_t>();
+            if (faces.empty()) return out;
+        }
+        store_raw_rows(rows_, finished_, combine, out);
+        return out;
+    }
+
+  private:
+    /// Rows whose combined error is above R, dropped entries not counted; sets what they may use now.
+    std::vector<std::size_t> faces_above(const SparseFactors& out) {
+        std::vector<std::size_t> faces;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const double error = out.row_errors[i] - out.dropped[i];
+            if (error <= options_.error) continue;
+            shares_[i] *= repeated_share * options_.error / error;
+            faces.push_back(i);
+        }
+        return faces;
+    }
+
+    /// Takes over the rows of a round that an earlier run kept; returns the faces that are left.
+    std::vector<std::size_t> take_resumed(const std::vector<std::size_t>& faces, std::uint32_t round) {
+        std::vector<std::uint8_t> taken(rows_.size());
+        for (RawRow& row : resumed_) {
+            if (row.round != round) continue;
+            const std::size_t face = row.face;
+            rows_[face] = std::move(row), finished_[face] = taken[face] = 1;
+        }
+        std::vector<std::size_t> left;
+        for (std::size_t face : faces)
+            if (!taken[face]) left.push_back(face);
+        return left;
+    }
+
+    /// Computes the rows of some faces; false if it was stopped before the last of them.
+    bool compute_rows(const std::vector<std::size_t>& faces, std::uint32_t round) {
+        const std::vector<std::size_t> left = take_resumed(faces, round);
+        if (left.empty()) return true;
+        progress_.phase(round == 0 ? "view factors" : "rows again");
+        if (!ready_) ready_.emplace(scene_);
+        const std::size_t before = faces.size() - left.size();
+        for (std::size_t first = 0; first < left.size(); first += rows_a_step) {
+            const std::span<const std::size_t> step =
+                std::span(left).subspan(first, std::min(rows_a_step, left.size() - first));
+            if (!compute_step(step, round) || exceeds_memory()) return false;
+            const std::size_t done = before + first + step.size();
+            progress_.advance(static_cast<double>(done) / static_cast<double>(faces.size()),
+                              fmt::format("{} of {} rows", done, faces.size()));
+        }
+        return true;
+    }
+
+    /// Computes and keeps a few rows; false if a stop left some out.
+    bool compute_step(std::span<const std::size_t> faces, std::uint32_t round) {
+        std::vector<std::optional<RawRow>> made(faces.size());
+        parallel_ranges(faces.size(), 4, [&](std::size_t from, std::size_t to) {
+            RowEstimator estimator(*ready_, options_.error, options_.seed, stop_);
+            for (std::size_t k = from; k < to && !stop_.requested(); ++k)
+                made[k] = estimator(faces[k], round, shares_[faces[k]]);
+        });
+        bool all = true;
+        for (std::size_t k = 0; k < faces.size(); ++k) {
+            all &= made[k].has_value();
+            if (!made[k]) continue;
+            if (store_) store_->keep(*made[k]);
+            rows_[faces[k]] = std::move(*made[k]), finished_[faces[k]] = 1;
+        }
+        if (store_) store_->flush();
+        return all;
+    }
+
+    bool exceeds_memory() const {
+        return options_.memory_limit_bytes != SIZE_MAX && proportional_memory_bytes() > options_.memory_limit_bytes;
+    }
+
+    const Scene& scene_;
+    const RowFactorOptions& options_;
+    RawRowStore* store_;
+    Progress& progress_;
+    const StopRequest& stop_;
+    std::optional<RowScene> ready_;
+    std::vector<RawRow> rows_, resumed_;
+    std::vector<double> shares_;  ///< Of R, that each row may use by itself.
+    std::vector<std::uint8_t> finished_;
+};
+
+}  // namespace
+
+SparseFactors compute_row_factors(const Scene& scene, const RowFactorOptions& options, RawRowStore* store,
+                                  Progress& progress, const StopRequest& stop) {
+    return RowRun(scene, options, store, progress, stop)();
+}
+
+}  // namespace exitance

@@ -1,0 +1,181 @@
+#include "exitance/view_factors/row_factors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/core/parallel.hpp"
+#include "exitance/view_factors/row_check.hpp"
+#include "exitance/view_factors/view_factors.hpp"
+
+namespace exitance {
+namespace {
+
+using Outline = std::vector<Point>;
+
+Scene scene_of(const std::vector<Outline>& outlines) {
+    SceneDescription d;
+    d.materials.push_back({"grey", Spectrum(0.25), Spectrum()});
+    d.groups.push_back("all");
+    for (const Outline& outline : outlines) {
+        SceneDescription::Face face;
+        for (const Point& p : outline) {
+            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        d.faces.push_back(face);
+    }
+    return *make_scene(d).scene;
+}
+
+/// The six faces of a turned box, fronts inwards or outwards.
+void add_box(std::vector<Outline>& faces, const Point& middle, const Vec3& size, double turn, bool inwards) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const double side : {-0.5, 0.5}) {
+            Outline face;
+            for (const auto& [s, t] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+                Vec3 p;
+                p[axis] = side * size[axis];
+                p[(axis + 1) % 3] = s * size[(axis + 1) % 3], p[(axis + 2) % 3] = t * size[(axis + 2) % 3];
+                const double c = std::cos(turn), d = std::sin(turn);
+                face.push_back(middle + Vec3{c * p.x - d * p.y, d * p.x + c * p.y, p.z});
+            }
+            if ((side > 0) == inwards) std::reverse(face.begin(), face.end());
+            faces.push_back(face);
+        }
+}
+
+/// A closed room with boxes in the air, one of which stands on the floor.
+Scene furnished_room() {
+    std::vector<Outline> faces;
+    add_box(faces, {2, 1.5, 1.25}, {4, 3, 2.5}, 0, true);
+    add_box(faces, {1.1, 1, 0.6}, {0.8, 0.7, 0.9}, 0.3, false);
+    add_box(faces, {2.7, 1.7, 0.9}, {0.9, 1.1, 1.3}, -0.5, false);
+    add_box(faces, {3.2, 0.5, 0.4}, {0.3, 0.3, 0.8}, 0.2, false);
+    return scene_of(faces);
+}
+
+/// Keeps rows in memory and asks for a stop after some.
+class StoppingStore final : public RawRowStore {
+  public:
+    StoppingStore(std::vector<RawRow>& rows, StopRequest& stop, std::size_t most)
+        : rows_(rows), stop_(stop), most_(most) {}
+    std::vector<RawRow> resumed() override { return rows_; }
+    void keep(const RawRow& row) override {
+        rows_.push_back(row);
+        if (++kept_ == most_) stop_.interrupt();
+    }
+
+  private:
+    std::vector<RawRow>& rows_;
+    StopRequest& stop_;
+    std::size_t most_, kept_ = 0;
+};
+
+SparseFactors factors_of(const Scene& scene, const RowFactorOptions& options) {
+    Progress progress;
+    return compute_row_factors(scene, options, nullptr, progress, StopRequest());
+}
+
+double entry(const SparseFactors& table, std::size_t i, std::size_t j) {
+    const auto columns = table.row_columns(i);
+    const auto at = std::lower_bound(columns.begin(), columns.end(), j);
+    return at != columns.end() && *at == j ? table.row_values(i)[static_cast<std::size_t>(at - columns.begin())] : 0;
+}
+
+TEST(RowFactors, RowsHoldTheErrorRequestedAgainstQuadrature) {
+    const Scene scene = furnished_room();
+    const double R = 3e-3;
+    const SparseFactors table = factors_of(scene, {.error = R});
+    Progress progress;
+    const ViewFactors exact = *compute_view_factors(scene, 1e-4, progress, StopRequest());
+    double squares = 0;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        EXPECT_LE(table.row_errors[i], R) << i;
+        double row = 0;
+        for (std::size_t j = 0; j < table.size(); ++j) row += std::pow(entry(table, i, j) - exact.row(i)[j], 2);
+        squares += row / static_cast<double>(table.size());
+        EXPECT_LE(std::sqrt(row), 2.5 * R) << i;  // R is a standard deviation
+    }
+    EXPECT_LE(std::sqrt(squares), R);
+}
+
+TEST(RowFactors, AreReciprocalAndClosed) {
+    const Scene scene = furnished_room();
+    const SparseFactors table = factors_of(scene, {.error = 3e-3});
+    ASSERT_TRUE(table.combined);
+    EXPECT_GT(table.reciprocity_defect, 0);  // rows were computed independently
+    for (std::size_t i = 0; i < table.size(); ++i)
+        for (std::size_t j = 0; j < table.size(); ++j)
+            EXPECT_NEAR(table.areas[i] * entry(table, i, j), table.areas[j] * entry(table, j, i), 1e-14);
+    // Walls other than the floor, which the third box covers in part, see nothing but fronts. The relaxation of the
+    // defects ends at a thousandth of the largest.
+    EXPECT_EQ(table.unclosed, 0U);
+    for (const std::size_t wall : {0, 1, 2, 3, 5}) EXPECT_NEAR(table.row_sums[wall], 1, 1e-5) << wall;
+}
+
+TEST(RowFactors, RaysFindNoFaultInThemAndFindATableOfZeros) {
+    const Scene scene = furnished_room();
+    const double R = 3e-3;
+    SparseFactors table = factors_of(scene, {.error = R});
+    const RowCheckOptions options{.rows = 8, .rays = 100'000, .error = R};
+    EXPECT_EQ(check_rows_by_rays(scene, table, options, StopRequest()).wrong, 0U);
+    SparseFactors moved = table;  // every row sum is right, entries are not
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        std::reverse(moved.values.begin() + std::ptrdiff_t(moved.starts[i]),
+                     moved.values.begin() + std::ptrdiff_t(moved.starts[i + 1]));
+    EXPECT_GT(check_rows_by_rays(scene, moved, options, StopRequest()).wrong, 4U);
+    std::fill(table.values.begin(), table.values.end(), 0);
+    EXPECT_EQ(check_rows_by_rays(scene, table, options, StopRequest()).wrong, 8U);
+}
+
+TEST(RowFactors, AreTheSameOnAnyNumberOfThreadsAndAfterStops) {
+    const Scene scene = furnished_room();
+    const RowFactorOptions options{.error = 1e-2};
+    set_threads(1);
+    const SparseFactors one = factors_of(scene, options);
+    set_threads(3);
+    EXPECT_EQ(factors_of(scene, options).values, one.values);
+    set_threads(0);
+    std::vector<RawRow> rows;
+    Progress progress;
+    for (const std::size_t most : {5, 9}) {
+        StopRequest stop;
+        StoppingStore store(rows, stop, most);
+        const SparseFactors part = compute_row_factors(scene, options, &store, progress, stop);
+        if (part.combined) continue;  // a stop in the last step is too late
+        EXPECT_EQ(std::count(part.finished.begin(), part.finished.end(), 1), std::ptrdiff_t(rows.size()));
+    }
+    StopRequest never;
+    StoppingStore store(rows, never, SIZE_MAX);
+    EXPECT_EQ(compute_row_factors(scene, options, &store, progress, never).values, one.values);
+}
+
+TEST(RowFactors, EntriesBelowTheSmallestAreDroppedAndCounted) {
+    const Scene scene = furnished_room();
+    const SparseFactors all = factors_of(scene, {.error = 1e-2});
+    const SparseFactors some = factors_of(scene, {.error = 1e-2, .smallest = 0.01});
+    EXPECT_LT(some.entries(), all.entries());
+    EXPECT_GE(*std::min_element(some.values.begin(), some.values.end()), 0.01);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_NEAR(some.row_sums[i] + some.dropped[i], all.row_sums[i], 1e-14) << i;
+        EXPECT_NEAR(some.row_errors[i], all.row_errors[i] + some.dropped[i], 1e-14) << i;
+    }
+}
+
+TEST(RowFactors, MovingAndScalingTheSceneChangesNothingButNoise) {
+    std::vector<Outline> near, far;
+    add_box(near, {0, 0, 0}, {2, 2, 2}, 0.4, true), add_box(near, {0.1, 0.2, 0}, {0.7, 0.5, 0.6}, 0.9, false);
+    for (const Outline& outline : near) {
+        Outline& moved = far.emplace_back();
+        for (const Point& p : outline) moved.push_back(1000.0 * p + Vec3{7000, -3000, 500});
+    }
+    const double R = 3e-3;
+    const SparseFactors a = factors_of(scene_of(near), {.error = R}), b = factors_of(scene_of(far), {.error = R});
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t j = 0; j < a.size(); ++j) EXPECT_NEAR(entry(a, i, j), entry(b, i, j), 3 * R) << i << ' ' << j;
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/view_factors/face_sampler.hpp"
+#include "exitance/view_factors/view_face.hpp"
+#include "exitance/visibility/occluders.hpp"
+#include "exitance/visibility/rays.hpp"
+
+namespace exitance {
+
+/// A scene made ready for rows of view factors: faces, samplers, occluders and rays. Immutable; memory O(faces).
+struct RowScene {
+    explicit RowScene(const Scene& s);
+
+    const Scene& scene;
+    Occluders occluders;
+    RayTracer tracer;
+    std::vector<ViewFace> faces;
+    std::vector<FaceSampler> samplers;
+    double slack;  ///< Metres: a point nearer to a plane than this lies in it.
+
+    RegionId region(std::size_t face) const {
+        return scene.surfaces()[SurfaceId(static_cast<std::uint32_t>(face))].region;
+    }
+};
+
+}  // namespace exitance

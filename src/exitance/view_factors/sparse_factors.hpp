@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/view_factors/view_factors.hpp"
+
+namespace exitance {
+
+/// View factors between all faces of a scene as compressed rows, in the order of its file. F_ij is the share of the
+/// diffuse flux leaving face i that reaches the front of face j directly.
+struct SparseFactors {
+    std::vector<double> areas;              ///< m^2, one a face.
+    std::vector<double> emittances;         ///< 1 - reflectance, mean over the bands, one a face.
+    std::vector<std::size_t> starts = {0};  ///< Where rows begin in `columns` and `values`, and the end.
+    std::vector<std::uint32_t> columns;     ///< Ascending within a row.
+    std::vector<double> values;
+
+    std::vector<double> row_sums;    ///< One a face.
+    std::vector<double> row_errors;  ///< Empty for a table with a tolerance of entries; sqrt(sum of variances) + sum of
+                                     ///< bounds of every row; infinite if not finished.
+    std::vector<double> dropped;     ///< Sum of the entries of every row that were left out as too small.
+    std::vector<std::uint8_t> finished;  ///< 1 for rows that were computed.
+    bool combined = false;  ///< F_ij and F_ji come from both rows, so that A_i F_ij = A_j F_ji but for rounding.
+
+    double reciprocity_defect = 0;  ///< max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij) of rows computed independently.
+    double entry_defect = 0;        ///< As of ViewFactors; 0 for tables with an error of rows.
+    /// max |1 - sum_j F_ij - share of the sky and of backs| over rows computed independently, for rows whose share is
+    /// known to the error requested.
+    double closure_defect = 0;
+    std::size_t unclosed = 0;  ///< Rows whose closure defect is more than their variance explains.
+
+    bool is_settled = true;                 ///< False if a stop ended the run after its rows.
+    std::size_t mended = 0, unsettled = 0;  ///< As of ViewFactors; 0 for tables with an error of rows.
+
+    std::size_t size() const { return areas.size(); }
+    std::size_t entries() const { return values.size(); }
+    std::span<const std::uint32_t> row_columns(std::size_t i) const {
+        return std::span(columns).subspan(starts[i], starts[i + 1] - starts[i]);
+    }
+    std::span<const double> row_values(std::size_t i) const {
+        return std::span(values).subspan(starts[i], starts[i + 1] - starts[i]);
+    }
+};
+
+/// The entries of a table that are not zero and at least `smallest`. Row errors are left empty.
+SparseFactors sparse_from(const ViewFactors& table, double smallest = 0);
+
+inline constexpr std::uint32_t no_row = 0xffffffff;
+
+/// A table whose rows are unions of faces: F of a union is the mean of its faces' rows, weighted by area, and the sum
+/// of their columns. `rows` has the row of every face, or no_row for one that only blocks; `count` rows are returned.
+/// The error of a row is at most the mean of its faces' errors. Defects are those of the faces' table.
+SparseFactors merge_rows(const SparseFactors& table, std::span<const std::uint32_t> rows, std::size_t count);
+
+}  // namespace exitance

@@ -1,0 +1,56 @@
+#include "exitance/view_factors/view_face.hpp"
+
+#include "exitance/geometry/triangulation.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_corners = 12;  ///< Of a convex piece.
+
+ViewFace make_face(const Scene& scene, SurfaceId s) {
+    const Surface& surface = scene.surfaces()[s];
+    ViewFace face{
+        scene.outline(s), {surface.normal, dot(surface.normal, scene.outline(s)[0])}, surface.area, {}, {}, 0, false};
+    for (const Point& p : face.outline) face.box.add(p);
+    face.diameter = face.box.diagonal();
+    for (const auto& piece : convex_pieces(face.outline, surface.normal))
+        for (std::size_t first = 1; first + 1 < piece.size(); first += most_corners - 2) {
+            std::vector<Point>& part = face.pieces.emplace_back();
+            part.push_back(face.outline[piece[0]]);
+            for (std::size_t k = first; k < piece.size() && k < first + most_corners - 1; ++k)
+                part.push_back(face.outline[piece[k]]);
+        }
+    face.is_quad = face.pieces.size() == 1 && face.outline.size() <= 4;
+    return face;
+}
+
+}  // namespace
+
+std::vector<ViewFace> make_view_faces(const Scene& scene) {
+    std::vector<ViewFace> faces;
+    faces.reserve(scene.surfaces().size());
+    for (SurfaceId s : scene.surfaces().ids()) faces.push_back(make_face(scene, s));
+    return faces;
+}
+
+bool face_each_other(const ViewFace& a, const ViewFace& b, double slack, bool& cut) {
+    bool any = false, all = true;
+    for (const Point& p : b.outline) {
+        const double d = a.plane.signed_distance(p);
+        any |= d > slack, all &= d >= -slack;
+    }
+    if (!any) return false;
+    any = false;
+    for (const Point& p : a.outline) {
+        const double d = b.plane.signed_distance(p);
+        any |= d > slack, all &= d >= -slack;
+    }
+    cut = !all;
+    return any;
+}
+
+double box_distance(const ViewFace& a, const ViewFace& b) {
+    return norm(max(max(b.box.lo - a.box.hi, a.box.lo - b.box.hi), Vec3{}));
+}
+
+}  // namespace exitance

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/geometry/polygon.hpp"
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+/// One face of a scene as a receiver and source of view factors.
+struct ViewFace {
+    std::span<const Point> outline;
+    Plane plane;
+    double area = 0;  ///< m^2
+    Box box;
+    std::vector<std::vector<Point>> pieces;  ///< Convex, of at most 12 corners.
+    double diameter = 0;                     ///< Diagonal of its box, metres.
+    bool is_quad = false;                    ///< Convex, with three or four corners.
+};
+
+/// Returns a scene's faces in the order of its file. The scene must outlive them.
+std::vector<ViewFace> make_view_faces(const Scene& scene);
+
+/// Returns true if some of each face is in front of the other; a point within `slack` metres of a plane lies in it.
+/// `cut` is set if some of a face is behind the other's plane.
+bool face_each_other(const ViewFace& a, const ViewFace& b, double slack, bool& cut);
+
+/// Distance between the faces' boxes, metres: a lower bound of the distance between the faces.
+double box_distance(const ViewFace& a, const ViewFace& b);
+
+}  // namespace exitance
