@@ -35,6 +35,10 @@ RunLimits::RunLimits(const LimitArguments& limits) : limits_(limits) {
         stop_.set_deadline(deadline);
         end_ = deadline + grace;
     }
+    if (is_over_memory()) {
+        over_memory_ = true;
+        end_without_result();
+    }
     if (limits_.time_limit || limits_.memory_limit) watcher_ = std::jthread([this] { watch(); });
 }
 
@@ -63,7 +67,8 @@ std::string RunLimits::reason() const {
 
 Error RunLimits::error(const std::string& message) const {
     return over_memory_ ? Error{ErrorCode::limit,
-                                fmt::format("the run takes more than {:.0f} MiB, and {}",
+                                fmt::format("{:.0f} MiB are in use, over the limit of {:.0f} MiB, and {}",
+                                            static_cast<double>(resident_memory_bytes()) / 0x1p20,
                                             static_cast<double>(*limits_.memory_limit) / 0x1p20, message),
                                 "--memory-limit", "raise the limit"}
                         : Error{ErrorCode::limit,
@@ -72,8 +77,8 @@ Error RunLimits::error(const std::string& message) const {
 }
 
 bool RunLimits::is_over_memory() const {
-    return limits_.memory_limit &&
-           resident_memory_bytes(1.0 / static_cast<double>(processes_on_node())) > *limits_.memory_limit;
+    // Of several processes, pages in common count by shares that only the plan of a solve knows (fit_into_memory).
+    return limits_.memory_limit && processes() == 1 && resident_memory_bytes() > *limits_.memory_limit;
 }
 
 void RunLimits::watch() {
