@@ -31,8 +31,8 @@ Vec3 mirrored(const Vec3& w, const Normal& n) {
 }  // namespace
 
 bool panes_may_mirror_light(const Scene& scene) {
-    constexpr double oblique = 0.1;      // cosine at which whatever mirrors at all does so
-    constexpr double negligible = 1e-4;  // share that rays do not resolve either (RayFates)
+    constexpr double oblique = 0.1;      // cosine, given by Fresnel's equations: whatever mirrors at all does so here
+    constexpr double negligible = 1e-4;  // given by the tables of RayFates, which are right to this share
     const auto mirrors = [](const Pane& pane) { return max(pane.reflection(oblique)) > negligible; };
     return scene.has_light() && std::any_of(scene.panes().begin(), scene.panes().end(), mirrors);
 }
@@ -211,7 +211,7 @@ std::vector<Place> measured_places(const Solution& solution, const Stage& stage,
 
 /// The share in one room. The product of two independent estimates is the square without a bias by noise.
 MirroredShare share_of(std::span<const Place> places, std::size_t room) {
-    constexpr double least_light = 0.1;       // of the room's mean
+    constexpr double least_light = 0.1;  // of the room's mean, given by the norm that errors of parts are judged in
     constexpr std::size_t fewest_places = 8;  // to know a standard error by
     double arriving = 0, n = 0;
     for (const Place& place : places)

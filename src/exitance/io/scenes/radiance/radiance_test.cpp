@@ -261,7 +261,7 @@ TEST_F(RadianceFiles, LinesOfGenskyAndGendaylitNeedNoProgram) {
          {"!gensky 3 20 10 -a 40 -o 98 -m 105", "!gendaylit 3 20 10 -a 40 -o 98 -m 105 -W 600 100"}) {
         const Scene s = scene(std::string(line) + "\n" + glow + square);
         ASSERT_EQ(s.distant().discs.size(), 1u) << line;
-        EXPECT_NEAR(s.distant().discs[0].towards.z, 0.685639, 1e-6) << line;
+        EXPECT_NEAR(s.distant().discs[0].towards.z, 0.685564, 1e-6) << line;  // by hand, period 365
         EXPECT_EQ(s.distant().domes.size(), 1u) << line;
         const Scene turned = scene(std::string(line) + " | xform -rz 90\n" + glow + square);
         EXPECT_NEAR(turned.distant().discs[0].towards.x, -s.distant().discs[0].towards.y, 1e-9) << line;
