@@ -79,6 +79,7 @@ class BodySurvey {
     void look_at_all();
     void look_closely();
     std::vector<BodyError> errors() const;
+    std::vector<PointError> close_points() const { return close_points_; }
     std::size_t rays_left() const { return left_; }
 
   private:
@@ -89,7 +90,7 @@ class BodySurvey {
     std::vector<PilotPlace> pilots(std::uint32_t body, std::size_t count, std::uint64_t name) const;
     std::size_t work(const CheckPlan& plan, unsigned rays, std::size_t points) const;
     std::vector<ResidualSample> measure(std::span<const BodyPoint> points) const;
-    void add(std::span<const BodyPoint> points);
+    std::vector<PointError> add(std::span<const BodyPoint> points);
     bool look_closely_at(std::uint32_t body);
 
     const BodyCheck& c_;
@@ -98,6 +99,7 @@ class BodySurvey {
     std::size_t left_;  ///< Rays.
     std::vector<std::vector<ElementId>> leaves_;
     std::vector<BodyMeasure> measured_;
+    std::vector<PointError> close_points_;
     std::vector<bool> is_known_;    ///< The bodies that were looked at closely,
     std::vector<bool> is_unknown_;  ///< and those that would have needed it.
 };
@@ -133,13 +135,18 @@ std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> point
     return out;
 }
 
-void BodySurvey::add(std::span<const BodyPoint> points) {
+/// Measures points, and returns their errors by the light of their rooms.
+std::vector<PointError> BodySurvey::add(std::span<const BodyPoint> points) {
     const std::vector<ResidualSample> found = measure(points);
+    std::vector<PointError> out;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const ResidualSample& s = found[i];
-        const double squared = mean((s.r1 + c_.late[s.leaf]) * (s.r2 + c_.late[s.leaf]));
-        measured_[points[i].body].add(1, squared, s.reflected, light_of_room_(s.room));
+        const double squared = mean((s.r1 + c_.late[s.leaf]) * (s.r2 + c_.late[s.leaf])),
+                     light = light_of_room_(s.room);
+        measured_[points[i].body].add(1, squared, s.reflected, light);
+        out.push_back({s.surface, 1, squared / (light * light)});
     }
+    return out;
 }
 
 void BodySurvey::look_at_all() {
@@ -197,7 +204,8 @@ bool BodySurvey::look_closely_at(std::uint32_t body) {
         std::vector<BodyPoint> todo;
         for (const WeightedSample& place : places_on_body(c_.indirect.tree, leaves_[body], batch, hash(name, k)))
             todo.push_back({place, body, of_body, rays, hash(name, k, todo.size())});
-        add(todo);
+        const std::vector<PointError> found = add(todo);
+        close_points_.insert(close_points_.end(), found.begin(), found.end());
         const BodyMeasure& now = measured_[body];
         if (now.standard_error() <= well_known * std::max(now.mean_square(), requested)) break;
     }
@@ -230,13 +238,12 @@ std::vector<BodyError> BodySurvey::errors() const {
 
 }  // namespace
 
-std::size_t measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
-                           double error, std::size_t max_rays, std::vector<BodyError>& errors) {
+MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
+                              double error, std::size_t max_rays) {
     BodySurvey survey(check, light_of_room, error, max_rays);
     survey.look_at_all();
     survey.look_closely();
-    errors = survey.errors();
-    return max_rays - survey.rays_left();
+    return {survey.errors(), survey.close_points(), max_rays - survey.rays_left()};
 }
 
 }  // namespace exitance

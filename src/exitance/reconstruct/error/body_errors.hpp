@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exitance/reconstruct/error/residual_samples.hpp"
+#include "exitance/reconstruct/error/surface_errors.hpp"
 #include "exitance/reconstruct/solution.hpp"
 #include "exitance/scene/bodies.hpp"
 
@@ -61,9 +62,13 @@ struct BodyCheck {
 /// rays do not suffice, bodies have no error.
 ///
 /// light_of_room  reflected radiosity of a room, W/m^2     error  requested, relative     max_rays  of all work
-/// errors         one a body, the largest body first
-/// Returns the rays that it took.
-std::size_t measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
-                           double error, std::size_t max_rays, std::vector<BodyError>& errors);
+/// Returns what was found.
+struct MeasuredBodies {
+    std::vector<BodyError> errors;   ///< One a body, the largest body first.
+    std::vector<PointError> points;  ///< Of the bodies that were measured by points of their own, relative likewise.
+    std::size_t rays = 0;            ///< That it took.
+};
+MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
+                              double error, std::size_t max_rays);
 
 }  // namespace exitance

@@ -129,7 +129,8 @@ struct Certifier::Content {
     void judge_rooms(Certificate& out);
     std::vector<double> mean_by_room() const;
     std::vector<RoomError> rooms;
-    std::vector<BodyError> bodies;  ///< The largest first.
+    std::vector<BodyError> bodies;        ///< The largest first.
+    std::vector<PointError> body_points;  ///< Where bodies were measured by points of their own.
 };
 
 /// Of every leaf of the coarse mesh, the light of its room by the mean light.
@@ -337,7 +338,8 @@ void Certifier::Content::look_at_bodies(Certificate& out) {
     } else {
         const BodyCheck body_check{stage, indirect, b, check, sampler(), *options.bodies, late, options.seed};
         const auto light = [&](std::size_t room) { return light_of_room(room); };
-        out.rays += measure_bodies(body_check, light, options.error, options.check_rays, bodies);
+        MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
+        bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;
     }
     for (const BodyError& body : bodies)
         if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);
@@ -404,12 +406,18 @@ const std::vector<RoomError>& Certifier::rooms() const {
 std::vector<FaceError> Certifier::surface_errors() const {
     const Content& c = *content_;
     if (c.rooms.empty()) return {};
-    std::vector<PointError> points;
+    const Scene& scene = c.stage.scene;
+    // Points of a body that was looked at closely check direct light at more hits: where they suffice, they replace the
+    // others of a face.
+    std::vector<PointError> points = c.body_points;
+    Field<SurfaceId, std::size_t> close(scene.surfaces().size(), 0);
+    for (const PointError& p : points) ++close[p.surface];
+    std::erase_if(points, [&](const PointError& p) { return close[p.surface] < BodyMeasure::min_points; });
     for (const ResidualSample& s : c.samples) {
+        if (close[s.surface] >= BodyMeasure::min_points) continue;
         const double light_there = c.rooms[s.room].reference;
         points.push_back({s.surface, s.weight, s.squared / (light_there * light_there)});
     }
-    const Scene& scene = c.stage.scene;
     std::vector<double> of_rooms;
     for (SurfaceId s : scene.surfaces().ids()) {
         const RegionId region = scene.surfaces()[s].region;
