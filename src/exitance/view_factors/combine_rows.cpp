@@ -12,7 +12,7 @@ namespace {
 
 /// Defects of closure within so many standard deviations are noise: one row in 2,000 exceeds it by chance.
 constexpr double explained = 3.5;
-constexpr int most_sweeps = 200;         ///< Of the relaxation that distributes closure defects.
+constexpr int most_sweeps = 200;        ///< Of the relaxation that distributes closure defects.
 constexpr double settled_share = 1e-6;  ///< Of the largest defect: what may be left of it.
 
 /// An exchange area A_i F_ij, m^2, and its variance.

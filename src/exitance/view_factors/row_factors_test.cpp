@@ -109,17 +109,17 @@ TEST(RowFactors, AreReciprocalAndClosed) {
     for (std::size_t i = 0; i < table.size(); ++i)
         for (std::size_t j = 0; j < table.size(); ++j)
             EXPECT_NEAR(table.areas[i] * entry(table, i, j), table.areas[j] * entry(table, j, i), 1e-14);
-    // Walls other than the floor, which the third box covers in part, see nothing but fronts. The relaxation of the
-    // defects ends at a thousandth of the largest.
+    // Walls other than the floor, which the third box covers in part, see nothing but fronts. One ray in 20,000 may
+    // meet the edge of two faces and count as missed.
     EXPECT_EQ(table.unclosed, 0U);
-    for (const std::size_t wall : {0, 1, 2, 3, 5}) EXPECT_NEAR(table.row_sums[wall], 1, 1e-5) << wall;
+    for (const std::size_t wall : {0, 1, 2, 3, 5}) EXPECT_NEAR(table.row_sums[wall], 1, 1e-4) << wall;
 }
 
 TEST(RowFactors, RaysFindNoFaultInThemAndFindATableOfZeros) {
     const Scene scene = furnished_room();
     const double R = 3e-3;
     SparseFactors table = factors_of(scene, {.error = R});
-    const RowCheckOptions options{.rows = 8, .rays = 100'000, .error = R};
+    const RowCheckOptions options{.rows = 8, .rays = 30'000, .error = R};
     EXPECT_EQ(check_rows_by_rays(scene, table, options, StopRequest()).wrong, 0U);
     SparseFactors moved = table;  // every row sum is right, entries are not
     for (std::size_t i = 0; i < moved.size(); ++i)

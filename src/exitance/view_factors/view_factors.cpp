@@ -31,12 +31,14 @@ bool exceeds_memory(std::size_t limit) {
 /// Where both rows hold a pair of faces, computed from either: how far they are apart, of the larger.
 double disagreement(const ViewFactors& table, std::size_t i, std::size_t j) {
     const double there = table.areas[i] * table.row(i)[j], back = table.areas[j] * table.row(j)[i];
+    if (!std::isfinite(there) || !std::isfinite(back)) return HUGE_VAL;  // a quadrature that failed: computed again
     const double larger = std::max(there, back);
     return larger > 0 ? std::abs(there - back) / larger : 0;
 }
 
 bool matters(const ViewFactors& table, std::size_t i, std::size_t j) {
-    return std::max(table.row(i)[j], table.row(j)[i]) > ViewFactors::smallest_entry;
+    const double there = table.row(i)[j], back = table.row(j)[i];
+    return !std::isfinite(there + back) || std::max(there, back) > ViewFactors::smallest_entry;
 }
 
 struct Pair {
@@ -150,11 +152,20 @@ class TableMaker {
                 progress_.advance(static_cast<double>(first + count) / static_cast<double>(pairs.size()));
             }
         }
+        take_finite();
         table_.unsettled = disagreeing(table_, tolerance_).size();
         return {};
     }
 
   private:
+    /// Where one row's quadrature gave no number, the other row's entry stands for both.
+    void take_finite() {
+        for (std::size_t i = 0; i < table_.size(); ++i)
+            for (std::size_t j = 0; j < table_.size(); ++j)
+                if (!std::isfinite(at(i, j)) && std::isfinite(at(j, i)))
+                    at(i, j) = table_.areas[j] * at(j, i) / table_.areas[i];
+    }
+
     RawRow raw_row(std::size_t i) const {
         RawRow row;
         row.face = static_cast<std::uint32_t>(i);
