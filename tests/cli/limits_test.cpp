@@ -115,16 +115,4 @@ TEST(ProgramLimits, ATimeLimitEndsABakeWithNoMaps) {
     EXPECT_FALSE(std::filesystem::exists(folder / "maps/lightmaps.json"));
 }
 
-TEST(ProgramLimits, ATimeLimitLeavesTheFinishedPartsOfAReport) {
-    const TemporaryFolder folder;
-    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
-    const Finished run =
-        run_program({"report", folder / "s.h5", "-o", folder / "r.html", "--grid", "0.1,0.1,0.5 0.8,0,0 0,0.8,0 0.1",
-                     "--grid", "0.1,0.1,0.4 0.8,0,0 0,0.8,0 0.0005", "--time-limit", "0.8"});
-    EXPECT_EQ(run.status, 4) << run.err;
-    EXPECT_NE(run.err.find("1 of 2 measuring planes"), std::string::npos) << run.err;
-    EXPECT_NE(read_text(folder / "r.json").find("1 of 2 measuring planes"), std::string::npos);
-    EXPECT_NE(read_text(folder / "r.html").find("not finished"), std::string::npos);
-}
-
 }  // namespace exitance::test

@@ -9,9 +9,9 @@
 namespace exitance {
 
 /// Writes view factors as the path's ending says: `.vf` as View3D's text format, `.mtx` as Matrix Market's coordinates
-/// and `.h5` as HDF5, both without zeros, anything else as CSV. Rows that are not finished are left out of CSV and empty
-/// in the others. The file appears whole or not at all: not when a stop
-/// is requested (ErrorCode::limit) or it cannot be written (ErrorCode::cannot_write).
+/// and `.h5` as HDF5, both without zeros, anything else as CSV. Rows that are not finished are left out of CSV and
+/// empty in the others. The file appears whole or not at all: not when a stop is requested (ErrorCode::limit) or it
+/// cannot be written (ErrorCode::cannot_write).
 Result<void> write_view_factors(const std::string& path, const SparseFactors& table, const StopRequest& stop);
 
 /// Reads a table from a `.h5` file of write_view_factors.

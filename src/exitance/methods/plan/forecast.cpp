@@ -15,6 +15,7 @@
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/reconstruct/error/area_samples.hpp"
 #include "exitance/reconstruct/error/certificate.hpp"
+#include "exitance/reconstruct/error/residual_samples.hpp"
 #include "exitance/reconstruct/gather.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -167,8 +168,9 @@ double method_rays(const Plan& plan, const Pilot& pilot, double patches, double 
 /// Two gathers at every point of the certificate, and rows of few rays.
 double certificate_rays(const Plan& plan, double elements, double gathered, double rays_an_element) {
     const double rows = 12 * elements;
-    if (plan.sums) return rows;
     const double points = static_cast<double>(CertificateOptions::points_for(static_cast<std::size_t>(gathered)));
+    // Sums are measured at half as many points, where rays check the direct light that they hold.
+    if (plan.sums) return rows + points * ResidualSampler::rays_beside_sums;
     return rows + 2 * points * std::max(16.0, 0.2 * rays_an_element);
 }
 
