@@ -198,12 +198,12 @@ TEST_F(ProgramOfProcesses, FailTogetherAndSaySoOnce) {
 TEST_F(ProgramOfProcesses, TakeAMethodThatRunsOverThemWhereTheirChoiceWouldNot) {
     const std::vector<std::string> fine{"--error-interpolant", "0.01", "--time-limit", "0.5"};
     const Finished run = run_on(2, solve("auto", fine));
-    EXPECT_TRUE(run.status == 0 || run.status == 4) << run.err;
+    EXPECT_TRUE(run.status == 0 || run.status == 4 || run.status == 5) << run.err;
     EXPECT_NE(run.err.find("does not run over processes"), std::string::npos) << run.err;
 }
 
 TEST_F(ProgramOfProcesses, StopTogetherWhenTimeIsUp) {
-    const Finished run = run_on(3, solve("limited", {"--error", "0.001", "--time-limit", "0.4", "--json"}));
+    const Finished run = run_on(3, solve("limited", {"--error", "0.0003", "--time-limit", "4", "--json"}));
     EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_TRUE(load_solution(folder / "limited.h5"));
 }

@@ -44,11 +44,11 @@ TEST(ProgramResume, ASolveThatWasStoppedKilledOrLimitedGoesOnToTheSameBits) {
         EXPECT_FALSE(std::filesystem::exists(kept)) << "nothing is left to go on with";
         EXPECT_EQ(light_of(folder, name), light_of(folder, "whole"));
     }
-    for (int round = 0, status = 4; status == 4 && round < 100; ++round) {
+    for (int round = 0, status = 4; status != 0 && round < 100; ++round) {
         const std::string seconds = round < 2 ? "0.1" : "60";
         const std::vector<std::string> more{"--checkpoint-every", "0.02", "--resume", "--time-limit", seconds};
         status = run_program(solve(scene, folder, "limited", more)).status;
-        EXPECT_TRUE(status == 4 || status == 0) << status;
+        EXPECT_TRUE(status == 4 || status == 5 || status == 0) << status;  // 5: no light yet, but a checkpoint
     }
     EXPECT_EQ(light_of(folder, "limited"), light_of(folder, "whole"));
 }
@@ -57,7 +57,8 @@ TEST(ProgramResume, AnotherSolvesCheckpointIsRefusedWithStatusThree) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const std::vector<std::string> limited{"--checkpoint-every", "1e-9", "--time-limit", "0.08"};
-    ASSERT_EQ(run_program(solve(scene, folder, "room", limited)).status, 4);
+    const int status = run_program(solve(scene, folder, "room", limited)).status;
+    ASSERT_TRUE(status == 4 || status == 5) << status;
     if (!std::filesystem::exists(folder / "room.h5.checkpoint")) return;  // too short for the first safe point
     const Finished other = run_program(solve(scene, folder, "room", {"--resume", "--seed", "7"}));
     EXPECT_EQ(other.status, 3);
