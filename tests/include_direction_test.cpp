@@ -129,16 +129,6 @@ TEST(Includes, HeadersArePlain) {
     }
 }
 
-TEST(Folders, HoldAtMostFortyFilesBesideTests) {
-    const fs::path root = fs::path(test::source_folder()) / "src/exitance";
-    std::map<std::string, std::size_t> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root))
-        if (entry.is_regular_file() && !entry.path().stem().string().ends_with("_test"))
-            ++files[fs::relative(entry.path().parent_path(), root)];
-    for (const auto& [folder, count] : files) EXPECT_LE(count, 40u) << folder << ": make a subfolder";
-    EXPECT_GT(files.size(), 20u);
-}
-
 /// Two types of one name in one program are one to the linker, which keeps the code of either for both.
 TEST(Headers, DefineEveryTypeOnce) {
     const fs::path root = fs::path(test::source_folder()) / "src/exitance";

@@ -57,8 +57,8 @@ void join_by_name(const Scene& scene, DisjointSets& sets) {
 }
 
 /// Gathers the faces of every set, in the order of their first ones.
-Bodies bodies_of(const Scene& scene, DisjointSets& sets) {
-    Bodies out;
+SceneBodies bodies_of(const Scene& scene, DisjointSets& sets) {
+    SceneBodies out;
     out.body.resize(scene.surfaces().size(), 0);
     for (SurfaceId s : scene.surfaces().ids()) {
         const std::uint32_t root = sets.root(s.value);  // the least member: it comes first
@@ -66,12 +66,12 @@ Bodies bodies_of(const Scene& scene, DisjointSets& sets) {
             out.body[s] = static_cast<std::uint32_t>(out.all.size());
             out.all.push_back({.first = s});
         }
-        Body& body = out.all[out.body[s] = out.body[SurfaceId(root)]];
+        SceneBody& body = out.all[out.body[s] = out.body[SurfaceId(root)]];
         const double area = scene.surfaces()[s].area;
         ++body.surfaces, body.area += area;
         body.centre += area * centroid(scene.outline(s));
     }
-    for (Body& body : out.all) body.centre = body.centre / body.area;
+    for (SceneBody& body : out.all) body.centre = body.centre / body.area;
     return out;
 }
 
@@ -90,7 +90,7 @@ std::uint64_t morton(const Point& p, const Box& box) {
 /// Bodies in the order of a Morton curve, as a list from which the smallest are taken out.
 class Pool {
   public:
-    Pool(const Scene& scene, const Bodies& bodies) : area_(bodies.all.size()) {
+    Pool(const Scene& scene, const SceneBodies& bodies) : area_(bodies.all.size()) {
         std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
         for (std::uint32_t b = 0; b < area_.size(); ++b) {
             area_[b] = bodies.all[b].area, centre_.push_back(bodies.all[b].centre);
@@ -140,11 +140,11 @@ class Pool {
 
 }  // namespace
 
-Bodies find_bodies(const Scene& scene, std::size_t max_bodies) {
+SceneBodies find_bodies(const Scene& scene, std::size_t max_bodies) {
     DisjointSets sets(scene.surfaces().size());
     join_by_edges(scene, sets);
     join_by_name(scene, sets);
-    Bodies out = bodies_of(scene, sets);
+    SceneBodies out = bodies_of(scene, sets);
     if (out.all.size() <= std::max<std::size_t>(1, max_bodies)) return out;
     Pool(scene, out).shrink(std::max<std::size_t>(1, max_bodies), [&](std::uint32_t a, std::uint32_t b) {
         sets.unite(out.all[a].first.value, out.all[b].first.value);

@@ -36,7 +36,7 @@ TEST(Bodies, AreFacesThatShareEdges) {
     SceneDescription d = with_groups({"default"});
     add_cube(d, {0, 0, 0}, 1, 0), add_cube(d, {3, 0, 0}, 2, 0);
     const Scene scene = made(std::move(d));
-    const Bodies bodies = find_bodies(scene);
+    const SceneBodies bodies = find_bodies(scene);
     ASSERT_EQ(bodies.all.size(), 2u);
     EXPECT_EQ(bodies.all[0].surfaces, 6u);
     EXPECT_NEAR(bodies.all[0].area, 6, 1e-12);
@@ -49,7 +49,7 @@ TEST(Bodies, AreFacesOfOneNamedObject) {
     SceneDescription d = with_groups({"table", "default"});
     add_cube(d, {0, 0, 0}, 1, 0), add_cube(d, {3, 0, 0}, 1, 0), add_cube(d, {6, 0, 0}, 1, 1),
         add_cube(d, {9, 0, 0}, 1, 1);
-    const Bodies bodies = find_bodies(made(std::move(d)));
+    const SceneBodies bodies = find_bodies(made(std::move(d)));
     ASSERT_EQ(bodies.all.size(), 3u);  // "default" is what faces without a name are called
     EXPECT_EQ(bodies.all[0].surfaces, 12u);
 }
@@ -58,11 +58,11 @@ TEST(Bodies, TheSmallestArePooledWithNeighbours) {
     SceneDescription d = with_groups({"default"});
     for (int i = 0; i < 20; ++i) add_cube(d, {i < 10 ? 2.0 * i : 1000 + 2.0 * i, 0, 0}, i < 10 ? 0.1 : 1, 0);
     const Scene scene = made(std::move(d));
-    const Bodies bodies = find_bodies(scene, 11);
+    const SceneBodies bodies = find_bodies(scene, 11);
     ASSERT_EQ(bodies.all.size(), 11u);
     double area = 0;
     std::size_t surfaces = 0;
-    for (const Body& body : bodies.all) area += body.area, surfaces += body.surfaces;
+    for (const SceneBody& body : bodies.all) area += body.area, surfaces += body.surfaces;
     EXPECT_NEAR(area, 10 * 6 * 1.01, 1e-9);
     EXPECT_EQ(surfaces, 120u);
     // The ten small cubes are one body, and no large one was pooled with them.

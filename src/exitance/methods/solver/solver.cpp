@@ -31,7 +31,7 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
     // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
     // another run may go on: its light is not to depend on how long this one had.
     const bool hurries = seconds_left(stop) < calibrated::near_deadline && !checkpoints_;
-    constexpr double first_shown_error = 0.32;  // the coarsest that still looks like the scene
+    constexpr double first_shown_error = 0.32;  // given by what still looks like the scene
     plan_ = make_plan(stage_, asked, show ? first_shown_error : hurries ? calibrated::hurried_error : 0);
     requested_error_ = options_.error_target();
     if (show && options_.error_demand()) options_.error = std::max(first_shown_error, requested_error_);

@@ -165,11 +165,11 @@ class Solver {
     Certificate certificate_;
     int attempt_ = 1;
     Step step_ = Step::project;
-    bool fresh_ = true;               ///< Does the method find new light in this attempt?
-    Spectrum share_;                  ///< c of that light, see find_direct_share.
-    std::optional<Bodies> bodies_;    ///< By which errors are told; found when they are first needed.
-    std::vector<double> light_in_;    ///< Of every room by the mean light; empty where all is one room.
-    std::vector<double> allowed_in_;  ///< What errors rooms may have, in proportion (`allowed_by_room`).
+    bool fresh_ = true;                  ///< Does the method find new light in this attempt?
+    Spectrum share_;                     ///< c of that light, see find_direct_share.
+    std::optional<SceneBodies> bodies_;  ///< By which errors are told; found when they are first needed.
+    std::vector<double> light_in_;       ///< Of every room by the mean light; empty where all is one room.
+    std::vector<double> allowed_in_;     ///< What errors rooms may have, in proportion (`allowed_by_room`).
     std::string resumed_phase_;
     double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.
 };

@@ -8,7 +8,7 @@
 namespace exitance {
 
 /// The smallest error that is told from noise, in errors requested.
-constexpr double resolved_errors = 1.5;
+constexpr double resolved_errors = 1.5;  // given by the warning at 3: half of it
 
 void BodyMeasure::add(double weight, double squared, double reflected, double light_of_room) {
     ++points_, weight_ += weight, squared_ += weight * squared;
@@ -24,7 +24,8 @@ double BodyMeasure::standard_error() const {
 }
 
 double BodyMeasure::reference() const {
-    constexpr double least_share = 0.1;  // of the room's light: a dark body counts as bright as this
+    constexpr double least_share =
+        0.1;  // given by the norm of errors by part, of the room's light: a dark body counts as bright as this
     return weight_ > 0 ? std::max(mean_reflected(), least_share * light_ / weight_) : 0;
 }
 
@@ -189,7 +190,8 @@ void BodySurvey::look_at_all() {
 /// Returns false where the rays do not suffice.
 bool BodySurvey::look_closely_at(std::uint32_t body) {
     constexpr std::size_t batch = 16, most_batches = 16;
-    constexpr double well_known = 0.25;  // standard error of the mean square, as its share: an eighth of the error
+    constexpr double well_known = 0.25;  // given by an estimate within an eighth: standard error of the mean square, as
+                                         // its share: an eighth of the error
     const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
     // As many rays as make the noise of each half as large as the error seems, or as the one requested.
     const BodyMeasure before = measured_[body];
@@ -227,7 +229,7 @@ void BodySurvey::look_closely() {
 std::vector<BodyError> BodySurvey::errors() const {
     std::vector<BodyError> out;
     for (std::size_t b = 0; b < measured_.size(); ++b) {
-        const Body& body = c_.bodies.all[b];
+        const SceneBody& body = c_.bodies.all[b];
         const BodyMeasure& found = measured_[b];
         out.push_back({body.surfaces, body.area, found.mean_reflected(),
                        is_unknown_[b] ? std::nullopt : found.error(error_), found.points(), body.first});

@@ -50,7 +50,7 @@ struct BodyCheck {
     const ReflectedLight& b;
     const DirectCheck& check;
     ResidualSampler sampler;
-    const Bodies& bodies;
+    const SceneBodies& bodies;
     std::span<const Spectrum> late;  ///< The smooth part of the error, by leaf of the coarse mesh.
     std::uint64_t seed;
 };

@@ -333,7 +333,7 @@ Certificate Certifier::Content::judge() {
 void Certifier::Content::look_at_bodies(Certificate& out) {
     if (!options.bodies || !options.places.empty()) return;
     if (options.bodies->all.size() == 1) {
-        const Body& body = options.bodies->all[0];
+        const SceneBody& body = options.bodies->all[0];
         bodies = {{body.surfaces, body.area, mean_reflected, out.estimate, samples.size(), body.first}};
     } else {
         const BodyCheck body_check{stage, indirect, b, check, sampler(), *options.bodies, late, options.seed};

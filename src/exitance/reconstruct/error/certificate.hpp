@@ -50,7 +50,7 @@ struct CertificateOptions {
     /// Rays that may be spent on bodies and on paths.
     std::size_t check_rays = 1 << 16;
     /// Errors are told by body, too; null: not by body.
-    const Bodies* bodies = nullptr;
+    const SceneBodies* bodies = nullptr;
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.

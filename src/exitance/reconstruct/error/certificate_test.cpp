@@ -356,7 +356,7 @@ TEST(Certificate, MeasuresSmallBodiesByPointsOfTheirOwn) {
     }
     PlantedError planted([](const Point& p) { return p.x > 18 ? 0.2 : 0.0; }, 1, std::move(*make_scene(d).scene));
     planted.stage.rooms = {};  // all is one room
-    const Bodies bodies = find_bodies(planted.scene);
+    const SceneBodies bodies = find_bodies(planted.scene);
     ASSERT_EQ(bodies.all.size(), 2u);
     const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
     const PointwiseLight b(

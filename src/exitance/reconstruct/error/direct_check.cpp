@@ -143,7 +143,7 @@ CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const Reflect
         },
         [&](std::size_t k) -> PilotFound& { return found[k]; }, {"certificate"});
     const PilotSums V = sums_of(found);
-    const double beside = std::max({other.gather_is_noisy ? V.gather : 0, other.tolerated, 1e-300});
+    const double beside = std::max({other.gather_is_noisy ? V.gather : 0, other.tolerated, 1e-300});  // given by: not 0
     // Single steps, at all hits alike.
     constexpr double least_share = 1.0 / 256;  // finds what the projection does not know to be wrong
     const double step_work = check.paths().rays_per_step(), exact_work = std::max(1.0, check.exact_work());

@@ -64,7 +64,7 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
     }
     s.figures["relative_error_textures"] = error;
     const bool missed = demand && *s.relative_error_estimate > *demand;
-    constexpr double worth_saying = 0.1;  // of the estimate without it
+    constexpr double worth_saying = 0.1;  // given by the digits that people read, of the estimate without it
     if (missed || error > worth_saying * before)
         s.warnings.push_back(fmt::format(
             "reflectance varies within faces by their pictures, and a face reflects its mean: {:.3g}% of the error "
