@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "exitance/transport/distributed.hpp"
 
@@ -143,7 +144,8 @@ CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const Reflect
         },
         [&](std::size_t k) -> PilotFound& { return found[k]; }, {"certificate"});
     const PilotSums V = sums_of(found);
-    const double beside = std::max({other.gather_is_noisy ? V.gather : 0, other.tolerated, 1e-300});  // given by: not 0
+    const double beside =
+        std::max({other.gather_is_noisy ? V.gather : 0, other.tolerated, std::numeric_limits<double>::min()});
     // Single steps, at all hits alike.
     constexpr double least_share = 1.0 / 256;  // finds what the projection does not know to be wrong
     const double step_work = check.paths().rays_per_step(), exact_work = std::max(1.0, check.exact_work());
