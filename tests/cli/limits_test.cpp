@@ -74,6 +74,19 @@ TEST(ProgramLimits, ATimeLimitLeavesAWholePictureOfFewerSamples) {
     EXPECT_FALSE(read_text(folder / "p.exr").empty());
 }
 
+TEST(ProgramLimits, ASignalLeavesThePictureSoFar) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    RunningProgram program({"render", folder / "s.h5", "-o", folder / "p.png", "--size", "1000x800", "--samples",
+                            "1024", "--camera", "0.5,0.5,0.5 2,0.5,0.4", "--progress", "json"});
+    ASSERT_TRUE(program.wait_for("\"fraction\":0.0"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    program.send(SIGINT);
+    const Finished run = program.finish();
+    EXPECT_EQ(run.status, 130) << run.err;
+    EXPECT_TRUE(read_text(folder / "p.png").starts_with("\x89PNG"));
+}
+
 TEST(ProgramLimits, ATimeLimitLeavesTheFirstRowsOfAProbe) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
