@@ -81,6 +81,25 @@ class Tracing {
     std::optional<TracedProgress> progress_;
 };
 
+/// Until the first phase of a solve begins, only structures for rays and contacts are made: there is nothing to keep,
+/// and limits and signals end the program.
+class KeptFromFirstPhase : public Progress {
+  public:
+    KeptFromFirstPhase(RunLimits& limits, Progress& inner) : limits_(limits), inner_(inner) {}
+
+    void phase(std::string_view name) override {
+        limits_.keep();
+        inner_.phase(name);
+    }
+    void advance(double fraction, std::string_view detail) override { inner_.advance(fraction, detail); }
+    void note(std::string_view message) override { inner_.note(message); }
+    void warn(std::string_view message) override { inner_.warn(message); }
+
+  private:
+    RunLimits& limits_;
+    Progress& inner_;
+};
+
 /// What a solution depends on.
 CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     CheckpointFacts facts{{"bands", std::to_string(bands)}, {"the scene", scene_fingerprint(scene)}};
@@ -243,8 +262,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (const Result<void> sane = check_scene(arguments, *checked.scene); !sane) return terminal.fail(sane.error());
     if (arguments.photometric) checked.scene->declare_photometric(*arguments.photometric);
 
-    // From here on there is something to save.
-    StopRequest& asked = limits.keep();
+    StopRequest& asked = limits.stop();
     StopRequest agreed;
     const StopTogether together(asked, agreed);
     const StopRequest& stop = processes() > 1 ? agreed : asked;
@@ -253,7 +271,9 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     std::optional<CheckpointFile> checkpoint;
     if (const Result<void> opened = open_checkpoint(arguments, *checked.scene, terminal, checkpoint); !opened)
         return terminal.fail(opened.error());
-    Result<Solution> solution = find_light(arguments, std::move(*checked.scene), checkpoint, tracing.progress(), stop);
+    KeptFromFirstPhase progress(limits, tracing.progress());
+    Result<Solution> solution = find_light(arguments, std::move(*checked.scene), checkpoint, progress, stop);
+    limits.keep();
     const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
     const std::optional<ExitCode> signal = signal_of_any(limits.signal());
     if (!solution && signal) return *signal;

@@ -273,6 +273,11 @@ std::size_t next_pass(std::span<const Pass> passes, std::size_t last, PictureSiz
     const auto busy = [&](const Pass& pass) {
         return std::min(tile_count(pass.size(whole)), static_cast<std::size_t>(threads()));
     };
+    // Without a deadline only a signal may end the picture: squares of 8 x 8 pixels are there for that.
+    if (std::isinf(stop.seconds_left()) && passes[last].block > 8)
+        return static_cast<std::size_t>(
+            std::find_if(passes.begin(), passes.end(), [](const Pass& pass) { return pass.block == 8; }) -
+            passes.begin());
     const double rate = seconds / seconds_on(passes[last], busy(passes[last])), left = stop.seconds_left();
     std::size_t next = passes.size() - 1;
     while (next > last + 1 && rate * seconds_on(passes[next], busy(passes[next])) > left) --next;

@@ -16,7 +16,7 @@ struct TimedPicture {
 /// Like take_picture, but in passes: the first has one ray for a square of 128 pixels a side. The next one is the
 /// finest that the time left allows, by the seconds of the pass before it, and so on to all samples. A stop keeps the
 /// finished tiles of a pass; other pixels stay as an earlier pass had them. A picture that is complete has the bits of
-/// take_picture. Without a deadline there are two passes, the first of which takes less than a thousandth of the time.
+/// take_picture. Without a deadline the passes before the last have squares of 128 and 8 pixels a side, for signals.
 TimedPicture take_picture_in_time(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
                                   const StopRequest& stop);
 
