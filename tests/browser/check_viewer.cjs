@@ -276,11 +276,12 @@ async function check_shots(page) {
     await page.goto(origin);
     await page.waitForFunction(() => document.body.dataset.ended || Number(document.body.dataset.shooters) > 2, null, {timeout: 120000});
     check(Number(await page.evaluate('document.body.dataset.shooters')) > 0, 'who shoots is outlined');
+    await page.goto('about:blank');  // it would report that the program is gone
     program.kill();
 }
 
 async function check_scene(page) {
-    const {program, origin} = await start(scene, '--error', '0.1', '--save', path.join(folder, 'saved.h5'));
+    const {program, origin} = await start(scene, '--error', '0.01', '--save', path.join(folder, 'saved.h5'));
     await page.goto(origin);
     await page.waitForFunction('document.body.dataset.first', null, {timeout: 120000});
     await page.waitForFunction('document.body.dataset.ended', null, {timeout: 120000});
