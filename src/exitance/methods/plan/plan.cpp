@@ -39,6 +39,13 @@ void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop) 
     stage.rooms = find_light_rooms(stage, options.seed, stop);
 }
 
+Knobs first_knobs(const Plan& plan, const Stage& stage, double error) {
+    const std::vector<Piece> lit = stage.lit_pieces();
+    Knobs knobs = knobs_for_error(error, lit, plan.options);
+    knobs.links_deliver = plan.knobs.links_deliver;
+    return plan.sums ? knobs_for_sums(knobs, error, lit, plan.options) : knobs;
+}
+
 Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error) {
     MethodChoice choice = choose_method(stage, asked);
     Plan plan{.options = std::move(choice.options), .why = std::move(choice.why)};
@@ -55,11 +62,9 @@ Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error
     else
         notice_unused_links(plan);
     const double error = std::max(first_error, plan.options.error_target());
-    const std::vector<Piece> lit = stage.lit_pieces();
-    plan.knobs = knobs_for_error(error, lit, plan.options);
     plan.sums = choice.forecast.takes_sums();
     plan.knobs.links_deliver = !plan.sums || choice.forecast.takes_links();
-    if (plan.sums) plan.knobs = knobs_for_sums(plan.knobs, error, lit, plan.options);
+    plan.knobs = first_knobs(plan, stage, error);
     plan.may_refine_delivered = asked.method == Method::automatic && method == Method::matrix && !plan.options.basis &&
                                 plan.options.bounces < 0 && !plan.sums && !plan.options.form_factors;
     return plan;

@@ -27,4 +27,7 @@ void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop);
 /// requested: a coarse answer comes first.
 Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error = 0);
 
+/// The knobs that the plan would have for an attempt that aims at another error.
+Knobs first_knobs(const Plan& plan, const Stage& stage, double error);
+
 }  // namespace exitance

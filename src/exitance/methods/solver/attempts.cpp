@@ -30,7 +30,7 @@ void Solver::solve_indirect_light() {
         attempt();
         if (refusal_) return;
         if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
-        if (show_ && options_.error_demand()) lower_error();
+        const bool is_lowered = show_ && options_.error_demand() && lower_error();
         const std::optional<double> demand = options_.error_demand();
         if (!demand || has_reached(*demand)) {
             if (has_diverged(light_->report)) return stop_early("divergence");
@@ -42,7 +42,9 @@ void Solver::solve_indirect_light() {
         if (statistics().stopped_by == "memory limit") return;
         if (attempt_ == most_attempts + shown_) return stop_early("iterations");
         if (show_) show_light();
-        const std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
+        std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
+        // Far from the error, the plan for it takes less time than steps of refinement that each leave a half.
+        if (is_lowered) next = NextAttempt{.finer = {.knobs = first_knobs(plan_, stage_, *demand), .method = true}};
         if (!next) return stop_early("time limit");
         if (!next->forecast.empty()) progress_.note(next->forecast);
         progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, {}", 100 * certificate_.largest(),
@@ -59,17 +61,19 @@ void Solver::solve_indirect_light() {
     }
 }
 
-void Solver::lower_error() {
-    constexpr double step = 0.4;  // given by work ~ error^-2.5 to -1: an attempt takes about three times as long as one
-                                  // with 1 / 0.4 of its error
+bool Solver::lower_error() {
+    constexpr double step = 0.4;  // of the error; light that is less different is not worth an attempt of its own
     const double before = *options_.error;
-    while (*options_.error > requested_error_ && has_reached(*options_.error))
-        options_.error = std::max(requested_error_, step * std::min(*options_.error, certificate_.largest()));
-    if (*options_.error == before) return;
+    while (*options_.error > requested_error_ && has_reached(*options_.error)) {
+        const double next = step * std::min(*options_.error, certificate_.largest());
+        options_.error = step * next <= requested_error_ ? requested_error_ : next;
+    }
+    if (*options_.error == before) return false;
     ++shown_;
-    if (!has_reached(*options_.error)) return;
+    if (!has_reached(*options_.error)) return true;
     step_ = Step::certify;
     attempt();
+    return false;
 }
 
 void Solver::show_light() {

@@ -69,6 +69,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
 }
 
 bool Solver::may_be_last(double demand) const {
+    if (options_.error && *options_.error > requested_error_) return false;  // light that is shown on the way
     return has_reached(demand) || attempt_ == most_attempts || options_.memory_limit_bytes ||
            seconds_left(stop_) < HUGE_VAL;
 }

@@ -47,7 +47,8 @@ class Solver {
     // Light that is shown while it improves.
     /// Lowers the error that attempts aim at, where that is reached. Where it is certified anew at the error requested,
     /// by as many rays as that takes, no attempt is needed for nothing.
-    void lower_error();
+    /// Returns whether it has to be reached by another attempt.
+    bool lower_error();
     /// Passes on what is delivered, as plain elements.
     void show_light();
 
