@@ -24,8 +24,8 @@ using ShowLight = std::function<void(Solution)>;
 /// stopped.
 ///
 /// `show` is called after every attempt but the last, which is returned. The first attempt then aims at a relative
-/// error of 0.32, and each further one, which goes on from what there is, at 0.4 times what was reached, down to the
-/// error requested. Not with checkpoints.
+/// error of 0.32, and each further one, which goes on from what there is, at 0.4 times what was reached, or
+/// at the error requested where that is near. Not with checkpoints.
 Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
                              CheckpointStore* checkpoints = nullptr, const ShowLight& show = {});
 
