@@ -26,9 +26,9 @@ constexpr std::array<Look, 5> looks = {{{"broken", {220, 20, 30}},
                                         {"open edge", {0, 150, 70}}}};
 
 /// A parallel view of a box into a rectangle of the picture.
-class View {
+class SceneView {
   public:
-    View(Image& image, const Box& box, const Vec3& from, int left, int width, int height)
+    SceneView(Image& image, const Box& box, const Vec3& from, int left, int width, int height)
         : image_(image), left_(left), width_(width), height_(height), towards_(normalized(from)) {
         right_ = normalized(cross({0, 0, 1}, towards_));
         up_ = cross(towards_, right_);
@@ -72,7 +72,7 @@ class View {
     std::vector<float> depth_;  ///< Towards the eye, pixels.
 };
 
-void View::fill(const Seen& a, const Seen& b, const Seen& c, Rgb colour) {
+void SceneView::fill(const Seen& a, const Seen& b, const Seen& c, Rgb colour) {
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
     if (area == 0 || !std::isfinite(area)) return;
     const auto bound = [](double v, int most) {
@@ -93,7 +93,7 @@ void View::fill(const Seen& a, const Seen& b, const Seen& c, Rgb colour) {
         }
 }
 
-void View::draw_face(std::span<const Point> outline) {
+void SceneView::draw_face(std::span<const Point> outline) {
     const Vec3 area = area_vector(outline);
     const double length = norm(area), facing = dot(area, towards_) / length;
     if (!(length > 0) || !(facing > 0)) return;
@@ -103,7 +103,7 @@ void View::draw_face(std::span<const Point> outline) {
 }
 
 /// The outline in a line of three pixels, on top of everything.
-void View::draw_mark(std::span<const Point> outline, Rgb colour) {
+void SceneView::draw_mark(std::span<const Point> outline, Rgb colour) {
     for (std::size_t i = 0; i < outline.size(); ++i) {
         const Seen a = see(outline[i]), b = see(outline[(i + 1) % outline.size()]);
         const double steps = std::min(1 + std::max(std::abs(b.x - a.x), std::abs(b.y - a.y)), 1e4);
@@ -149,7 +149,7 @@ Image check_picture(const SceneDescription& scene, std::span<const Mark> marks, 
         const int half = width / 2, inner = height - legend_height;
         for (int side = 0; side < 2; ++side) {
             const double turn = side == 0 ? 1 : -1;
-            View view(image, box, {0.6 * turn, -0.9 * turn, 0.75}, side * half, half, inner);
+            SceneView view(image, box, {0.6 * turn, -0.9 * turn, 0.75}, side * half, half, inner);
             for (const auto& outline : outlines) view.draw_face(outline);
             for (std::size_t kind = looks.size(); kind-- > 0;)  // the worst last, on top
                 for (const Mark& mark : marks)

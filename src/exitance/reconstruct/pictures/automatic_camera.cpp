@@ -118,7 +118,7 @@ class Scout {
         const ElementTree& tree = solution_.interpolant.tree;
         const Material& material = solution_.scene.material(tree.region(leaf));
         return tree.area(leaf) *
-               mean(material.exitance + material.reflectance * solution_.interpolant.at({leaf, 0.5, 0.5}));
+               mean(material.exitance + material.reflectance * solution_.interpolant.at({leaf, {0.5, 0.5}}));
     }
 
     const Solution& solution_;
