@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "exitance/calibration/table.hpp"
+#include "exitance/error/area_samples.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/error/area_samples.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
-#include "exitance/scene/families/generate.hpp"
+#include "exitance/samples/generate.hpp"
 
 namespace exitance {
 namespace {

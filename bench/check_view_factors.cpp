@@ -9,10 +9,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "exitance/core/check.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/io/files/view_factor_file.hpp"
+#include "exitance/base/check.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/view_factors/view_factor_file.hpp"
 #include "exitance/view_factors/row_check.hpp"
 
 int main(int count, char** words) {

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <string>
 
-#include "exitance/experiments/cie171.hpp"
+#include "exitance/lab/studies/cie171.hpp"
 
 int main(int argc, char** argv) {
     using namespace exitance;

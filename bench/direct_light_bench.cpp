@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/direct/direct_light.hpp"
-#include "exitance/geometry/triangulation.hpp"
-#include "exitance/scene/families/generate.hpp"
+#include "exitance/samples/generate.hpp"
 #include "exitance/visibility/rays.hpp"
 
 // Exact direct light and packets of rays in rooms full of chairs: time a point (or ray) at three sizes, and for direct

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/form_factors/point_to_polygon_batch.hpp"

@@ -19,8 +19,8 @@
 #include <ctime>
 #include <vector>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/transport/patch_transfer.hpp"

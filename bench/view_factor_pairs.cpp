@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/view_factors/view_factors.hpp"
 #include "exitance/visibility/visible_part.hpp"

@@ -4,7 +4,8 @@ include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/exitance)
 
-install(TARGETS exitance EXPORT exitanceTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS exitance exitance-samples exitance-view-factors exitance-lab EXPORT exitanceTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY src/exitance DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
     FILES_MATCHING PATTERN "*.hpp" PATTERN cli EXCLUDE)
 install(EXPORT exitanceTargets NAMESPACE exitance:: DESTINATION ${package_folder})

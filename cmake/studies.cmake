@@ -10,7 +10,7 @@ foreach(path IN LISTS study_files)
 endforeach()
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/built_in_studies.cpp @ONLY CONTENT [[
 // Made by cmake/studies.cmake.
-#include "exitance/experiments/study/study.hpp"
+#include "exitance/lab/study/study.hpp"
 
 namespace exitance {
 
@@ -22,7 +22,7 @@ std::span<const BuiltInStudy> built_in_studies() {
 
 }  // namespace exitance
 ]])
-target_sources(exitance PRIVATE ${PROJECT_BINARY_DIR}/built_in_studies.cpp)
+target_sources(exitance-lab PRIVATE ${PROJECT_BINARY_DIR}/built_in_studies.cpp)
 
 # The scripts in experiments/peers, likewise.
 set(script_file ${PROJECT_SOURCE_DIR}/experiments/peers/blender.py)
@@ -30,7 +30,7 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script_file})
 file(READ ${script_file} script)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/peer_scripts.cpp @ONLY CONTENT [[
 // Made by cmake/studies.cmake.
-#include "exitance/experiments/peers/peer_scripts.hpp"
+#include "exitance/lab/peers/peer_scripts.hpp"
 
 namespace exitance {
 
@@ -38,4 +38,4 @@ const std::string_view blender_script = R"script(@script@)script";
 
 }  // namespace exitance
 ]])
-target_sources(exitance PRIVATE ${PROJECT_BINARY_DIR}/peer_scripts.cpp)
+target_sources(exitance-lab PRIVATE ${PROJECT_BINARY_DIR}/peer_scripts.cpp)

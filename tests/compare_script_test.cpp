@@ -2,10 +2,10 @@
 
 #include <fstream>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/reconstruct/error/compare.hpp"
+#include "exitance/reference/compare.hpp"
 #include "exitance/scene/locator.hpp"
 #include "support/places.hpp"
 #include "support/run.hpp"

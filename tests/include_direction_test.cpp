@@ -16,11 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders in the order in which they may include: each includes itself, its own subfolders and those before it.
-const std::vector<std::string> order{"core",         "calibration", "geometry",     "joining",     "scene",
-                                     "form_factors", "visibility",  "mesh",         "basis",       "direct",
-                                     "transport",    "links",       "view_factors", "solve",       "reconstruct",
-                                     "accuracy",     "methods",     "io",           "experiments", "cli"};
+/// Folders in the order in which they may include: each includes itself, its own subfolders and those before it. The
+/// engine, which ends before `io`, knows neither the laboratory nor the program.
+const std::vector<std::string> order{"base",       "calibration",  "scene",   "samples", "processes", "form_factors",
+                                     "visibility", "shadow_lines", "mesh",    "basis",   "direct",    "transport",
+                                     "links",      "solution",     "solve",   "gather",  "evaluate",  "discontinuity",
+                                     "error",      "reference",    "measure", "methods", "what_if",   "view_factors",
+                                     "io",         "lab",          "cli"};
 
 /// The files that may include a third-party library, by the first folder or the name of its headers.
 struct Door {
@@ -31,7 +33,7 @@ struct Door {
 const std::vector<Door> doors{
     {"Embree", std::regex("embree[34]/.*"), {"visibility/embree_rays.cpp"}},
     {"CGAL", std::regex("CGAL/.*"), {"mesh/planar_subdivision.cpp"}},
-    {"oneTBB", std::regex("(tbb|oneapi)/.*"), {"core/parallel.cpp"}},
+    {"oneTBB", std::regex("(tbb|oneapi)/.*"), {"base/parallel.cpp"}},
     {"HDF5",
      std::regex("hdf5.*|H5.*"),
      {"io/solution/hdf5_library.cpp", "io/solution/hdf5_reader.cpp", "io/solution/hdf5_rehearsal.cpp",
@@ -43,12 +45,12 @@ const std::vector<Door> doors{
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view/view_server.cpp"}},
-    {"MPI", std::regex("mpi\\.h"), {"transport/distributed.cpp"}},
+    {"MPI", std::regex("mpi\\.h"), {"processes/distributed.cpp"}},
     {"PETSc", std::regex("petsc.*"), {"solve/petsc.cpp"}},
     {"nlohmann-json",
      std::regex("nlohmann/.*"),
-     {"cli/json_output.cpp", "experiments/study/run_facts.cpp", "io/export/viewer_data.cpp"}},
-    {"toml++", std::regex("toml\\+\\+/.*"), {"experiments/study/study_file.cpp"}},
+     {"cli/json_output.cpp", "lab/study/run_facts.cpp", "io/export/viewer_data.cpp"}},
+    {"toml++", std::regex("toml\\+\\+/.*"), {"lab/study/study_file.cpp"}},
 };
 
 struct Include {

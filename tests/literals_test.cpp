@@ -16,21 +16,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders whose numbers decide work.
-const std::vector<std::string> deciding{"accuracy", "links", "methods", "reconstruct"};
+const std::vector<std::string> deciding{"links",     "solution",      "gather",
+                                        "evaluate",  "discontinuity", "error",
+                                        "reference", "methods",       "what_if/light_groups"};
 
-/// Parts of these that no solve goes through: what a picture, a light map, a standard or a study asks for stands with
-/// it; methods whose numbers are those of their papers; and forecasts.
-const std::vector<std::string> apart{"reconstruct/pictures/",
-                                     "reconstruct/light_maps/",
-                                     "reconstruct/glare/",
-                                     "reconstruct/measuring_grid.cpp",
-                                     "reconstruct/working_plane.cpp",
-                                     "reconstruct/surface_levels.cpp",
-                                     "reconstruct/error/compare.cpp",
-                                     "methods/daylight/",
-                                     "methods/classical/",
-                                     "methods/growing_cells/",
-                                     "methods/tasks/",
+/// Parts of these that no solve goes through.
+const std::vector<std::string> apart{"evaluate/surface_levels.cpp", "reference/compare.cpp",
                                      "methods/plan/forecast.cpp"};
 
 bool is_below(const std::vector<std::string>& places, const std::string& file) {
@@ -53,10 +44,10 @@ std::vector<double> literals(std::string line) {
     return out;
 }
 
-/// Places with a literal that decides work and has no home: neither in the table of calibrated numbers nor marked, on
-/// its line or in the comment right above, as "given by" mathematics, rounding or a source.
+/// Places with a literal that decides work and is unexplained: neither in the table of calibrated numbers nor said, on
+/// its line or in the comment right above, to be given by or derived from something, or measured.
 std::vector<std::string> homeless_literals(const std::string& name, std::istream& in) {
-    static const std::regex marker("//.*[gG]iven by ");
+    static const std::regex marker("//.*([gG]iven by|[dD]erived from|[mM]easured) ");
     std::vector<std::string> out;
     std::string line, last;
     bool is_marked = false;  // by the comment above

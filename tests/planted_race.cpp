@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"

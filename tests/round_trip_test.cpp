@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "exitance/error/area_samples.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/scenes/obj/obj_writer.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/error/area_samples.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
-#include "exitance/scene/families/generate.hpp"
+#include "exitance/samples/generate.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 

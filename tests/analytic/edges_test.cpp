@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
 #include "support/places.hpp"
 #include "support/solved.hpp"
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "exitance/experiments/peers/peers.hpp"
-#include "exitance/experiments/task_schedules.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/lab/peers/peers.hpp"
+#include "exitance/lab/studies/task_schedules.hpp"
 #include "run_program.hpp"
 
 namespace exitance::test {

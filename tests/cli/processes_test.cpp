@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "cli/small_scene.hpp"
-#include "exitance/core/archive.hpp"
+#include "exitance/base/archive.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "support/places.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <ostream>
 
-#include "exitance/core/sanitizers.hpp"
+#include "exitance/base/sanitizers.hpp"
 #include "fuzz/mutator.hpp"
 #include "fuzz/target.hpp"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "fuzz/attack.hpp"
 #include "fuzz/target.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance::fuzz {
 namespace {

@@ -5,11 +5,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/evaluate/surface_light.hpp"
 #include "exitance/io/solution/hdf5_checksum.hpp"
 #include "exitance/io/solution/hdf5_rehearsal.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
-#include "exitance/reconstruct/surface_light.hpp"
 #include "fuzz/target.hpp"
 #include "support/sample_solution.hpp"
 

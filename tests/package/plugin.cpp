@@ -1,4 +1,4 @@
-#include <exitance/core/parallel.hpp>
+#include <exitance/base/parallel.hpp>
 
 /// Sum of the integers from 0 to `count` - 1, by the library's parallel loop.
 extern "C" double sum_below(unsigned count) {

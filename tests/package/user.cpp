@@ -1,6 +1,6 @@
-#include <exitance/core/memory.hpp>
-#include <exitance/core/parallel.hpp>
-#include <exitance/core/spectrum.hpp>
+#include <exitance/base/memory.hpp>
+#include <exitance/base/parallel.hpp>
+#include <exitance/base/spectrum.hpp>
 
 int main() {
     const double sum = exitance::parallel_sum<double>(1000, [](std::size_t i) { return static_cast<double>(i); });

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "exitance/scene/families/generate.hpp"
+#include "exitance/samples/generate.hpp"
 
 namespace exitance {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance::test {
 

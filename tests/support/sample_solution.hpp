@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "exitance/core/random.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/check.hpp"
+#include "exitance/base/check.hpp"
 #include "exitance/methods/solve_scene.hpp"
 
 namespace exitance {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "exitance/core/random.hpp"
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance::test {

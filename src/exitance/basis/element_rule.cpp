@@ -3,7 +3,7 @@
 #include <span>
 #include <utility>
 
-#include "exitance/geometry/quadrature.hpp"
+#include "exitance/base/quadrature.hpp"
 
 namespace exitance {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "exitance/geometry/quadrature.hpp"
+#include "exitance/base/quadrature.hpp"
 #include "support/element_kinds.hpp"
 
 namespace exitance {

@@ -3,8 +3,8 @@
 #include <array>
 #include <span>
 
+#include "exitance/base/spectrum.hpp"
 #include "exitance/basis/element_rule.hpp"
-#include "exitance/core/spectrum.hpp"
 
 namespace exitance {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/quadrature.hpp"
+#include "exitance/base/quadrature.hpp"
 #include "exitance/mesh/element_tree.hpp"
 
 namespace exitance {

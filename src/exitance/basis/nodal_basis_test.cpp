@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "exitance/base/quadrature.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/basis/two_scale.hpp"
-#include "exitance/core/random.hpp"
-#include "exitance/geometry/quadrature.hpp"
 
 namespace exitance {
 namespace {

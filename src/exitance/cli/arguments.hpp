@@ -6,20 +6,20 @@
 #include <variant>
 #include <vector>
 
+#include "exitance/base/result.hpp"
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/cli/run_limits.hpp"
-#include "exitance/core/result.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/methods/classical/classical_options.hpp"
-#include "exitance/methods/daylight/daylight_provision.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
-#include "exitance/reconstruct/working_plane.hpp"
+#include "exitance/lab/classical/classical_options.hpp"
+#include "exitance/measure/working_plane.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/solve/solve_options.hpp"
+#include "exitance/what_if/daylight/daylight_provision.hpp"
 
 namespace exitance {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "exitance/reconstruct/pictures/automatic_camera.hpp"
+#include "exitance/measure/pictures/automatic_camera.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

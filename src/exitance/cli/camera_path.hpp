@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
-#include "exitance/reconstruct/pictures/camera.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/measure/pictures/camera.hpp"
 
 namespace exitance {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 
 namespace exitance {
 

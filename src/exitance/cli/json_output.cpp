@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 namespace {

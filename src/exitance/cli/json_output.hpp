@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/methods/classical/classical.hpp"
-#include "exitance/methods/light_groups/light_groups.hpp"
+#include "exitance/lab/classical/classical.hpp"
 #include "exitance/methods/plan/forecast.hpp"
-#include "exitance/reconstruct/error/compare.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/reference/compare.hpp"
 #include "exitance/scene/photometric_units.hpp"
+#include "exitance/solution/solution.hpp"
 #include "exitance/solve/solve_options.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/row_check.hpp"
+#include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 

@@ -5,12 +5,13 @@
 #include <variant>
 #include <vector>
 
+#include "exitance/base/memory.hpp"
 #include "exitance/cli/arguments.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/terminal.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/memory.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/lab/laboratory.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -41,6 +42,7 @@ int run_program(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
     using namespace exitance;
     leave_at_signals();
+    install_laboratory();
     keep_large_arrays_apart();
     if (const Result<void> joined = join_processes(); !joined)
         return static_cast<int>(Terminal({}).fail(joined.error()));

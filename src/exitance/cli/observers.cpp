@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "exitance/io/files/text_table.hpp"
-#include "exitance/reconstruct/working_plane.hpp"
+#include "exitance/measure/working_plane.hpp"
 
 namespace exitance {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
-#include "exitance/reconstruct/glare/glare.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/measure/glare/glare.hpp"
 
 namespace exitance {
 

@@ -4,12 +4,12 @@
 #include <array>
 #include <utility>
 
-#include "exitance/core/archive.hpp"
-#include "exitance/core/memory.hpp"
+#include "exitance/base/archive.hpp"
+#include "exitance/base/memory.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "exitance/methods/plan/choice.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 

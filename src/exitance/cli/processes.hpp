@@ -5,7 +5,7 @@
 
 #include "exitance/cli/arguments.hpp"
 #include "exitance/cli/exit_code.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 

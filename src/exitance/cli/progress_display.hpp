@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/cli/arguments.hpp"
-#include "exitance/core/progress.hpp"
 
 namespace exitance {
 

@@ -7,9 +7,9 @@
 #include <chrono>
 #include <limits>
 
-#include "exitance/core/available_memory.hpp"
+#include "exitance/base/available_memory.hpp"
 #include "exitance/io/files/atomic_file.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {

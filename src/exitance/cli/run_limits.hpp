@@ -8,10 +8,10 @@
 #include <string>
 #include <thread>
 
+#include "exitance/base/progress.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/cli/signals.hpp"
-#include "exitance/core/progress.hpp"
-#include "exitance/core/result.hpp"
 
 namespace exitance {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/cli/exit_code.hpp"
-#include "exitance/core/progress.hpp"
 
 namespace exitance {
 

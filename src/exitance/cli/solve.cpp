@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "exitance/base/memory.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/solve/classical_solve.hpp"
@@ -12,8 +14,7 @@
 #include "exitance/cli/solve/settle_options.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/memory.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/error/texture_error.hpp"
 #include "exitance/io/files/trace_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
@@ -21,9 +22,8 @@
 #include "exitance/io/solution/stored_scene_check.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/error/texture_error.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/scene/findings.hpp"
-#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -130,7 +130,8 @@ void drop_light(Solution& solution) {
     solution.scene = {};
     solution.scene.declare_photometric(photometric);
     solution.indirect = {}, solution.interpolant = {};
-    solution.links = {}, solution.discontinuity = {}, solution.layers = {}, solution.cells = {};
+    solution.links = {}, solution.discontinuity = {}, solution.layers = {}, solution.own_form = {},
+    solution.delivers_own_form = false;
     release_freed_memory();
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "exitance/methods/plan/forecast.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {

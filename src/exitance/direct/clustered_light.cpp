@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/direct/source_point.hpp"
 
 namespace exitance {

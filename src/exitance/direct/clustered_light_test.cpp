@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/reconstruct/error/area_samples.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/error/area_samples.hpp"
 #include "exitance/scene/locator.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "support/built_scene.hpp"

@@ -5,9 +5,9 @@
 #include <bit>
 #include <optional>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/direct/source_point.hpp"
-#include "exitance/geometry/polygon.hpp"
 
 namespace exitance {
 namespace {

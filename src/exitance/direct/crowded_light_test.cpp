@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 

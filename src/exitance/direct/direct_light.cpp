@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/visibility/glazed_part.hpp"
 #include "exitance/visibility/window_view.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "exitance/base/polygon.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
-#include "exitance/geometry/polygon.hpp"
 
 namespace exitance {
 

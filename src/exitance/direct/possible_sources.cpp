@@ -6,8 +6,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/polygon.hpp"
 
 namespace exitance {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/direct/direct_light.hpp"
 
 namespace exitance {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/direct/source_point.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
-#include "exitance/geometry/polygon.hpp"
 #include "exitance/visibility/window_view.hpp"
 
 namespace exitance {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/direct/source_point.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
-#include "exitance/geometry/polygon.hpp"
 
 namespace exitance {
 namespace {

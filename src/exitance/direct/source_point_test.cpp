@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "exitance/core/check.hpp"
-#include "exitance/geometry/four.hpp"
+#include "exitance/base/check.hpp"
+#include "exitance/base/four.hpp"
 
 namespace exitance {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "exitance/core/processor.hpp"
-#include "exitance/core/random.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/processor.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

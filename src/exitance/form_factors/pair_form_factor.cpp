@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "exitance/geometry/quadrature.hpp"
+#include "exitance/base/quadrature.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 
 namespace exitance {
 

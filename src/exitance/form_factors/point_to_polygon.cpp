@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "exitance/core/check.hpp"
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/check.hpp"
+#include "exitance/base/polygon.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

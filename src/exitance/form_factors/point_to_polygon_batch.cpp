@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/check.hpp"
+#include "exitance/base/check.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/form_factors/quad_lanes.hpp"
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/processor.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/processor.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 namespace {

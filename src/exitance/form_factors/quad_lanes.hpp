@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "exitance/geometry/four.hpp"
+#include "exitance/base/four.hpp"
 
 // Form factors from a point to quads, a lane each: the rules of form_factor_batch.hpp, for kernels that have quads in
 // registers.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/trace.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/trace.hpp"
 
 namespace exitance {
 

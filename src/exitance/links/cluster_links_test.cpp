@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/links/cluster_refiner.hpp"
 #include "exitance/links/link_refiner.hpp"
 #include "exitance/transport/rooms.hpp"

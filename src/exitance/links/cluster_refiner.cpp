@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/base/trace.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
-#include "exitance/core/trace.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {

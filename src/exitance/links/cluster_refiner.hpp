@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/links/cluster_links.hpp"
 #include "exitance/links/error/link_judge.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/trace.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/trace.hpp"
 
 namespace exitance {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/links/error/link_judge.hpp"
 
 namespace exitance {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <memory>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/trace.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/trace.hpp"
 #include "exitance/links/link_layout.hpp"
 #include "exitance/links/links.hpp"
 

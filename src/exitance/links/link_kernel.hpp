@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/geometry/four.hpp"
+#include "exitance/base/four.hpp"
 #include "exitance/links/link_sites.hpp"
 
 namespace exitance {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/trace.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/trace.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/links/received_light.hpp"
 
 namespace exitance {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/basis/small_system.hpp"
-#include "exitance/core/parallel.hpp"
 
 namespace exitance {
 

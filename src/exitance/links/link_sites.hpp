@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "exitance/base/archive.hpp"
+#include "exitance/base/spectrum.hpp"
 #include "exitance/basis/nodal_basis.hpp"
-#include "exitance/core/archive.hpp"
-#include "exitance/core/spectrum.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

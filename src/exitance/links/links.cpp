@@ -4,10 +4,10 @@
 #include <iterator>
 #include <utility>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/links/link_kernel.hpp"
 #include "exitance/links/link_layout.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {

@@ -9,7 +9,7 @@
 #include "exitance/links/kept_link.hpp"
 #include "exitance/links/link_sites.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
-#include "exitance/transport/fetched_values.hpp"
+#include "exitance/processes/fetched_values.hpp"
 #include "exitance/transport/transport_operator.hpp"
 
 namespace exitance {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/links/link_refiner.hpp"
 #include "exitance/mesh/element_locator.hpp"

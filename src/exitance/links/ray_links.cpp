@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/trace.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/trace.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/direct_projection.hpp"
-#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/transport/open_share.hpp"
 #include "support/built_scene.hpp"
 #include "support/lit_elements.hpp"

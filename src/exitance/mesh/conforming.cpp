@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "exitance/core/disjoint_sets.hpp"
-#include "exitance/core/shared_results.hpp"
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/joining/weld.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/shared_results.hpp"
 #include "exitance/mesh/found_leaves.hpp"
 #include "exitance/mesh/on_jump.hpp"
 #include "exitance/mesh/planes.hpp"
+#include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
 namespace {

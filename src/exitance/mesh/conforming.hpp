@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/mesh/contact_lines.hpp"
 
 namespace exitance {

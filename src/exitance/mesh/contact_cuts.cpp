@@ -4,7 +4,7 @@
 #include <memory>
 #include <tuple>
 
-#include "exitance/core/shared_results.hpp"
+#include "exitance/base/shared_results.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {

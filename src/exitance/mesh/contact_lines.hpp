@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/mesh/element_tree.hpp"
 #include "exitance/mesh/gap_lines.hpp"
 

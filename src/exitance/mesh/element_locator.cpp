@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "exitance/core/shared_results.hpp"
+#include "exitance/base/shared_results.hpp"
 
 namespace exitance {
 namespace {

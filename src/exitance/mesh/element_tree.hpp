@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/copy_on_write.hpp"
-#include "exitance/core/ids.hpp"
+#include "exitance/base/copy_on_write.hpp"
+#include "exitance/base/ids.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/archive.hpp"
+#include "exitance/base/archive.hpp"
 #include "exitance/mesh/element_tree.hpp"
 
 namespace exitance {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/polygon.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

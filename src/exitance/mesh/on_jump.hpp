@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
 #include "exitance/mesh/contact_lines.hpp"
 
 namespace exitance {

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/mesh/planar_subdivision.hpp"
 #include "exitance/mesh/rectangles.hpp"
 

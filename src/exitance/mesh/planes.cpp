@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "exitance/joining/weld.hpp"
+#include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
 

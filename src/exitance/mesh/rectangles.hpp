@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

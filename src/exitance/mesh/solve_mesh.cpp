@@ -1,6 +1,6 @@
 #include "exitance/mesh/solve_mesh.hpp"
 
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {

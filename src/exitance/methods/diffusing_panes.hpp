@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/scene/scene.hpp"
 #include "exitance/solve/solve_options.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "exitance/reconstruct/error/path_reference.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/reference/path_reference.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/solved.hpp"
 

@@ -1,6 +1,6 @@
 #include "exitance/methods/importance.hpp"
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/scene/locator.hpp"

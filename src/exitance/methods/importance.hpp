@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/solve/solve_options.hpp"
 #include "exitance/transport/stage.hpp"

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/error/path_reference.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/reference/path_reference.hpp"
 #include "support/test_scenes.hpp"
 
 namespace exitance {

@@ -1,6 +1,7 @@
 #include "exitance/methods/methods.hpp"
 
-#include <algorithm>
+#include "exitance/base/check.hpp"
+#include "exitance/methods/extensions.hpp"
 
 namespace exitance {
 
@@ -19,25 +20,31 @@ GlobalLight solve_beside_discontinuities(const MethodInput& input) {
     return input.options.bounces > 0 ? solve_matrix(input) : solve_hierarchical(input);
 }
 
+/// The table: one line per method.
+constexpr MethodEntry method_table[] = {
+    {Method::matrix, solve_matrix, "constant"},
+    {Method::progressive, solve_progressive, "constant"},
+    {Method::substructuring, solve_substructuring, "constant"},
+    {Method::hierarchical, solve_hierarchical, "haar"},
+    {Method::wavelet, solve_wavelet, "multiwavelet2"},
+    {Method::monte_carlo, solve_monte_carlo, "constant"},
+    {Method::discontinuity, solve_beside_discontinuities, "quadratic"},
+};
+
 }  // namespace
 
-std::span<const MethodEntry> method_table() {
-    static constexpr MethodEntry table[] = {
-        {Method::matrix, solve_matrix, "constant"},
-        {Method::progressive, solve_progressive, "constant"},
-        {Method::substructuring, solve_substructuring, "constant"},
-        {Method::hierarchical, solve_hierarchical, "haar"},
-        {Method::wavelet, solve_wavelet, "multiwavelet2"},
-        {Method::monte_carlo, solve_monte_carlo, "constant"},
-        {Method::discontinuity, solve_beside_discontinuities, "quadratic"},
-        {Method::growing_cells, solve_growing_cells, "gaussian"},
-    };
-    return table;
+const MethodEntry* find_method(Method id) {
+    for (const MethodEntry& method : method_table)
+        if (method.id == id) return &method;
+    for (const MethodEntry& method : extensions().methods)
+        if (method.id == id) return &method;
+    return nullptr;
 }
 
 const MethodEntry& entry_of(Method id) {
-    const auto table = method_table();
-    return *std::find_if(table.begin(), table.end(), [&](const MethodEntry& m) { return m.id == id; });
+    const MethodEntry* const method = find_method(id);
+    EXI_CHECK(method);
+    return *method;
 }
 
 }  // namespace exitance

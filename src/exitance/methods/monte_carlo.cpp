@@ -1,5 +1,5 @@
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/transport/element_rays.hpp"
 #include "exitance/transport/passed_light.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/spectrum.hpp"
+#include "exitance/base/spectrum.hpp"
 #include "exitance/mesh/element_locator.hpp"
 
 namespace exitance {

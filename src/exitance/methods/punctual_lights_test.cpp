@@ -1,9 +1,9 @@
 // Lights without extent through every method: against paths, and against themselves.
 #include <gtest/gtest.h>
 
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/error/path_reference.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/reference/path_reference.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"
 

@@ -1,7 +1,7 @@
 #include "exitance/methods/shooting_setup.hpp"
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/basis/element_fit.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/solve/shot_progress.hpp"
 

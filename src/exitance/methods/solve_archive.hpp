@@ -1,9 +1,9 @@
 #pragma once
 
-#include "exitance/core/archive.hpp"
+#include "exitance/base/archive.hpp"
+#include "exitance/gather/local_pass.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
-#include "exitance/reconstruct/local_pass.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -30,19 +30,21 @@ void archive(Archive& a, DirectProjection& projection) {
 }
 
 template <class Archive>
-void archive(Archive& a, CellLight& light) {
-    auto& [delivered, normalised, cells, triangles, kernel, kernel_edges] = light;
-    a(delivered, normalised, cells, triangles, kernel, kernel_edges);
+void archive(Archive& a, LightFormPointer& form) {
+    std::string kind, bytes;
+    if (!Archive::reads && form) kind = form->kind(), bytes = form->packed();
+    a(kind, bytes);
+    if constexpr (Archive::reads) form = unpack_light_form(kind, bytes);
 }
 
 template <class Archive>
 void archive(Archive& a, GlobalLight& light) {
     auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection,
            standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links,
-           link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, cells] = light;
+           link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, own_form] = light;
     a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection);
     a(standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links);
-    a(link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, cells);
+    a(link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, own_form);
 }
 
 template <class Archive>

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "exitance/evaluate/mirrored_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/methods.hpp"
-#include "exitance/reconstruct/mirrored_light.hpp"
 
 namespace exitance {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "exitance/reconstruct/error/certificate.hpp"
-#include "exitance/reconstruct/local_pass.hpp"
+#include "exitance/error/certificate.hpp"
+#include "exitance/gather/local_pass.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/solve/solve_options.hpp"
 

@@ -1,12 +1,11 @@
 #include "exitance/methods/solve_scene.hpp"
 
-#include "exitance/core/memory.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/phase_times.hpp"
+#include "exitance/base/memory.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/phase_times.hpp"
 #include "exitance/methods/diffusing_panes.hpp"
-#include "exitance/methods/lines/solve_by_lines.hpp"
+#include "exitance/methods/extensions.hpp"
 #include "exitance/methods/solver/solver.hpp"
-#include "exitance/methods/tasks/solve_by_tasks.hpp"
 
 namespace exitance {
 namespace {
@@ -28,10 +27,10 @@ Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress&
                              CheckpointStore* checkpoints, const ShowLight& show) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
+    if (const Result<void> linked = check_extensions(options); !linked) return linked.error();
     if (const Result<void> passes = check_diffusing_panes(scene, options); !passes) return passes.error();
-    if (options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e)
-        return solve_by_lines(scene, options, progress, stop);
-    if (options.task_engine) return solve_by_tasks(scene, options, progress, stop);
+    for (const WholeSolve& whole : extensions().solves)
+        if (whole.is_selected(options)) return whole.solve(scene, options, progress, stop);
     const Stopwatch watch;
     PhaseTimes phases(progress);
     Result<Solution> solution = Solver(std::move(scene), options, phases, stop, checkpoints, show).run();

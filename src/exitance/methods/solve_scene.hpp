@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "exitance/core/checkpoint.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/base/checkpoint.hpp"
+#include "exitance/solution/solution.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/reconstruct/error/path_reference.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/reference/path_reference.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"
 #include "support/test_scenes.hpp"

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <tuple>
 
-#include "exitance/core/disjoint_sets.hpp"
-#include "exitance/joining/weld.hpp"
+#include "exitance/base/disjoint_sets.hpp"
+#include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
 namespace {

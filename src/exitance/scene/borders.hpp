@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/joining/weld.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "exitance/core/ids.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/ids.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/scene/sky/sky_model.hpp"
 
 namespace exitance {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/stage.hpp"
 

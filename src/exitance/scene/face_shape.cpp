@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "exitance/geometry/triangulation.hpp"
-#include "exitance/joining/outline.hpp"
-#include "exitance/joining/uncross.hpp"
+#include "exitance/base/triangulation.hpp"
+#include "exitance/scene/joining/outline.hpp"
+#include "exitance/scene/joining/uncross.hpp"
 #include "exitance/scene/outline_repair.hpp"
 #include "exitance/scene/scene_builder.hpp"
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/scene/borders.hpp"
 
 namespace exitance {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/scene/point_light.hpp"
 #include "exitance/scene/sky/distant_light.hpp"
 

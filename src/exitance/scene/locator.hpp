@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "exitance/core/spectrum.hpp"
+#include "exitance/base/spectrum.hpp"
 
 namespace exitance {
 

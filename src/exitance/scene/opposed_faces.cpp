@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/joining/cell_keys.hpp"
+#include "exitance/scene/joining/cell_keys.hpp"
 
 namespace exitance {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <bit>
 
-#include "exitance/core/random.hpp"
-#include "exitance/joining/hash_chains.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/scene/joining/hash_chains.hpp"
 
 namespace exitance {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "exitance/joining/border.hpp"
-#include "exitance/joining/outline.hpp"
+#include "exitance/scene/joining/border.hpp"
+#include "exitance/scene/joining/outline.hpp"
 
 namespace exitance {
 namespace {

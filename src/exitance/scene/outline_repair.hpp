@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 
 namespace exitance {
 

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "exitance/joining/cell_keys.hpp"
-#include "exitance/joining/common_area.hpp"
+#include "exitance/scene/joining/cell_keys.hpp"
+#include "exitance/scene/joining/common_area.hpp"
 
 namespace exitance {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/geometry/polygon.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/triangulation.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "exitance/core/spectrum.hpp"
+#include "exitance/base/spectrum.hpp"
 
 namespace exitance {
 

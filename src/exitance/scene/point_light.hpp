@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "exitance/core/spectrum.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

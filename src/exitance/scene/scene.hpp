@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/ids.hpp"
-#include "exitance/core/result.hpp"
-#include "exitance/core/spectrum.hpp"
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/ids.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/base/spectrum.hpp"
 #include "exitance/scene/emission_profile.hpp"
 #include "exitance/scene/pane.hpp"
 #include "exitance/scene/point_light.hpp"

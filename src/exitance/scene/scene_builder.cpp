@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "exitance/core/random.hpp"
-#include "exitance/joining/hash_chains.hpp"
-#include "exitance/joining/outline.hpp"
-#include "exitance/joining/weld.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/scene/joining/hash_chains.hpp"
+#include "exitance/scene/joining/outline.hpp"
+#include "exitance/scene/joining/weld.hpp"
 #include "exitance/scene/overlaps.hpp"
 #include "exitance/scene/shell.hpp"
 

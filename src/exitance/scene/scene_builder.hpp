@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "exitance/joining/face_mesh.hpp"
-#include "exitance/joining/regions.hpp"
 #include "exitance/scene/findings.hpp"
+#include "exitance/scene/joining/face_mesh.hpp"
+#include "exitance/scene/joining/regions.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

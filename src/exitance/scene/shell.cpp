@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <map>
 
-#include "exitance/core/random.hpp"
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/joining/hash_chains.hpp"
-#include "exitance/joining/weld.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/scene/joining/hash_chains.hpp"
+#include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {

@@ -1,7 +1,7 @@
 #include "exitance/solve/direct_share.hpp"
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
 
 namespace exitance {

@@ -7,10 +7,16 @@
 #include <string_view>
 #include <utility>
 
-#include "exitance/mesh/dm_tree/triangulation_scheme.hpp"
-
 namespace exitance {
 
+/// How the faces between curves become triangles. Source: [Gatenby95]; the last one is ours, without construction
+/// edges.
+enum class TriangulationScheme {
+    longest,    ///< The middle of the longest diagonal is joined to all corners.
+    shortest,   ///< The shortest diagonal cuts, again and again.
+    heuristic,  ///< The diagonal cuts that splits the angles at its ends best.
+    delaunay,   ///< Of the curves alone, with the largest smallest angle.
+};
 /// Lines of three edges: where they may bound an umbra, everywhere, nowhere.
 enum class ThreeEdgeEvents { automatic, on, off };
 /// In which order a face is cut: all curves at once, those that bound half-shadows first, or a coarse grid before all.

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "exitance/links/kept_link.hpp"
-#include "exitance/mesh/growing_cells/cell_light.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/solution/light_form.hpp"
 #include "exitance/solve/relaxation.hpp"
 
 namespace exitance {
@@ -53,8 +53,9 @@ struct GlobalLight {
     /// Of a hierarchy, where they are asked for: links by receiver, then by source.
     std::vector<KeptLink> kept_links = {};
 
-    /// Of growing cells: the light as the shading network holds it.
-    CellLight cells = {};
+    /// The light in the method's own representation, where it has one (growing cells): all of it with `holds_direct`,
+    /// else the indirect light. `indirect` is its projection.
+    LightFormPointer own_form = {};
 
     /// Mean over all bands and a surface of `surface_area`, which is all that reflects, W/m^2.
     double mean_reflected(double surface_area) const;

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/spectrum.hpp"
-#include "exitance/transport/dealt_unknowns.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/processes/dealt_unknowns.hpp"
 
 namespace exitance {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <type_traits>
 
-#include "exitance/core/check.hpp"
+#include "exitance/base/check.hpp"
+#include "exitance/processes/value_scatter.hpp"
 #include "exitance/solve/gmres.hpp"
 #include "exitance/solve/relaxation_watch.hpp"
-#include "exitance/transport/value_scatter.hpp"
 
 // PETSc's one door: scatters of vectors that are spread over processes, and its GMRES on them.
 //

@@ -1,5 +1,5 @@
+#include "exitance/processes/value_scatter.hpp"
 #include "exitance/solve/gmres.hpp"
-#include "exitance/transport/value_scatter.hpp"
 
 // A build without PETSc: what a process reads of others goes to all.
 

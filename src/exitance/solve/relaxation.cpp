@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/solve/gmres.hpp"
 #include "exitance/solve/relaxation_watch.hpp"
-#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {

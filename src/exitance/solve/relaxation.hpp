@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/transport/transport_operator.hpp"
 
 namespace exitance {

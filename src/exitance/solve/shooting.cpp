@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "exitance/core/groups.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/groups.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 namespace {

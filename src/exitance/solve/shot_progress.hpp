@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "exitance/core/phase_times.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/phase_times.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

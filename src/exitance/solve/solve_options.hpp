@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/core/schedule.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/schedule.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/links/error/link_oracle.hpp"
 #include "exitance/solve/discontinuity_choice.hpp"
 #include "exitance/solve/relaxation.hpp"
@@ -43,7 +43,7 @@ enum class VisibilityKind { automatic, fractional, quadrature, exact };
 enum class FormFactorKind { analytic, ray_cast, hemicube };
 /// Growing cells as published, all light through the networks, or with direct light apart and analytic kernels.
 enum class CellsKind { classic, improved };
-/// Of discontinuity meshing: how light at a place is found from the global pass. See methods/lines/local_passes.hpp.
+/// Of discontinuity meshing: how light at a place is found from the global pass. See lab/local_passes/local_passes.hpp.
 enum class LocalPassRule { a, b, c, d, e };
 
 /// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.

@@ -1,10 +1,10 @@
 #include "exitance/transport/direct_projection.hpp"
 
-#include "exitance/core/error_share.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/error_share.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/direct_fit.hpp"
-#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {

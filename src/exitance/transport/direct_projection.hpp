@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

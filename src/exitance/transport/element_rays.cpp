@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
 #include "exitance/transport/portal_aim.hpp"
 

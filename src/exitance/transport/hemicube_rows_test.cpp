@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "support/built_scene.hpp"
 #include "support/test_scenes.hpp"

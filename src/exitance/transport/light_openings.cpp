@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 namespace {

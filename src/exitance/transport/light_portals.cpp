@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/transport/ray_rows.hpp"
 #include "exitance/transport/stage.hpp"

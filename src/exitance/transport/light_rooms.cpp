@@ -5,10 +5,10 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "exitance/core/disjoint_sets.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/light_openings.hpp"
 #include "exitance/transport/light_portals.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/mesh/element_locator.hpp"
 
 namespace exitance {

@@ -1,10 +1,10 @@
 #include "exitance/transport/linear_rows.hpp"
 
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/basis/element_fit.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/portal_aim.hpp"
 
 namespace exitance {

@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/direct_projection.hpp"
-#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <numeric>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/transport/element_rays.hpp"
 #include "exitance/visibility/shaft.hpp"
 

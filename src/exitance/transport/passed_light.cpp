@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/quadrature.hpp"
 #include "exitance/basis/small_system.hpp"
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/geometry/quadrature.hpp"
 
 namespace exitance {
 

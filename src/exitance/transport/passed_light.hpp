@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/mesh/element_tree.hpp"
 #include "exitance/transport/transport_operator.hpp"
 

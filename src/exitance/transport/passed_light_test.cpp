@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/base/random.hpp"
 #include "exitance/basis/nodal_basis.hpp"
-#include "exitance/core/random.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/transport/stage.hpp"
 

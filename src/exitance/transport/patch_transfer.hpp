@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/core/groups.hpp"
-#include "exitance/core/progress.hpp"
+#include "exitance/base/groups.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/form_factors/point_to_polygon_batch.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/transport/transport_operator.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/transport/ray_rows.hpp"
 #include "support/built_scene.hpp"

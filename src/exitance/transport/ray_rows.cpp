@@ -2,10 +2,10 @@
 
 #include <bit>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
-#include "exitance/core/trace.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/base/trace.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/element_rays.hpp"
 
 namespace exitance {

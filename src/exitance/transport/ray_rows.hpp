@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "exitance/mesh/element_locator.hpp"
-#include "exitance/transport/fetched_values.hpp"
+#include "exitance/processes/fetched_values.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/transport/transport_operator.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "exitance/core/disjoint_sets.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/transport/element_rays.hpp"
 
 namespace exitance {

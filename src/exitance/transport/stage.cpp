@@ -1,6 +1,6 @@
 #include "exitance/transport/stage.hpp"
 
-#include "exitance/core/error_share.hpp"
+#include "exitance/base/error_share.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {

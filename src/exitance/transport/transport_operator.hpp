@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <span>
 
-#include "exitance/core/spectrum.hpp"
-#include "exitance/transport/dealt_unknowns.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/processes/dealt_unknowns.hpp"
 
 namespace exitance {
 

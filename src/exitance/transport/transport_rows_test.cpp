@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/transport/patch_transfer.hpp"
 #include "exitance/transport/ray_rows.hpp"
 #include "support/built_scene.hpp"

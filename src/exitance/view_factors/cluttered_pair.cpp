@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/quadrature.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
-#include "exitance/geometry/quadrature.hpp"
 
 namespace exitance {
 namespace {

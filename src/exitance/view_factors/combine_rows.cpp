@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 namespace {

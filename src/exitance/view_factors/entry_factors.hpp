@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/scene/scene.hpp"
 #include "exitance/view_factors/raw_row_store.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"

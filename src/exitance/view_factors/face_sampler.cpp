@@ -1,6 +1,6 @@
 #include "exitance/view_factors/face_sampler.hpp"
 
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/triangulation.hpp"
 
 namespace exitance {
 

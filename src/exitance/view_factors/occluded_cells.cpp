@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/geometry/quadrature.hpp"
+#include "exitance/base/quadrature.hpp"
 #include "exitance/view_factors/occluded_pair.hpp"
 
 namespace exitance {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/visibility/critical_lines.hpp"
 #include "exitance/visibility/visible_from_many.hpp"
 

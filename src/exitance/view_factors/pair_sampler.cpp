@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 

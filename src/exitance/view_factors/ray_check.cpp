@@ -7,8 +7,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/view_factors/face_sampler.hpp"
 #include "exitance/visibility/rays.hpp"
 

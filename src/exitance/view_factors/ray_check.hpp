@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/scene/scene.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/view_factors/row_scene.hpp"
 
 namespace exitance {

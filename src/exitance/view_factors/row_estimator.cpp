@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 
 namespace exitance {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/view_factors/pair_sampler.hpp"
 #include "exitance/view_factors/raw_row.hpp"
 #include "exitance/view_factors/row_caster.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "exitance/core/memory.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/memory.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/view_factors/combine_rows.hpp"
 #include "exitance/view_factors/row_estimator.hpp"
 

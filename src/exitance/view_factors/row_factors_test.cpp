@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/view_factors/row_check.hpp"
 #include "exitance/view_factors/view_factors.hpp"
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "exitance/base/quadrature.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
-#include "exitance/geometry/quadrature.hpp"
 
 namespace exitance {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/form_factors/point_to_polygon_batch.hpp"
 #include "exitance/view_factors/cluttered_pair.hpp"
 #include "exitance/view_factors/occluded_pair.hpp"

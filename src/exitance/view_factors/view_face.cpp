@@ -1,6 +1,6 @@
 #include "exitance/view_factors/view_face.hpp"
 
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/triangulation.hpp"
 
 namespace exitance {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

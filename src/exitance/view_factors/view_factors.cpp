@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/memory.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/memory.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/row_worker.hpp"
 #include "exitance/view_factors/view_pairs.hpp"

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
-#include "exitance/core/result.hpp"
+#include "exitance/base/progress.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

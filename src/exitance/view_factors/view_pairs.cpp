@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/view_factors/view_face.hpp"
 #include "exitance/visibility/convex_blockers.hpp"
 #include "exitance/visibility/joint_shadow.hpp"

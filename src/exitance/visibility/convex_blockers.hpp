@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/visibility/occluders.hpp"
 
 namespace exitance {

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/check.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/check.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/scene/opposed_faces.hpp"
 #include "exitance/scene/other_side.hpp"
 #include "exitance/visibility/glass/ray_fates.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/visibility/rays.hpp"
 #include "support/test_scenes.hpp"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/scene/emission_profile.hpp"
 
 namespace exitance {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/geometry/polygon.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/scene/other_side.hpp"
 
 namespace exitance {

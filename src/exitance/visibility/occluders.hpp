@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/ids.hpp"
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/ids.hpp"
 #include "exitance/scene/enclosure.hpp"
 #include "exitance/scene/scene.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/region_cover.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "exitance/geometry/four.hpp"
+#include "exitance/base/four.hpp"
 
 namespace exitance {
 namespace {

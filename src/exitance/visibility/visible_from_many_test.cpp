@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "support/blockers.hpp"
 
 namespace exitance {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "exitance/core/processor.hpp"
-#include "exitance/geometry/four.hpp"
+#include "exitance/base/four.hpp"
+#include "exitance/base/processor.hpp"
 
 #ifdef EXITANCE_HAS_WIDE_KERNELS
 #include <immintrin.h>

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "exitance/core/processor.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/processor.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/visibility/lit_part.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/shaft.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/geometry/four.hpp"
+#include "exitance/base/four.hpp"
 
 namespace exitance {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/visible_from_four.hpp"
 #include "support/blockers.hpp"

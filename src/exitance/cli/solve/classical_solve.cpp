@@ -4,7 +4,7 @@
 
 #include "exitance/cli/json_output.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/methods/classical/classical.hpp"
+#include "exitance/lab/classical/classical.hpp"
 
 namespace exitance {
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "exitance/base/progress.hpp"
 #include "exitance/cli/arguments.hpp"
-#include "exitance/core/progress.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 

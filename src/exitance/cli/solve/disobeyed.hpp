@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include "exitance/base/result.hpp"
 #include "exitance/cli/arguments.hpp"
-#include "exitance/core/result.hpp"
 
 namespace exitance {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exitance/cli/arguments.hpp"
-#include "exitance/methods/light_groups/light_groups.hpp"
+#include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 

@@ -14,7 +14,7 @@
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/methods/plan/obedience.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"

@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/error/area_samples.hpp"
 #include "exitance/io/files/reference_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/reconstruct/error/area_samples.hpp"
-#include "exitance/reconstruct/pictures/error_picture.hpp"
+#include "exitance/measure/pictures/error_picture.hpp"
 
 namespace exitance {
 namespace {

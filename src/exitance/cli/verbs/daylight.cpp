@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/io/files/epw_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/report/daylight_tables.hpp"

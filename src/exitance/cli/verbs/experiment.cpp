@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/nearest.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/experiments/study/conduct_study.hpp"
+#include "exitance/lab/study/conduct_study.hpp"
 
 namespace exitance {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/scenes/obj/obj_writer.hpp"
-#include "exitance/scene/families/generate.hpp"
+#include "exitance/samples/generate.hpp"
 
 namespace exitance {
 namespace {

@@ -1,14 +1,14 @@
 #include <fmt/format.h>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/evaluate/energy.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/methods/light_groups/light_change_words.hpp"
-#include "exitance/reconstruct/energy.hpp"
 #include "exitance/transport/stage.hpp"
+#include "exitance/what_if/light_groups/light_change_words.hpp"
 
 namespace exitance {
 

@@ -2,15 +2,15 @@
 
 #include <limits>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/evaluate/mirrored_light.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/reconstruct/error/path_reference.hpp"
-#include "exitance/reconstruct/mirrored_light.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/reference/path_reference.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {

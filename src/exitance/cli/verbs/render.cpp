@@ -4,11 +4,11 @@
 #include <bit>
 #include <cmath>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/camera_path.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/io/files/film.hpp"
 #include "exitance/io/files/scratch_folder.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -18,7 +18,7 @@
 #include "exitance/io/pictures/mesh_colours.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/reconstruct/pictures/timed_picture.hpp"
+#include "exitance/measure/pictures/timed_picture.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

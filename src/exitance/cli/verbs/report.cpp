@@ -5,18 +5,18 @@
 
 #include <algorithm>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/observers.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/evaluate/surface_levels.hpp"
 #include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/reconstruct/pictures/timed_picture.hpp"
-#include "exitance/reconstruct/surface_levels.hpp"
+#include "exitance/measure/pictures/timed_picture.hpp"
 
 namespace exitance {
 namespace {

@@ -6,19 +6,19 @@
 #include <future>
 #include <thread>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/cli/view/view_changes.hpp"
 #include "exitance/cli/view/view_events.hpp"
 #include "exitance/cli/view/view_frames.hpp"
 #include "exitance/cli/view/view_words.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/io/export/viewer_data.hpp"
 #include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/measure/pictures/automatic_camera.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/pictures/automatic_camera.hpp"
 
 namespace exitance {
 namespace {

@@ -5,16 +5,16 @@
 #include <filesystem>
 #include <numeric>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/io/files/atomic_file.hpp"
-#include "exitance/io/files/raw_row_file.hpp"
-#include "exitance/io/files/view_factor_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/view3d.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
+#include "exitance/io/view_factors/raw_row_file.hpp"
+#include "exitance/io/view_factors/view_factor_file.hpp"
 #include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/row_check.hpp"

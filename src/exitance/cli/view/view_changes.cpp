@@ -1,6 +1,6 @@
 #include "exitance/cli/view/view_changes.hpp"
 
-#include "exitance/methods/light_groups/light_change_words.hpp"
+#include "exitance/what_if/light_groups/light_change_words.hpp"
 
 namespace exitance {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "exitance/cli/view/view_words.hpp"
-#include "exitance/methods/light_groups/light_groups.hpp"
+#include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 

@@ -3,9 +3,9 @@
 #include <memory>
 #include <mutex>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/cli/view/view_server.hpp"
-#include "exitance/core/progress.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
 
 namespace exitance {
 

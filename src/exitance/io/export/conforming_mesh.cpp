@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/geometry/bvh.hpp"
-#include "exitance/geometry/polygon.hpp"
-#include "exitance/joining/weld.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
 namespace {

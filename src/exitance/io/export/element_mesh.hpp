@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 

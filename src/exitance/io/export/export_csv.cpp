@@ -2,10 +2,10 @@
 
 #include <iterator>
 
+#include "exitance/evaluate/surface_light.hpp"
 #include "exitance/io/export/export_formats.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
-#include "exitance/reconstruct/surface_light.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 

@@ -4,12 +4,12 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "exitance/error/area_samples.hpp"
 #include "exitance/io/export/conforming_mesh.hpp"
 #include "exitance/io/export/export.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/reconstruct/error/area_samples.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/sample_solution.hpp"
 #include "support/temporary_folder.hpp"

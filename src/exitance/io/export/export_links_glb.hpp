@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/links/kept_link.hpp"
 #include "exitance/mesh/element_tree.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "exitance/io/pictures/linear_image.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
-#include "exitance/reconstruct/light_maps/light_map.hpp"
+#include "exitance/measure/light_maps/light_map.hpp"
 
 namespace exitance {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/io/export/glb_container.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/export/light_map_files.hpp"

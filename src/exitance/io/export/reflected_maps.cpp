@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/scenes/textures/texture_area.hpp"
-#include "exitance/reconstruct/light_maps/texel_cover.hpp"
+#include "exitance/measure/light_maps/texel_cover.hpp"
 
 namespace exitance {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exitance/io/scenes/textures/scene_textures.hpp"
-#include "exitance/reconstruct/light_maps/light_map.hpp"
+#include "exitance/measure/light_maps/light_map.hpp"
 
 namespace exitance {
 

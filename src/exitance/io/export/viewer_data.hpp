@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "exitance/reconstruct/pictures/camera.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/measure/pictures/camera.hpp"
 
 namespace exitance {
 

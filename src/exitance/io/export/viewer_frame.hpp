@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/reconstruct/pictures/picture.hpp"
+#include "exitance/measure/pictures/picture.hpp"
 #include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {

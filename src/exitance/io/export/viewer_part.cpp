@@ -5,7 +5,7 @@
 #include <bit>
 #include <vector>
 
-#include "exitance/core/check.hpp"
+#include "exitance/base/check.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 
 namespace exitance {

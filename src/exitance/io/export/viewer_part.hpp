@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
 
 namespace exitance {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 
 namespace exitance {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 
 namespace exitance {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 
 namespace exitance {
 

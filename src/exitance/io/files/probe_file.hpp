@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/spectrum.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/scene/photometric_units.hpp"

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "exitance/core/result.hpp"
-#include "exitance/reconstruct/error/reference_points.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/reference/reference_points.hpp"
 
 namespace exitance {
 

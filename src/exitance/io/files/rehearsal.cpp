@@ -12,7 +12,7 @@
 #include <fstream>
 #include <new>
 
-#include "exitance/core/sanitizers.hpp"
+#include "exitance/base/sanitizers.hpp"
 
 namespace exitance {
 namespace {

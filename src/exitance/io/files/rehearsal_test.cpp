@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "exitance/core/sanitizers.hpp"
+#include "exitance/base/sanitizers.hpp"
 
 namespace exitance {
 namespace {

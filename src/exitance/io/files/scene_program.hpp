@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
-#include "exitance/core/result.hpp"
+#include "exitance/base/progress.hpp"
+#include "exitance/base/result.hpp"
 
 namespace exitance {
 

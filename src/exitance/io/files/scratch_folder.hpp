@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 
 namespace exitance {
 

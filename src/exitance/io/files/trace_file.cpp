@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 
 namespace exitance {

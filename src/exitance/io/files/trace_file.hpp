@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "exitance/core/result.hpp"
-#include "exitance/core/trace.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/base/trace.hpp"
 
 namespace exitance {
 

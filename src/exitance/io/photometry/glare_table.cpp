@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
-#include "exitance/reconstruct/glare/glare_rules.hpp"
+#include "exitance/measure/glare/glare_rules.hpp"
 
 namespace exitance {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/io/photometry/photometry.hpp"
 
 namespace exitance {

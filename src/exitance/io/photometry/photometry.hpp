@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

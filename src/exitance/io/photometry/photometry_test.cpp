@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "support/places.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "exitance/geometry/polygon.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/io/pictures/bitmap_font.hpp"
 
 namespace exitance {

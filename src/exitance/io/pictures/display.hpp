@@ -4,7 +4,7 @@
 
 #include "exitance/io/pictures/png.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
-#include "exitance/reconstruct/pictures/picture.hpp"
+#include "exitance/measure/pictures/picture.hpp"
 
 namespace exitance {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/io/pictures/bitmap_font.hpp"
 
 namespace exitance {

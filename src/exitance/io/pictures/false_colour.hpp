@@ -7,7 +7,7 @@
 
 #include "exitance/io/pictures/bitmap_font.hpp"
 #include "exitance/io/pictures/png.hpp"
-#include "exitance/reconstruct/pictures/picture.hpp"
+#include "exitance/measure/pictures/picture.hpp"
 
 namespace exitance {
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/core/result.hpp"
-#include "exitance/reconstruct/pictures/picture.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/measure/pictures/picture.hpp"
 
 namespace exitance {
 

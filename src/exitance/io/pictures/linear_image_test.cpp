@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "support/places.hpp"
 #include "support/run.hpp"

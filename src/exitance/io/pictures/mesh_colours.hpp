@@ -7,7 +7,7 @@
 
 #include "exitance/io/pictures/bitmap_font.hpp"
 #include "exitance/io/pictures/png.hpp"
-#include "exitance/reconstruct/pictures/mesh_view.hpp"
+#include "exitance/measure/pictures/mesh_view.hpp"
 
 namespace exitance {
 

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "exitance/core/spectrum.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 

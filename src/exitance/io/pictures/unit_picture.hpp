@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/reconstruct/pictures/picture.hpp"
+#include "exitance/measure/pictures/picture.hpp"
 #include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "exitance/core/result.hpp"
-#include "exitance/methods/daylight/daylight_provision.hpp"
-#include "exitance/methods/daylight/view_out.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/what_if/daylight/daylight_provision.hpp"
+#include "exitance/what_if/daylight/view_out.hpp"
 
 namespace exitance {
 

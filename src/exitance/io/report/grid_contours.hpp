@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "exitance/reconstruct/measuring_grid.hpp"
-#include "exitance/reconstruct/pictures/picture.hpp"
+#include "exitance/measure/measuring_grid.hpp"
+#include "exitance/measure/pictures/picture.hpp"
 
 namespace exitance {
 

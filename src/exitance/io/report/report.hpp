@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "exitance/error/error_percentile.hpp"
+#include "exitance/evaluate/surface_levels.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
-#include "exitance/reconstruct/error/error_percentile.hpp"
-#include "exitance/reconstruct/glare/glare.hpp"
-#include "exitance/reconstruct/light_maps/light_map.hpp"
-#include "exitance/reconstruct/measuring_grid.hpp"
-#include "exitance/reconstruct/pictures/camera.hpp"
-#include "exitance/reconstruct/surface_levels.hpp"
+#include "exitance/measure/glare/glare.hpp"
+#include "exitance/measure/light_maps/light_map.hpp"
+#include "exitance/measure/measuring_grid.hpp"
+#include "exitance/measure/pictures/camera.hpp"
 #include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {

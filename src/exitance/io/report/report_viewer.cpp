@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/files/base64.hpp"
 #include "exitance/io/pictures/tone_map.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "exitance/core/random.hpp"
-#include "exitance/geometry/triangulation.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/base/triangulation.hpp"
 #include "exitance/io/scenes/obj/obj.hpp"
-#include "exitance/scene/families/generate.hpp"
+#include "exitance/samples/generate.hpp"
 #include "support/places.hpp"
 
 namespace exitance {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/io/scenes/scene_lines.hpp"
 #include "exitance/scene/scene.hpp"
 

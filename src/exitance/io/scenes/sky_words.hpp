@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/io/files/epw_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 

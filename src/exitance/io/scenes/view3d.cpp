@@ -8,12 +8,12 @@
 #include <map>
 #include <optional>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
-#include "exitance/joining/outline.hpp"
-#include "exitance/joining/uncross.hpp"
 #include "exitance/scene/findings.hpp"
+#include "exitance/scene/joining/outline.hpp"
+#include "exitance/scene/joining/uncross.hpp"
 
 namespace exitance {
 namespace {

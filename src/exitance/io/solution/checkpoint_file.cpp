@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {

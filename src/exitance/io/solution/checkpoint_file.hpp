@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/core/checkpoint.hpp"
-#include "exitance/core/result.hpp"
+#include "exitance/base/checkpoint.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/io/solution/checkpoint_parts.hpp"
 #include "exitance/scene/scene.hpp"
 

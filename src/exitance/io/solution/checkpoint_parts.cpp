@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/io/files/whole_file.hpp"
 
 namespace exitance {

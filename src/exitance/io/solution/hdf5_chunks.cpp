@@ -8,8 +8,8 @@
 #include <bit>
 #include <cstring>
 
-#include "exitance/core/check.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/check.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/io/solution/hdf5_library.hpp"
 
 namespace exitance {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/random.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "support/run.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/rehearsal.hpp"
 

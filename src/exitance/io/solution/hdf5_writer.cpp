@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/io/solution/hdf5_chunks.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
 #include "exitance/io/solution/hdf5_library.hpp"

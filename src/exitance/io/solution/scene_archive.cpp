@@ -1,4 +1,4 @@
-#include "exitance/core/archive.hpp"
+#include "exitance/base/archive.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 
 namespace exitance {

@@ -8,7 +8,22 @@ namespace {
 
 constexpr std::int64_t format = 1;  ///< Raised when older programs could not read the file.
 
+std::vector<LightFormGroup>& known_groups() {
+    static std::vector<LightFormGroup> groups;
+    return groups;
+}
+
 }  // namespace
+
+void add_light_form_group(const LightFormGroup& group) {
+    for (const LightFormGroup& known : known_groups())
+        if (std::string_view(known.name) == group.name) return;
+    known_groups().push_back(group);
+}
+
+std::span<const LightFormGroup> light_form_groups() {
+    return known_groups();
+}
 
 Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups) {
     Hdf5Writer file(path);
@@ -28,8 +43,8 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
     write_function(file, "exitance/interpolant", solution.interpolant);
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
-    if (!solution.layers.empty()) write_layers(file, "exitance/layers", solution.layers);
-    if (!solution.cells.cells.empty()) write_cells(file, "exitance/growing_cells", solution.cells);
+    for (const LightFormGroup& form : light_form_groups())
+        form.write(file, std::string("exitance/") + form.name, solution);
     if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
     if (groups && !groups->empty()) write_light_groups(file, "exitance/groups", *groups);
     write_statistics(file, "exitance/statistics", solution.statistics, own_unit(solution.scene.is_photometric()));
@@ -67,8 +82,9 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
     solution.interpolant = read_function(file, "exitance/interpolant", regions);
     if (file.has("exitance/discontinuity"))
         solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions);
-    if (file.has("exitance/layers")) solution.layers = read_layers(file, "exitance/layers", regions);
-    if (file.has("exitance/growing_cells")) solution.cells = read_cells(file, "exitance/growing_cells");
+    for (const LightFormGroup& form : light_form_groups())
+        if (const std::string group = std::string("exitance/") + form.name; file.has(group))
+            form.read(file, group, solution);
     if (file.has("exitance/links")) solution.links = read_links(file, "exitance/links", regions);
     if (groups && file.has("exitance/groups") && !file.failed())
         *groups = read_light_groups(file, "exitance/groups", solution);

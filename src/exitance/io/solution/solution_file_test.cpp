@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "support/sample_solution.hpp"
 #include "support/temporary_folder.hpp"
@@ -197,65 +197,6 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
     read_discontinuity(*in, "mesh", 2);
     ASSERT_TRUE(in->failed());
     EXPECT_TRUE(in->error().message.ends_with("leads to a gradient that is not there")) << in->error().message;
-}
-
-TEST_F(SolutionFiles, HoldLayersOfLightAndRefuseThoseThatMakeNoSense) {
-    Solution s = sample_solution();
-    LayerTriangles triangles;
-    triangles.points = {{0, 0}, {1, 0}, {0, 1}, {1, 1}}, triangles.values = {1, 2, 3, 4};
-    triangles.corners = {{0, 1, 2}, {1, 3, 2}}, triangles.middles = {{1.5, 2.5, 2}, {3, 3.5, 2.5}};
-    s.layers.sources = {RegionId(1), RegionId()};
-    s.layers.sheets = {{RegionId(0), 1, Spectrum(0.5), LightLayer(triangles, LightLayer::Form::floats)},
-                       {RegionId(1), 0, Spectrum(2), LightLayer(triangles, LightLayer::Form::halves)}};
-    ASSERT_TRUE(write_solution(path("s.h5"), s));
-    const Result<Solution> t = load_solution(path("s.h5"));
-    ASSERT_TRUE(t) << t.error().message;
-    EXPECT_EQ(t->layers.sources, s.layers.sources);
-    ASSERT_EQ(t->layers.sheets.size(), 2u);
-    for (std::size_t i = 0; i < 2; ++i) {
-        LightLayers::Sheet& sheet = s.layers.sheets[i];
-        sheet.light.make_grid();
-        EXPECT_EQ(t->layers.sheets[i].region, sheet.region);
-        EXPECT_EQ(t->layers.sheets[i].source, sheet.source);
-        EXPECT_EQ(t->layers.sheets[i].colour, sheet.colour);
-        EXPECT_EQ(t->layers.sheets[i].light.at({0.3, 0.4}), sheet.light.at({0.3, 0.4}));
-        EXPECT_EQ(t->layers.sheets[i].light.memory_bytes(), sheet.light.memory_bytes());
-    }
-    s.layers.sheets[0].source = 2;
-    ASSERT_TRUE(write_solution(path("bad.h5"), s));
-    EXPECT_FALSE(load_solution(path("bad.h5")));
-    s.layers.sheets[0].source = 1, s.layers.sheets[1].region = RegionId(100'000);
-    ASSERT_TRUE(write_solution(path("bad.h5"), s));
-    EXPECT_FALSE(load_solution(path("bad.h5")));
-}
-
-TEST_F(SolutionFiles, HoldGrownCellsAndRefuseThoseThatMakeNoSense) {
-    Solution solution = sample_solution();
-    solution.cells.delivered = true, solution.cells.normalised = false;
-    for (int i = 0; i < 3; ++i)
-        solution.cells.cells.push_back({{0.1 * i, 0.2, 0.3}, {0, 0, 1}, 0.5 + i, Spectrum(i), {Spectrum(1), {}, {}}});
-    solution.cells.triangles = {{0, 1, 2}};
-    solution.cells.kernel = {{{1, 2, 3}, {4, 5, 6}, 0.7, Spectrum(8)}, {{1, 1, 1}, {2, 2, 2}, 0.1, Spectrum(9)}};
-    solution.cells.kernel_edges = {{0, 1}};
-    ASSERT_TRUE(write_solution(path("cells.h5"), solution));
-    const Result<Solution> back = load_solution(path("cells.h5"));
-    ASSERT_TRUE(back) << back.error().message;
-    const CellLight& cells = back->cells;
-    EXPECT_TRUE(cells.delivered && !cells.normalised);
-    ASSERT_EQ(cells.cells.size(), 3u);
-    EXPECT_EQ(cells.cells[2].at, solution.cells.cells[2].at);
-    EXPECT_EQ(cells.cells[2].value, Spectrum(2));
-    EXPECT_EQ(cells.cells[1].slope[0], Spectrum(1));
-    EXPECT_EQ(cells.triangles, solution.cells.triangles);
-    EXPECT_EQ(cells.kernel[1].y, solution.cells.kernel[1].y);
-    EXPECT_EQ(cells.kernel_edges, solution.cells.kernel_edges);
-
-    solution.cells.triangles = {{0, 1, 3}};
-    ASSERT_TRUE(write_solution(path("lost.h5"), solution));
-    EXPECT_FALSE(load_solution(path("lost.h5")));
-    solution.cells.triangles.clear(), solution.cells.cells[0].width = 0;
-    ASSERT_TRUE(write_solution(path("flat.h5"), solution));
-    EXPECT_FALSE(load_solution(path("flat.h5")));
 }
 
 TEST_F(SolutionFiles, OfEqualSolutionsAreEqual) {

@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "exitance/io/solution/hdf5_file.hpp"
-#include "exitance/methods/light_groups/light_groups.hpp"
-#include "exitance/reconstruct/solution.hpp"
 #include "exitance/scene/photometric_units.hpp"
+#include "exitance/solution/solution.hpp"
+#include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 
@@ -49,13 +49,18 @@ KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t reg
 void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNodeMesh& mesh);
 SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
-/// Direct light as one mesh a source.
-void write_layers(Hdf5Writer& file, const std::string& group, const LightLayers& layers);
-LightLayers read_layers(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+/// A group of a solution's file for a LightForm, which the library that defines the form adds.
+struct LightFormGroup {
+    const char* name;  ///< Of the group, below "exitance".
+    /// Writes the group if the solution has such a form.
+    void (*write)(Hdf5Writer& file, const std::string& group, const Solution& solution);
+    /// Reads the group, which is there, into the solution, whose scene is read.
+    void (*read)(Hdf5Reader& file, const std::string& group, Solution& solution);
+};
 
-/// The networks of growing cells.
-void write_cells(Hdf5Writer& file, const std::string& group, const CellLight& light);
-CellLight read_cells(Hdf5Reader& file, const std::string& group);
+/// Adds a group to all files that are written or read from now on. Not while other threads write or read.
+void add_light_form_group(const LightFormGroup& group);
+std::span<const LightFormGroup> light_form_groups();
 
 /// Light by groups, for `mix`.
 void write_light_groups(Hdf5Writer& file, const std::string& group, const LightGroups& groups);

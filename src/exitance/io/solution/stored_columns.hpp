@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/spectrum.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
 
 namespace exitance {

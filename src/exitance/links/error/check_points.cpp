@@ -1,6 +1,6 @@
 #include "exitance/links/error/check_points.hpp"
 
-#include "exitance/geometry/quadrature.hpp"
+#include "exitance/base/quadrature.hpp"
 
 namespace exitance {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "exitance/core/ids.hpp"
+#include "exitance/base/ids.hpp"
 #include "exitance/links/error/link_oracle.hpp"
 #include "exitance/mesh/element_tree.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 namespace {

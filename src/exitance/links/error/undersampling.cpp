@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/polygon.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/geometry/polygon.hpp"
 
 namespace exitance {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "exitance/core/check.hpp"
-#include "exitance/core/disjoint_sets.hpp"
+#include "exitance/base/check.hpp"
+#include "exitance/base/disjoint_sets.hpp"
 
 namespace exitance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
 
 namespace exitance {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/ids.hpp"
+#include "exitance/base/ids.hpp"
 #include "exitance/mesh/discontinuity/curve_arrangement.hpp"
 #include "exitance/visibility/critical_lines.hpp"
 

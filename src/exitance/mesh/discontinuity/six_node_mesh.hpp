@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "exitance/core/ids.hpp"
-#include "exitance/core/spectrum.hpp"
-#include "exitance/geometry/bvh.hpp"
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/ids.hpp"
+#include "exitance/base/spectrum.hpp"
 #include "exitance/mesh/discontinuity/clough_tocher.hpp"
 #include "exitance/scene/scene.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/transport/rooms.hpp"
 
 namespace exitance {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "exitance/accuracy/tolerance_law.hpp"
+#include "exitance/base/memory.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/memory.hpp"
+#include "exitance/error/tolerance/tolerance_law.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/methods/hierarchical/link_importance.hpp"
 

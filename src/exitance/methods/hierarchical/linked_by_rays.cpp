@@ -6,7 +6,7 @@
 
 #include "exitance/links/ray_links.hpp"
 #include "exitance/methods/constant_elements.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/open_share.hpp"
 
 namespace exitance {

@@ -1,7 +1,7 @@
 #include "exitance/methods/hierarchical/linked_system.hpp"
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 
 namespace exitance {

@@ -1,6 +1,6 @@
 #include "exitance/methods/hierarchical/ray_correction.hpp"
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/methods/constant_elements.hpp"
 #include "exitance/transport/ray_rows.hpp"
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/progress.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/methods/extensions.hpp"
 #include "exitance/methods/light/secondary_light.hpp"
-#include "exitance/reconstruct/discontinuity/source_layers.hpp"
 
 namespace exitance {
 namespace {
@@ -17,27 +17,14 @@ ConicCurves conics_of(ThreeEdgeEvents asked) {
                                            : ConicCurves::at_umbras;
 }
 
-/// False, and the report says so, where a request to stop leaves them unfinished.
-bool add_layers(const Stage& stage, const DiscontinuityOptions& ask, Solution& solution, LayersReport& layers,
-                DiscontinuityReport& report, const StopRequest& stop) {
+/// Direct light in layers, if requested.
+LayeredLight make_layers(const Stage& stage, const DiscontinuityOptions& options, DiscontinuityReport& report,
+                         const StopRequest& stop) {
     const Stopwatch watch;
-    solution.layers = make_light_layers(stage, ask, layers, stop);
+    LayeredLight layers = extensions().discontinuity->make_layers(stage, options, stop);
     report.direct_seconds = watch.seconds();
     report.interrupted = layers.interrupted;
-    return !layers.interrupted;
-}
-
-/// What is kept of direct light, and what the same meshes take with winged edges.
-void record_layers(Solution& solution, const LayersReport& layers) {
-    std::map<std::string, double>& figures = solution.statistics.figures;
-    const bool has_layers = !solution.layers.empty();
-    figures["layer_bytes"] = static_cast<double>(solution.layers.memory_bytes());
-    figures["winged_edge_bytes"] =
-        static_cast<double>(has_layers ? layers.winged_edge_bytes : winged_edge_bytes(solution.discontinuity));
-    if (!has_layers) return;
-    figures["layers"] = static_cast<double>(solution.layers.sources.size());
-    figures["layer_triangles"] = static_cast<double>(layers.triangles);
-    figures["lit_layer_triangles"] = static_cast<double>(solution.layers.size());
+    return layers;
 }
 
 }  // namespace
@@ -56,19 +43,16 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
     const SecondaryLight secondary(stage, solution.indirect, locator, ask.secondary, stop);
     if (options.bounces != 0) ask.indirect = [&](RegionId r, const Point& p) { return secondary.at(r, p); };
     ask.conics = conics_of(choice.three_edges.value_or(ThreeEdgeEvents::automatic));
-    ask.triangulation = choice.triangulation.value_or(TriangulationScheme::delaunay);
-    ask.penumbra_first = choice.premesh == Premesh::penumbra_first;
-    ask.premesh = choice.premesh == Premesh::coarse;
-    ask.merges_volumes = choice.structure == OccluderStructure::merged;
-    ask.by_orderings = choice.structure == OccluderStructure::bsp || ask.merges_volumes;
+    if (extensions().discontinuity) extensions().discontinuity->choose(choice, ask);
     ask.refined = choice.quality == MeshQuality::delaunay;
     ask.clough_tocher = choice.element == MeshElement::clough_tocher;
     DiscontinuityReport report;
-    LayersReport layers;
-    if (choice.layers == true && !add_layers(stage, ask, solution, layers, report, stop)) return report;
+    LayeredLight layers;
+    if (choice.layers == true) layers = make_layers(stage, ask, report, stop);
+    if (layers.interrupted) return report;
     solution.discontinuity = make_discontinuity_mesh(stage, ask, report, stop);
     report.error = std::max(report.error, layers.error);
-    if (solution.discontinuity.empty()) solution.layers = {};
+    if (!solution.discontinuity.empty()) solution.layers = layers.form;
     solution.interpolant = linear_elements(solution.discontinuity, solution.scene);
     SolveStatistics& statistics = solution.statistics;
     statistics.discontinuity = report.counts;
@@ -88,8 +72,10 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
         statistics.figures["secondary_curves"] = static_cast<double>(report.secondary_curves);
     }
     if (report.tree_bytes > 0) statistics.figures["dm_tree_bytes"] = static_cast<double>(report.tree_bytes);
-    record_layers(solution, layers);
-    if (ask.by_orderings) {
+    if (!solution.layers && extensions().discontinuity)
+        layers.figures = extensions().discontinuity->figures(solution.discontinuity);
+    statistics.figures.insert(layers.figures.begin(), layers.figures.end());
+    if (ask.search) {
         statistics.figures["plane_tests"] = static_cast<double>(report.plane_tests);
         statistics.figures["fragments"] = static_cast<double>(report.fragments);
     }

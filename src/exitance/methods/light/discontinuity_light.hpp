@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/reconstruct/discontinuity/discontinuity_mesh.hpp"
+#include "exitance/discontinuity/discontinuity_mesh.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {

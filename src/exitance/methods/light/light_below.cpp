@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 

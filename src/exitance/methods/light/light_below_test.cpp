@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "support/built_scene.hpp"
 #include "support/lit_elements.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/transport/open_share.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/reconstruct/quick_function.hpp"
+#include "exitance/evaluate/quick_function.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/basis/element_rule.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/solve/relaxation.hpp"
-#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 namespace {

@@ -1,6 +1,6 @@
 #include "exitance/methods/light/nodal_light.hpp"
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 
 namespace exitance {
 namespace {

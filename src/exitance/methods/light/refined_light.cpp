@@ -1,11 +1,11 @@
 #include "exitance/methods/light/refined_light.hpp"
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/basis/element_rule.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/gather/element_gather.hpp"
 #include "exitance/methods/light/light_functions.hpp"
-#include "exitance/reconstruct/element_gather.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/ray_rows.hpp"

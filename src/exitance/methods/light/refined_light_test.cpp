@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"
 

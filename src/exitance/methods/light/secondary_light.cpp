@@ -4,11 +4,11 @@
 #include <array>
 #include <atomic>
 
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/basis/element_fit.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
-#include "exitance/geometry/polygon.hpp"
-#include "exitance/reconstruct/continuous.hpp"
+#include "exitance/solution/continuous.hpp"
 
 namespace exitance {
 namespace {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "exitance/discontinuity/receiver_curves.hpp"
 #include "exitance/mesh/element_locator.hpp"
-#include "exitance/reconstruct/discontinuity/receiver_curves.hpp"
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 #include "exitance/solve/discontinuity_choice.hpp"
 #include "exitance/visibility/glazed_part.hpp"
 

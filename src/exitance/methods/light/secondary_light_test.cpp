@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "exitance/base/random.hpp"
 #include "exitance/basis/element_fit.hpp"
-#include "exitance/core/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
-#include "exitance/reconstruct/continuous.hpp"
+#include "exitance/solution/continuous.hpp"
 #include "support/test_scenes.hpp"
 
 namespace exitance {

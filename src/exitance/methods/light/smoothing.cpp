@@ -1,6 +1,6 @@
 #include "exitance/methods/light/smoothing.hpp"
 
-#include "exitance/core/parallel.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/mesh/element_locator.hpp"
 
 namespace exitance {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/reconstruct/solution.hpp"
+#include "exitance/solution/solution.hpp"
 #include "exitance/solve/global_light.hpp"
 
 namespace exitance {

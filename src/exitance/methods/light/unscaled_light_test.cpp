@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/energy.hpp"
 #include "support/built_scene.hpp"
 
 namespace exitance {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/gather/element_gather.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/plan/obedience.hpp"
 #include "exitance/methods/plan/way_forecast.hpp"
-#include "exitance/reconstruct/element_gather.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 

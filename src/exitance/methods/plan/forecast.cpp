@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/memory.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/progress.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/memory.hpp"
-#include "exitance/core/parallel.hpp"
-#include "exitance/core/progress.hpp"
+#include "exitance/error/area_samples.hpp"
+#include "exitance/error/certificate.hpp"
+#include "exitance/error/residual_samples.hpp"
+#include "exitance/gather/gather.hpp"
 #include "exitance/mesh/element_locator.hpp"
-#include "exitance/methods/growing_cells/cells_method.hpp"
+#include "exitance/methods/methods.hpp"
 #include "exitance/methods/patch_steps.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/plan/method_memory.hpp"
 #include "exitance/methods/plan/plan.hpp"
-#include "exitance/reconstruct/error/area_samples.hpp"
-#include "exitance/reconstruct/error/certificate.hpp"
-#include "exitance/reconstruct/error/residual_samples.hpp"
-#include "exitance/reconstruct/gather.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
@@ -146,6 +146,7 @@ double cut_patches(const Stage& stage, const Plan& plan, const DirectProjection&
 /// Rays of the method itself, on so many elements.
 double method_rays(const Plan& plan, const Pilot& pilot, double patches, double elements) {
     const SolveOptions& o = plan.options;
+    if (entry_of(o.method).forecast) return 0;  // added by the method's own formula
     const double rows = elements * plan.knobs.solve_rays.average;
     const double samples = static_cast<double>(o.visibility_samples.value_or(shooting_samples));
     switch (o.method) {
@@ -158,8 +159,6 @@ double method_rays(const Plan& plan, const Pilot& pilot, double patches, double 
         case Method::hierarchical:
         case Method::discontinuity:
             return 0.5 * rows;
-        case Method::growing_cells:
-            return 0;  // see forecast_cells
         default:
             return rows;
     }
@@ -212,8 +211,8 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
     out.seconds = out.rays * pilot.gather_seconds + solved * lights_an_element * pilot.light_seconds;
     out.memory_bytes = static_cast<double>(peak_memory_bytes()) +
                        method_bytes(stage, plan.options, plan.knobs, solved) + bytes_a_leaf * (solved + leaves);
-    if (plan.options.method == Method::growing_cells)
-        out.rays += forecast_cells(units_of(stage, plan.knobs, plan.options), pilot.facing, pilot.blocked).rays;
+    if (const auto own = entry_of(plan.options.method).forecast)
+        out.rays += own(stage, plan.options, plan.knobs, pilot.facing, pilot.blocked).rays;
     return out;
 }
 

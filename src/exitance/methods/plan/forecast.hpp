@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/scene/scene.hpp"
 #include "exitance/solve/solve_options.hpp"
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "exitance/base/memory.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/memory.hpp"
 #include "exitance/methods/plan/method_memory.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "exitance/accuracy/accuracy.hpp"
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/error/tolerance/accuracy.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "exitance/core/available_memory.hpp"
-#include "exitance/methods/growing_cells/cells_method.hpp"
+#include "exitance/base/available_memory.hpp"
+#include "exitance/methods/methods.hpp"
 #include "exitance/methods/shooting_setup.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -20,10 +20,9 @@ constexpr double bytes_a_galerkin_pair = 60;
 }  // namespace
 
 double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double leaves) {
+    if (const auto own = entry_of(options.method).forecast) return own(stage, options, knobs, 1, true).bytes;
     const double pairs = leaves * leaves;
     switch (options.method) {
-        case Method::growing_cells:
-            return forecast_cells(units_of(stage, knobs, options), 1, true).bytes;
         case Method::progressive:
         case Method::substructuring:
             return std::min(static_cast<double>(column_memory_bytes(options)), sizeof(float) * pairs);

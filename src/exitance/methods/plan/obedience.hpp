@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {

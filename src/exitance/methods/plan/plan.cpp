@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/evaluate/unlit_sides.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/plan/choice.hpp"
-#include "exitance/reconstruct/unlit_sides.hpp"
 
 namespace exitance {
 namespace {

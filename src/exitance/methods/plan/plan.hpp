@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "exitance/accuracy/accuracy.hpp"
-#include "exitance/core/progress.hpp"
+#include "exitance/base/progress.hpp"
+#include "exitance/error/tolerance/accuracy.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

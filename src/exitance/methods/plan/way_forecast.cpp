@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "exitance/accuracy/accuracy.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/parallel.hpp"
+#include "exitance/error/area_samples.hpp"
+#include "exitance/error/tolerance/accuracy.hpp"
+#include "exitance/gather/element_gather.hpp"
+#include "exitance/gather/gather.hpp"
 #include "exitance/methods/plan/attempt_forecast.hpp"
-#include "exitance/reconstruct/element_gather.hpp"
-#include "exitance/reconstruct/error/area_samples.hpp"
-#include "exitance/reconstruct/gather.hpp"
 #include "exitance/scene/locator.hpp"
 #include "exitance/transport/direct_projection.hpp"
 

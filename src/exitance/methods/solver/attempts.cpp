@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "exitance/base/memory.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/memory.hpp"
+#include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/light/refined_light.hpp"
 #include "exitance/methods/light/smoothing.hpp"
 #include "exitance/methods/methods.hpp"
@@ -14,12 +15,11 @@
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/plan/method_memory.hpp"
 #include "exitance/methods/solve_report.hpp"
-#include "exitance/reconstruct/continuous.hpp"
-#include "exitance/reconstruct/energy.hpp"
+#include "exitance/processes/distributed.hpp"
+#include "exitance/solution/continuous.hpp"
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/direct_share.hpp"
 #include "exitance/solve/growth_watch.hpp"
-#include "exitance/transport/distributed.hpp"
 #include "exitance/transport/narrow_places.hpp"
 
 namespace exitance {
@@ -300,8 +300,8 @@ bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLigh
 void Solver::adopt(ElementFunction indirect, const Spectrum& kept) {
     solution_.indirect = std::move(indirect);
     unscaled_.indirect = unscaled_indirect(kept);
-    solution_.cells = light_->cells;
-    solution_.cells.delivered = !gathers() && !solution_.cells.cells.empty();
+    solution_.own_form = light_->own_form;
+    solution_.delivers_own_form = !gathers() && solution_.own_form;
     solution_.direct_share = share_;
     solution_.direct_in_elements = light_->holds_direct;
     record_method(stage_, *light_, has_links_, statistics());

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/error/clustering_error.hpp"
+#include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/solve_report.hpp"
-#include "exitance/reconstruct/energy.hpp"
-#include "exitance/reconstruct/error/clustering_error.hpp"
-#include "exitance/transport/distributed.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 

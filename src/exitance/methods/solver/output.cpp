@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/evaluate/energy.hpp"
+#include "exitance/evaluate/interpolant.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/solve_report.hpp"
-#include "exitance/reconstruct/energy.hpp"
-#include "exitance/reconstruct/interpolant.hpp"
 
 namespace exitance {
 

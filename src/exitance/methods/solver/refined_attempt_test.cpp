@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "exitance/reconstruct/error/area_samples.hpp"
-#include "exitance/reconstruct/error/path_reference.hpp"
-#include "exitance/reconstruct/radiosity_function.hpp"
+#include "exitance/error/area_samples.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/reference/path_reference.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"
 

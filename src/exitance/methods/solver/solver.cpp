@@ -4,14 +4,14 @@
 
 #include <utility>
 
+#include "exitance/base/memory.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/core/memory.hpp"
-#include "exitance/core/parallel.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/solve_archive.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/solve/growth_watch.hpp"
-#include "exitance/transport/distributed.hpp"
 
 namespace exitance {
 
@@ -91,8 +91,8 @@ void Solver::archive_state(Archive& a, std::string& phase) {
     a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, refined_, gathered_, certificate_, phase,
       steps_);
     next_.archive_state(a);
-    a(light_in_, allowed_in_, solution_.indirect, solution_.links, solution_.cells, solution_.direct_share,
-      solution_.direct_in_elements, solution_.statistics);
+    a(light_in_, allowed_in_, solution_.indirect, solution_.links, solution_.own_form, solution_.delivers_own_form,
+      solution_.direct_share, solution_.direct_in_elements, solution_.statistics);
     bool has_local_pass = local_pass_.has_value();
     a(has_local_pass);
     if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);

@@ -1,14 +1,14 @@
 #pragma once
 
+#include "exitance/error/certificate.hpp"
+#include "exitance/evaluate/interpolant.hpp"
+#include "exitance/evaluate/quick_function.hpp"
+#include "exitance/gather/element_gather.hpp"
+#include "exitance/gather/local_pass.hpp"
 #include "exitance/methods/light/next_light.hpp"
 #include "exitance/methods/light/unscaled_light.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/reconstruct/element_gather.hpp"
-#include "exitance/reconstruct/error/certificate.hpp"
-#include "exitance/reconstruct/interpolant.hpp"
-#include "exitance/reconstruct/local_pass.hpp"
-#include "exitance/reconstruct/quick_function.hpp"
 
 namespace exitance {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "exitance/core/spectrum.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/scene/sky/sky_model.hpp"
 
 namespace exitance {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 
 namespace exitance {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 

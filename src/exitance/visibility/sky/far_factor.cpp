@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "exitance/core/random.hpp"
+#include "exitance/base/random.hpp"
 
 namespace exitance {
 namespace {

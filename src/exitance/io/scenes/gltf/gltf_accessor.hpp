@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
 
 namespace exitance {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/io/scenes/affine.hpp"
 #include "exitance/scene/point_light.hpp"
 #include "exitance/scene/scene.hpp"

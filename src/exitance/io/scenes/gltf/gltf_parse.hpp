@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 
 namespace tinygltf {
 class Model;

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "exitance/io/scenes/obj/obj.hpp"
-#include "exitance/scene/families/generate.hpp"
+#include "exitance/samples/generate.hpp"
 #include "support/places.hpp"
 
 namespace exitance {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 
 namespace exitance {
 

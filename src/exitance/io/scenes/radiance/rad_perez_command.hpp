@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 
 namespace exitance {

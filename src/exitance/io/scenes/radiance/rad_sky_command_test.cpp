@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/scene/sky/sky_model.hpp"
 
 namespace exitance {

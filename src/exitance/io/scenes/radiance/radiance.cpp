@@ -9,7 +9,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 #include "exitance/io/files/scene_program.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "exitance/geometry/polygon.hpp"
+#include "exitance/base/polygon.hpp"
 
 namespace exitance {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 #include "exitance/io/scenes/affine.hpp"
 
 namespace exitance {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/result.hpp"
-#include "exitance/geometry/vec.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/base/vec.hpp"
 #include "exitance/io/scenes/textures/texture_mean.hpp"
 
 namespace exitance {

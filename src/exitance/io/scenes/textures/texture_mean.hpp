@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/core/result.hpp"
+#include "exitance/base/result.hpp"
 
 namespace exitance {
 

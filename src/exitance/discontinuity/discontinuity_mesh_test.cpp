@@ -1,0 +1,264 @@
+#include "exitance/discontinuity/discontinuity_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/error/area_samples.hpp"
+#include "exitance/lab/layers/light_layers.hpp"
+#include "support/built_scene.hpp"
+#include "support/solved.hpp"
+#include "support/test_scenes.hpp"
+
+namespace exitance {
+namespace {
+
+/// A source of 1.5 m at 2 m, a blocker of 1 m at 0.7 m, a floor of 4 m; `turn`: of the blocker, radians.
+Scene blocker(double turn) {
+    const auto at = [&](double x, double y) {
+        return Point{x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn), 0.7};
+    };
+    return test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                       {{at(-0.5, -0.5), at(0.5, -0.5), at(0.5, 0.5), at(-0.5, 0.5)}, 0},
+                       {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100}});
+}
+
+Solution meshed(const Scene& scene, double error) {
+    return solved(scene, {.method = Method::discontinuity, .bounces = 0, .error_interpolant = error});
+}
+
+TEST(DiscontinuityMesh, TheBlockersCurvesStandWhereTheClosedFormSays) {
+    // Seen over an edge at +-0.5 m from a source's edge at +-0.75 m: x = 2 (+-0.5) - 0.7 (+-0.75) over 1.3.
+    const Solution s = meshed(blocker(0), 0.01);
+    std::set<long> found;  // micrometres
+    for (const DiscontinuityCurve& c : s.discontinuity.curves) {
+        if (std::abs(c.a.z) > 1e-9 || std::abs(c.a.x - c.b.x) > 1e-9) continue;
+        if ((c.a.y - 0.1) * (c.b.y - 0.1) > 0) continue;
+        EXPECT_EQ(c.order, CurveOrder::d1);
+        found.insert(std::lround(1e6 * c.a.x));
+    }
+    EXPECT_EQ(found, (std::set<long>{-1173077, -365385, 365385, 1173077}));
+}
+
+TEST(DiscontinuityMesh, FacesAreLitHalfShadowedOrDarkWhereTheClosedFormSays) {
+    const auto class_at = [](const Scene& scene, const Point& p) {
+        const Solution s = meshed(scene, 0.02);
+        const auto place = SixNodeLocator(s.discontinuity, s.scene).find(RegionId(0), p);
+        return s.discontinuity.shadow[place.triangle];
+    };
+    // The umbra ends at 0.3654 m, the penumbra at 1.1731 m.
+    EXPECT_EQ(class_at(blocker(0), {0, 0.05, 0}), ShadowClass::umbra);
+    EXPECT_EQ(class_at(blocker(0), {0.7, 0.05, 0}), ShadowClass::penumbra);
+    EXPECT_EQ(class_at(blocker(0), {1.5, 0.05, 0}), ShadowClass::lit);
+    // A second source is seen whole from below the blocker, where the first one is hidden: that is half-shadow.
+    const Scene two = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                                  {{{-0.5, -0.5, 0.7}, {0.5, -0.5, 0.7}, {0.5, 0.5, 0.7}, {-0.5, 0.5, 0.7}}, 0},
+                                  {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100},
+                                  {{{1.6, 0.1, 1}, {1.9, 0.1, 1}, {1.9, -0.1, 1}, {1.6, -0.1, 1}}, 100}});
+    EXPECT_EQ(class_at(two, {0, 0.05, 0}), ShadowClass::penumbra);
+}
+
+TEST(DiscontinuityMesh, ATurnedBlockersCurvesAreThoseOfAllPairsOfCornersAndEdges) {
+    const double turn = pi / 6;
+    const Solution s = meshed(blocker(turn), 0.01);
+    const double k = 2 / 1.3;
+    std::size_t on_floor = 0;
+    for (const DiscontinuityCurve& c : s.discontinuity.curves) {
+        if (std::abs(c.a.z) > 1e-9) continue;
+        ++on_floor;
+        EXPECT_EQ(c.order, CurveOrder::d2);
+        // The shadow of a point p from a point q of the source is q + k (p - q): both ends lie on the shadow, from one
+        // corner, of a line through an edge, or from a line through an edge of the source, of one corner.
+        double least = 1;
+        const auto shadow = [&](double x, double y, double sx, double sy) {
+            const Vec2 p = {x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn)};
+            return Vec2{sx + k * (p.x - sx), sy + k * (p.y - sy)};
+        };
+        const auto look = [&](Vec2 a, Vec2 b) {
+            const Vec2 d = b - a, p = {c.a.x, c.a.y}, q = {c.b.x, c.b.y};
+            const double l = std::sqrt(dot(d, d));
+            least = std::min(least, std::max(std::abs(cross(d, p - a)), std::abs(cross(d, q - a))) / l);
+        };
+        const double corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                const auto &e = corner[i], &f = corner[(i + 1) % 4], &q = corner[j], &r = corner[(j + 1) % 4];
+                look(shadow(0.5 * e[0], 0.5 * e[1], 0.75 * q[0], 0.75 * q[1]),
+                     shadow(0.5 * f[0], 0.5 * f[1], 0.75 * q[0], 0.75 * q[1]));
+                look(shadow(0.5 * e[0], 0.5 * e[1], 0.75 * q[0], 0.75 * q[1]),
+                     shadow(0.5 * e[0], 0.5 * e[1], 0.75 * r[0], 0.75 * r[1]));
+            }
+        EXPECT_LT(least, 1e-6);
+    }
+    EXPECT_GE(on_floor, 32u);
+    EXPECT_EQ(s.statistics.discontinuity->d1, 0u);
+}
+
+TEST(DiscontinuityMesh, HoldsTheErrorAskedForAndLosesNoArea) {
+    const Scene scene = built_scene("table");
+    const Solution s = meshed(scene, 0.003);
+    double area = 0, all = 0;
+    for (const Region& region : scene.regions()) all += region.area;
+    for (std::uint32_t t = 0; t < s.discontinuity.size(); ++t) area += s.discontinuity.area(t);
+    EXPECT_NEAR(area, all, 1e-9 * all);
+    EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.003);
+    const RadiosityFunction light(s);
+    const std::vector<ProbePoint> points = points_uniform_in_area(scene, 2000, 7);
+    const std::vector<Light> exact = light.at(points), held = light.interpolant_at(points);
+    double sum = 0, square = 0, largest = 0, brightest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double e = exact[i].irradiance[0], d = held[i].irradiance[0] - e;
+        sum += e, square += d * d;
+        largest = std::max(largest, std::abs(d)), brightest = std::max(brightest, e);
+    }
+    const auto n = static_cast<double>(points.size());
+    EXPECT_LE(std::sqrt(square / n) / (sum / n), 0.003);
+    EXPECT_LE(largest / brightest, 0.005);
+}
+
+TEST(DiscontinuityMesh, ItsBitsDoNotDependOnThreads) {
+    const Scene scene = built_scene("chair");
+    set_threads(1);
+    const Solution one = meshed(scene, 0.02);
+    set_threads(3);
+    const Solution three = meshed(scene, 0.02);
+    set_threads(0);
+    EXPECT_EQ(one.discontinuity.values, three.discontinuity.values);
+    EXPECT_EQ(one.discontinuity.nodes, three.discontinuity.nodes);
+    EXPECT_EQ(one.interpolant.values, three.interpolant.values);
+}
+
+TEST(DiscontinuityMesh, HoldsReflectedLightToo) {
+    const Scene scene = box_scene(1, 1, 1, 0.5, 1, 1);  // a furnace: E = 2 everywhere
+    const Solution s = solved(scene, {.method = Method::discontinuity, .error = 0.02});
+    ASSERT_FALSE(s.discontinuity.empty());
+    for (const auto& value : s.discontinuity.values) EXPECT_NEAR(value[0], 2, 0.1);
+}
+
+TEST(DiscontinuityMesh, TheThesissTriangulationsHoldTheErrorAndLoseNoArea) {
+    const Scene scene = built_scene("table");
+    double all = 0;
+    for (const Region& region : scene.regions()) all += region.area;
+    for (const TriangulationScheme scheme :
+         {TriangulationScheme::longest, TriangulationScheme::shortest, TriangulationScheme::heuristic}) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.02};
+        options.discontinuity.triangulation = scheme;
+        options.discontinuity.premesh = Premesh::coarse;
+        const Solution s = solved(scene, options);
+        double area = 0;
+        for (std::uint32_t t = 0; t < s.discontinuity.size(); ++t) area += s.discontinuity.area(t);
+        EXPECT_NEAR(area, all, 1e-9 * all);
+        EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.02);
+        EXPECT_GT(s.statistics.figures.at("winged_edge_bytes"), 0);
+        EXPECT_GT(s.statistics.figures.at("dm_tree_bytes"), 0);
+    }
+}
+
+TEST(DiscontinuityMesh, RefinedTrianglesHaveABetterShapeAndHoldTheErrorToo) {
+    const Scene scene = built_scene("table");
+    double all = 0;
+    for (const Region& region : scene.regions()) all += region.area;
+    SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
+    const Solution plain = solved(scene, options);
+    options.discontinuity.quality = MeshQuality::delaunay;
+    const Solution refined = solved(scene, options);
+    double area = 0;
+    for (std::uint32_t t = 0; t < refined.discontinuity.size(); ++t) area += refined.discontinuity.area(t);
+    EXPECT_NEAR(area, all, 1e-9 * all);
+    EXPECT_LE(*refined.statistics.relative_error_estimate_interpolant, 0.01);
+    constexpr double rounder = 1.2;
+    EXPECT_GT(refined.discontinuity.mean_radius_ratio(), rounder * plain.discontinuity.mean_radius_ratio());
+}
+
+/// Of E at places uniform in area, relative to the mean and to the largest value.
+struct MeshError {
+    double rms = 0, largest = 0;
+};
+MeshError error_of(const Solution& s) {
+    const RadiosityFunction light(s);
+    const std::vector<ProbePoint> points = points_uniform_in_area(s.scene, 2000, 7);
+    const std::vector<Light> exact = light.at(points), held = light.interpolant_at(points);
+    double sum = 0, square = 0, largest = 0, brightest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double e = exact[i].irradiance[0], d = held[i].irradiance[0] - e;
+        sum += e, square += d * d;
+        largest = std::max(largest, std::abs(d)), brightest = std::max(brightest, e);
+    }
+    const auto n = static_cast<double>(points.size());
+    return {std::sqrt(square / n) / (sum / n), largest / brightest};
+}
+
+TEST(DiscontinuityMesh, CloughAndTochersElementsHoldTheErrorAskedFor) {
+    for (const char* name : {"boxes", "table"}) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.003};
+        options.discontinuity.element = MeshElement::clough_tocher;
+        const Solution s = solved(built_scene(name), options);
+        EXPECT_TRUE(s.discontinuity.is_clough_tocher());
+        EXPECT_EQ(s.statistics.basis, "clough-tocher");
+        EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.003);
+        const MeshError error = error_of(s);
+        EXPECT_LE(error.rms, 0.003);
+        EXPECT_LE(error.largest, 0.006);
+        // The scene is open, and what escapes is told by few rays: flux is compared with that of quadratic elements.
+        options.discontinuity.element = MeshElement::quadratic;
+        const double quadratic = solved(built_scene(name), options).statistics.energy.absorbed;
+        EXPECT_NEAR(s.statistics.energy.absorbed, quadratic, 0.003 * quadratic);
+    }
+}
+
+TEST(DiscontinuityMesh, LayersOfSourcesHoldTheErrorAskedForWithReflectionsToo) {
+    for (const int bounces : {0, -1}) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = bounces, .error_interpolant = 0.02};
+        options.discontinuity.layers = true;
+        const Solution s = solved(built_scene("boxes", {{"lights", "2"}}), options);
+        ASSERT_EQ(layers_of(s).sources.size(), 2u);
+        ASSERT_FALSE(s.discontinuity.empty());
+        EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.02);
+        EXPECT_LE(error_of(s).rms, 0.02);
+        EXPECT_GT(s.statistics.figures.at("layer_bytes"), 0);
+        EXPECT_LT(2 * s.statistics.figures.at("layer_bytes"), s.statistics.figures.at("winged_edge_bytes"));
+        // The one mesh that files hold is that of --layers off.
+        Solution merged = s;
+        merged.layers = {};
+        EXPECT_LE(error_of(merged).rms, 0.02);
+    }
+}
+
+TEST(DiscontinuityMesh, BendsOfWeakSourcesHaveLinesWhereTheirHalfShadowsAreNarrow) {
+    // A second lamp brings 1 to 5 times the largest error: its shadow's edges are turned against its own.
+    const auto curves_of_second = [](double side) {
+        const double c = std::cos(0.5), d = std::sin(0.5), h = 0.5 * side, exitance = 16 / (side * side);
+        const auto at = [&](double x, double y) { return Point{x * c - y * d, x * d + y * c, 0.7}; };
+        const Scene scene =
+            test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                        {{at(-0.5, -0.5), at(0.5, -0.5), at(0.5, 0.5), at(-0.5, 0.5)}, 0},
+                        {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100},
+                        {{{1.2 - h, h, 1.8}, {1.2 + h, h, 1.8}, {1.2 + h, -h, 1.8}, {1.2 - h, -h, 1.8}}, exitance}});
+        const auto& curves = meshed(scene, 0.02).discontinuity.curves;
+        return std::count_if(curves.begin(), curves.end(), [](const DiscontinuityCurve& curve) {
+            return curve.source == RegionId(3) && curve.region == RegionId(0) && curve.order == CurveOrder::d2;
+        });
+    };
+    EXPECT_GE(curves_of_second(0.02), 8);  // from each of the lamp's corners, along two edges at least
+    EXPECT_EQ(curves_of_second(0.4), 0);   // elements as small as it is wide hold a wide one
+}
+
+TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightWhereItIsAskedTo) {
+    // A mirror-bright wall beside the blocker throws its light onto the floor, past the blocker.
+    const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
+                                    {{{-0.5, -0.5, 0.7}, {0.5, -0.5, 0.7}, {0.5, 0.5, 0.7}, {-0.5, 0.5, 0.7}}, 0},
+                                    {{{-2, 2, 0.5}, {2, 2, 0.5}, {2, 2, 3}, {-2, 2, 3}}, 0},
+                                    {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100}});
+    SolveOptions options{.method = Method::discontinuity, .error = 0.1, .error_interpolant = 0.05};
+    options.discontinuity.sources = SecondarySources{.count = 2};
+    const Solution s = solved(scene, options);
+    EXPECT_EQ(s.statistics.figures.at("secondary_sources"), 2);
+    EXPECT_GT(s.statistics.figures.at("secondary_curves"), 0);
+    const auto of_wall = [](const DiscontinuityCurve& c) { return c.source == RegionId(2); };
+    EXPECT_TRUE(std::any_of(s.discontinuity.curves.begin(), s.discontinuity.curves.end(), of_wall));
+}
+
+}  // namespace
+}  // namespace exitance

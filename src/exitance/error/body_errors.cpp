@@ -1,0 +1,251 @@
+#include "exitance/error/body_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/processes/distributed.hpp"
+
+namespace exitance {
+
+/// The smallest error that is told from noise, in errors requested.
+constexpr double resolved_errors = 1.5;  // given by the warning at 3: half of it
+
+void BodyMeasure::add(double weight, double squared, double reflected, double light_of_room) {
+    ++points_, weight_ += weight, squared_ += weight * squared;
+    reflected_ += weight * reflected, light_ += weight * light_of_room;
+    ww_ += weight * weight, wws_ += weight * weight * squared, wwss_ += weight * weight * squared * squared;
+}
+
+double BodyMeasure::standard_error() const {
+    if (points_ < 2 || weight_ <= 0) return 0;
+    const double m = mean_square(), n = static_cast<double>(points_);
+    const double spread = std::max(0.0, wwss_ - 2 * m * wws_ + m * m * ww_);  // of w (s - m)
+    return std::sqrt(spread * n / (n - 1)) / weight_;
+}
+
+double BodyMeasure::reference() const {
+    constexpr double least_share =
+        0.1;  // given by the norm of errors by part, of the room's light: a dark body counts as bright as this
+    return weight_ > 0 ? std::max(mean_reflected(), least_share * light_ / weight_) : 0;
+}
+
+std::optional<double> BodyMeasure::error(double requested) const {
+    const double relative_to = reference();
+    if (points_ < min_points || relative_to <= 0) return {};
+    const double hidden = std::pow(resolved_errors * requested * relative_to, 2);
+    if (standard_error() > std::max(0.5 * mean_square(), hidden)) return {};
+    return std::sqrt(std::max({mean_square(), standard_error(), 0.0})) / relative_to;
+}
+
+double BodyMeasure::suspected() const {
+    const double relative_to = reference();
+    return relative_to > 0 ? std::sqrt(std::max(0.0, mean_square() + standard_error())) / relative_to : 0;
+}
+
+namespace {
+
+/// The leaves of every body on sides that are not left out; none of bodies that reflect nothing.
+std::vector<std::vector<ElementId>> leaves_of_bodies(const BodyCheck& c) {
+    std::vector<std::vector<ElementId>> out(c.bodies.all.size());
+    for (ElementId e : c.indirect.tree.leaves()) {
+        const RegionId region = c.indirect.tree.region(e);
+        if (!c.stage.is_left_out(region) && max(c.stage.scene.material(region).reflectance) > 0)
+            out[c.bodies.of(c.stage.scene, region)].push_back(e);
+    }
+    return out;
+}
+
+/// A point on a body, and what it is measured by.
+struct BodyPoint {
+    WeightedSample place;
+    std::uint32_t body;
+    CheckPlan plan;
+    unsigned rays;
+    std::uint64_t key;
+};
+
+class BodySurvey {
+  public:
+    BodySurvey(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room, double error,
+               std::size_t max_rays)
+        : c_(check),
+          light_of_room_(light_of_room),
+          error_(error),
+          left_(max_rays),
+          leaves_(leaves_of_bodies(check)),
+          measured_(check.bodies.all.size()),
+          is_known_(check.bodies.all.size(), false),
+          is_unknown_(check.bodies.all.size(), false) {}
+
+    void look_at_all();
+    void look_closely();
+    std::vector<BodyError> errors() const;
+    std::vector<PointError> close_points() const { return close_points_; }
+    std::size_t rays_left() const { return left_; }
+
+  private:
+    /// `requested`: the error, W/m^2.
+    CheckPlan plan(std::span<const PilotPlace> at, std::uint64_t name, double requested) const {
+        return plan_check(c_.check, c_.stage, c_.b, at, name, {certificate_rays(0) * requested * requested});
+    }
+    std::vector<PilotPlace> pilots(std::uint32_t body, std::size_t count, std::uint64_t name) const;
+    std::size_t work(const CheckPlan& plan, unsigned rays, std::size_t points) const;
+    std::vector<ResidualSample> measure(std::span<const BodyPoint> points) const;
+    std::vector<PointError> add(std::span<const BodyPoint> points);
+    bool look_closely_at(std::uint32_t body);
+
+    const BodyCheck& c_;
+    const std::function<double(std::size_t)>& light_of_room_;
+    double error_;
+    std::size_t left_;  ///< Rays.
+    std::vector<std::vector<ElementId>> leaves_;
+    std::vector<BodyMeasure> measured_;
+    std::vector<PointError> close_points_;
+    std::vector<bool> is_known_;    ///< The bodies that were looked at closely,
+    std::vector<bool> is_unknown_;  ///< and those that would have needed it.
+};
+
+std::vector<PilotPlace> BodySurvey::pilots(std::uint32_t body, std::size_t count, std::uint64_t name) const {
+    std::vector<PilotPlace> out;
+    for (const WeightedSample& p : places_on_body(c_.indirect.tree, leaves_[body], count, name))
+        out.push_back(
+            {{c_.indirect.tree.patch(p.place.element).at(p.place.uv), c_.indirect.tree.region(p.place.element)},
+             p.weight});
+    return out;
+}
+
+/// Rays of two halves at so many points, with those of checks.
+std::size_t BodySurvey::work(const CheckPlan& plan, unsigned rays, std::size_t points) const {
+    return static_cast<std::size_t>(2.0 * rays * static_cast<double>(points) * (1 + plan.work));
+}
+
+std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> points) const {
+    std::vector<ResidualSample> out(points.size());
+    shared_ranges(
+        points.size(), 4,
+        [&](std::size_t begin, std::size_t end) {
+            ResidualSampler::Workspace w;
+            for (std::size_t i = begin; i < end; ++i) {
+                const BodyPoint& p = points[i];
+                c_.sampler.locate(p.place, out[i], w);
+                out[i].r1 = c_.sampler.by_rays(out[i], p.plan, p.rays, hash(p.key, 1), w);
+                out[i].r2 = c_.sampler.by_rays(out[i], p.plan, p.rays, hash(p.key, 2), w);
+            }
+        },
+        [&](std::size_t i) -> ResidualSample& { return out[i]; }, {"certificate"});
+    return out;
+}
+
+/// Measures points, and returns their errors by the light of their rooms.
+std::vector<PointError> BodySurvey::add(std::span<const BodyPoint> points) {
+    const std::vector<ResidualSample> found = measure(points);
+    std::vector<PointError> out;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const ResidualSample& s = found[i];
+        const double squared = mean((s.r1 + c_.late[s.leaf]) * (s.r2 + c_.late[s.leaf])),
+                     light = light_of_room_(s.room);
+        measured_[points[i].body].add(1, squared, s.reflected, light);
+        out.push_back({s.surface, 1, squared / (light * light)});
+    }
+    return out;
+}
+
+void BodySurvey::look_at_all() {
+    constexpr std::size_t points = BodyMeasure::min_points;
+    constexpr std::size_t pilots_of_all = 64;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // of bodies, by chance
+    for (std::uint32_t b = 0; b < leaves_.size(); ++b)
+        if (!leaves_[b].empty()) order.emplace_back(hash(c_.seed, b), b);
+    std::sort(order.begin(), order.end());
+    const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 1);
+    std::vector<PilotPlace> at;
+    for (std::size_t k = 0; k < std::min(order.size(), pilots_of_all); ++k)
+        for (const PilotPlace& p :
+             pilots(order[k].second, std::max<std::size_t>(1, pilots_of_all / order.size()), name))
+            at.push_back({p.at, p.weight / static_cast<double>(std::min(order.size(), pilots_of_all))});
+    const CheckPlan usual = plan(at, name, error_ * light_of_room_(0));
+    std::vector<BodyPoint> todo;
+    for (const auto& [chance, body] : order) {
+        const std::vector<WeightedSample> places =
+            places_on_body(c_.indirect.tree, leaves_[body], points, hash(name, body));
+        // What errors are relative to follows from what is delivered.
+        BodyMeasure dark;
+        ResidualSampler::Workspace w;
+        for (const WeightedSample& place : places) {
+            ResidualSample s;
+            c_.sampler.locate(place, s, w);
+            dark.add(1, 0, s.reflected, light_of_room_(s.room));
+        }
+        const double allowed = resolved_errors * error_ * dark.reference();
+        if (allowed <= 0) continue;
+        const double noise = allowed * allowed * std::sqrt(static_cast<double>(points));
+        const unsigned rays = certificate_rays((usual.gather_variance + usual.variance) / noise);
+        if (work(usual, rays, points) > left_ / 2) continue;  // the rest is for those that seem worst
+        left_ -= work(usual, rays, points);
+        for (std::size_t i = 0; i < points; ++i) todo.push_back({places[i], body, usual, rays, hash(name, body, i)});
+    }
+    add(todo);
+}
+
+/// Returns false where the rays do not suffice.
+bool BodySurvey::look_closely_at(std::uint32_t body) {
+    constexpr std::size_t batch = 16, most_batches = 16;
+    constexpr double well_known = 0.25;  // given by an estimate within an eighth: standard error of the mean square, as
+                                         // its share: an eighth of the error
+    const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
+    // As many rays as make the noise of each half as large as the error seems, or as the one requested.
+    const BodyMeasure before = measured_[body];
+    const double requested = std::pow(error_ * before.reference(), 2);
+    const CheckPlan of_body = plan(pilots(body, 16, name), name, std::sqrt(requested));
+    const double seems = std::max(requested, before.mean_square());
+    const unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / seems);
+    measured_[body] = {};
+    for (std::size_t k = 0; k < most_batches; ++k) {
+        if (work(of_body, rays, batch) > left_) break;
+        left_ -= work(of_body, rays, batch);
+        std::vector<BodyPoint> todo;
+        for (const WeightedSample& place : places_on_body(c_.indirect.tree, leaves_[body], batch, hash(name, k)))
+            todo.push_back({place, body, of_body, rays, hash(name, k, todo.size())});
+        const std::vector<PointError> found = add(todo);
+        close_points_.insert(close_points_.end(), found.begin(), found.end());
+        const BodyMeasure& now = measured_[body];
+        if (now.standard_error() <= well_known * std::max(now.mean_square(), requested)) break;
+    }
+    is_known_[body] = measured_[body].points() >= BodyMeasure::min_points;
+    if (!is_known_[body]) measured_[body] = before;
+    return is_known_[body];
+}
+
+void BodySurvey::look_closely() {
+    for (std::size_t round = 0; round < measured_.size(); ++round) {
+        std::optional<std::uint32_t> worst;
+        for (std::uint32_t b = 0; b < measured_.size(); ++b)
+            if (!is_unknown_[b] && (!worst || measured_[b].suspected() > measured_[*worst].suspected())) worst = b;
+        if (!worst || is_known_[*worst] || measured_[*worst].suspected() <= 0) return;
+        is_unknown_[*worst] = !look_closely_at(*worst);
+    }
+}
+
+std::vector<BodyError> BodySurvey::errors() const {
+    std::vector<BodyError> out;
+    for (std::size_t b = 0; b < measured_.size(); ++b) {
+        const SceneBody& body = c_.bodies.all[b];
+        const BodyMeasure& found = measured_[b];
+        out.push_back({body.surfaces, body.area, found.mean_reflected(),
+                       is_unknown_[b] ? std::nullopt : found.error(error_), found.points(), body.first});
+    }
+    std::stable_sort(out.begin(), out.end(), [](const BodyError& a, const BodyError& b) { return a.area > b.area; });
+    return out;
+}
+
+}  // namespace
+
+MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
+                              double error, std::size_t max_rays) {
+    BodySurvey survey(check, light_of_room, error, max_rays);
+    survey.look_at_all();
+    survey.look_closely();
+    return {survey.errors(), survey.close_points(), max_rays - survey.rays_left()};
+}
+
+}  // namespace exitance

@@ -1,0 +1,450 @@
+#include "exitance/error/certificate.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/error/batch_mean.hpp"
+#include "exitance/error/body_errors.hpp"
+#include "exitance/error/error_tail.hpp"
+#include "exitance/error/late_paths.hpp"
+#include "exitance/error/mean_residuals.hpp"
+#include "exitance/error/residual_samples.hpp"
+#include "exitance/error/surface_errors.hpp"
+#include "exitance/processes/distributed.hpp"
+#include "exitance/transport/narrow_places.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+namespace {
+
+/// b + rho H b + (rho H)^2 b + ..., on the coarse mesh.
+std::vector<Spectrum> respond(const RadiositySystem& system, double residual) {
+    std::vector<Spectrum> b(system.rhs.begin(), system.rhs.end());
+    solve_radiosity(system, Relaxation::gmres, b, {.residual = residual, .max_iterations = 200});
+    return b;
+}
+
+double largest(const std::vector<Spectrum>& values) {
+    double out = 1;
+    for (const Spectrum& v : values) out = std::max(out, max(v));
+    return out;
+}
+
+/// What is missing makes bounds too small.
+double constant_residual() {
+    return 0.5 * calibrated::refined_residual;
+}
+
+/// Irradiance w = first + H rho w of light that arrives first, by way of rho w = rho first + rho H (rho w).
+std::vector<Spectrum> irradiance_of(std::span<const Spectrum> first, const RayRows& H, std::span<const Spectrum> rho,
+                                    std::span<const double> area) {
+    std::vector<Spectrum> reflected, w(rho.size());
+    for (std::size_t i = 0; i < rho.size(); ++i) reflected.push_back(rho[i] * first[i]);
+    H.gather(respond({H, rho, reflected, area}, constant_residual()), w);
+    for (std::size_t i = 0; i < w.size(); ++i) w[i] += first[i];
+    return w;
+}
+
+/// A bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit light;
+/// that of the adjoint is `w`.
+double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area,
+                      const std::vector<Spectrum>& w) {
+    const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
+    return std::sqrt(largest(respond({H, rho, ones, area}, constant_residual())) * largest(w));
+}
+
+}  // namespace
+
+struct Certifier::Content {
+    const Stage& stage;
+    const GlobalLight& light;
+    const ElementFunction& indirect;
+    const ReflectedLight& b;
+    CertificateOptions options;
+    double mean_reflected, constant = 1;
+    std::optional<ElementLocator> own_coarse;
+    const ElementLocator& coarse;
+    std::vector<Spectrum> rho;
+    std::vector<double> area;
+    RayRows H;                       ///< Between the leaves of `light`;
+    std::optional<RayRows> other_H;  ///< by other rays, where there are several rooms.
+    std::vector<Spectrum> even;      ///< Irradiance of light that arrives everywhere, in every room as much as its own.
+    std::size_t looks = 0;
+    std::vector<ResidualSample> samples;  ///< Of all looks.
+    std::vector<Spectrum>
+        late;  ///< The smooth part of the error, by leaf number of the coarse mesh, as of the last one.
+    Field<ElementId, std::uint8_t> narrow;  ///< Leaves of the delivered function.
+    PathTracer paths;
+    DirectCheck check;
+    CheckPlan plan;  ///< Chosen before the first look.
+
+    Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
+            const CertificateOptions& options_)
+        : stage(stage_),
+          light(light_),
+          indirect(indirect_),
+          b(b_),
+          options(options_),
+          mean_reflected(light.mean_reflected(stage.area)),
+          coarse(options.coarse ? *options.coarse : own_coarse.emplace(light.tree, stage.scene.regions().size())),
+          rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
+          area(leaf_areas(light.tree, light.numbering)),
+          H(rows(options.seed + 1)),
+          paths(stage),
+          check(stage, paths, options.projected, point_accuracy(options.error)) {
+        if (stage.rooms.count() > 0) other_H.emplace(rows(hash(options.seed + 1)));
+        share_on_node(std::span(rho)), share_on_node(std::span(area));
+        if (mean_reflected <= 0) return;
+        const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
+        even = irradiance_of(ones, H, rho, area);
+        constant = error_constant(H, rho, area, even);
+        if (!options.light_in.empty()) even = irradiance_of(light_of_rooms(), H, rho, area);
+        if (options.places.empty()) narrow = find_narrow_leaves(stage, indirect.tree);
+    }
+
+    RayRows rows(std::uint64_t seed) const {
+        return {stage, light.tree,          light.numbering,   coarse, {.average = 16, .least = 8, .most = 64},
+                seed,  Dealing::by_element, RowsHeld::by_owner};
+    }
+    std::vector<Spectrum> light_of_rooms() const;
+    ResidualSampler sampler() const { return {stage, indirect, b, check, options, constant, coarse, light.numbering}; }
+    /// Of a room, W/m^2: what errors in it are relative to.
+    double light_of_room(std::size_t room) const {
+        return options.light_in.empty() ? mean_reflected : options.light_in[room] * mean_reflected;
+    }
+    void plan_checks(std::span<const WeightedSample> places);
+    void measure_residuals();
+    void tell_p99(Certificate& out);
+    void look_at_bodies(Certificate& out);
+    void check_late(Certificate& out);
+    std::vector<Spectrum> mean_residuals(double first) const;
+    std::vector<Spectrum> response_to(double first, const RayRows& rows) const;
+    std::vector<Spectrum> late_response() const;
+    void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
+    Certificate judge();
+    void judge_rooms(Certificate& out);
+    std::vector<double> mean_by_room() const;
+    std::vector<RoomError> rooms;
+    std::vector<BodyError> bodies;        ///< The largest first.
+    std::vector<PointError> body_points;  ///< Where bodies were measured by points of their own.
+};
+
+/// Of every leaf of the coarse mesh, the light of its room by the mean light.
+std::vector<Spectrum> Certifier::Content::light_of_rooms() const {
+    std::vector<Spectrum> out;
+    for (ElementId e : light.numbering.leaves) out.emplace_back(options.light_in[stage.rooms.of(light.tree, e)]);
+    return out;
+}
+
+/// Chooses how hits are checked, by a pilot at some of the places of the first look.
+void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
+    constexpr std::size_t pilots = 64;
+    std::vector<PilotPlace> at;
+    const std::size_t step = std::max<std::size_t>(1, places.size() / pilots);
+    for (std::size_t k = step / 2; k < places.size(); k += step) {
+        const ElementTree::Place& place = places[k].place;
+        at.push_back(
+            {{indirect.tree.patch(place.element).at(place.uv), indirect.tree.region(place.element)}, places[k].weight});
+    }
+    // Noise as large as the error requested does no harm: that of hundreds of points is averaged. Sums have no other.
+    const double resolved = (options.summed ? 0.5 : 1) * options.error * mean_reflected;
+    const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : certificate_rays(0);
+    plan = plan_check(check, stage, b, at, hash(options.seed, 3), {rays * resolved * resolved, !options.summed});
+}
+
+/// Mean reflected radiosity of every room as the method found it, W/m^2; one entry where all is one room.
+std::vector<double> Certifier::Content::mean_by_room() const {
+    if (stage.rooms.count() == 0) return {mean_reflected};
+    std::vector<double> out(stage.rooms.count());
+    for (std::size_t i = 0; i < light.reflected.size(); ++i) {
+        const std::size_t room = stage.rooms.of(light.tree, light.numbering.leaves[i]);
+        out[room] += area[i] * mean(light.reflected[i]) / stage.rooms.area(room);
+    }
+    return out;
+}
+
+/// One more look: the residual at stratified points, twice each.
+void Certifier::Content::measure_residuals() {
+    const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
+    const std::vector<WeightedSample> places = options.places.empty()
+                                                   ? stratified_places(stage, indirect.tree, narrow, options, seed)
+                                                   : in_turn(options.places, options.points);
+    const std::size_t before = samples.size();
+    samples.resize(before + places.size());
+    const ResidualSampler sampler = this->sampler();
+    if (looks == 0) plan_checks(places);
+    sampler.measure(places, plan, seed, std::span(samples).subspan(before));
+    ++looks;
+}
+
+/// The mean residual of each leaf of the coarse mesh; `first`: the share of the first of the two gathers of every
+/// sample.
+std::vector<Spectrum> Certifier::Content::mean_residuals(double first) const {
+    // A region in several rooms is one in each.
+    const std::size_t regions = stage.scene.regions().size(), rooms = std::max<std::size_t>(1, stage.rooms.count());
+    std::vector<LeafResidual> known;
+    for (const ResidualSample& s : samples)
+        known.push_back({s.leaf, static_cast<std::uint32_t>(s.room * regions + s.region.value),
+                         s.weight * static_cast<double>(options.points), first * s.r1 + (1 - first) * s.r2});
+    std::vector<std::uint32_t> group_of_leaf;
+    for (ElementId e : light.numbering.leaves)
+        group_of_leaf.push_back(
+            static_cast<std::uint32_t>(stage.rooms.of(light.tree, e) * regions + light.tree.region(e).value));
+    return exitance::mean_residuals(light.tree, light.numbering, group_of_leaf, regions * rooms, known);
+}
+
+/// Corrects errors of B by what is certain of them: where all that is emitted is absorbed, and of the delivered light
+/// as much, the error dE of irradiance has int (1 - rho) dE dA = 0. Samples tell a mean residual with noise that a
+/// bright room's many reflections make larger than the error; so as much residual is added everywhere alike as makes it
+/// right; in rooms of different light by this, as the noise is.
+void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const {
+    std::vector<Spectrum> arriving(rho.size());
+    H.gather(errors, arriving);
+    Spectrum wrong, by_even;
+    for (std::size_t i = 0; i < rho.size(); ++i)
+        for (std::size_t band = 0; band < bands; ++band) {
+            const double r = rho[i][band], absorbed = area[i] * (1 - r);
+            wrong[band] += absorbed * (arriving[i][band] + (r > 0 ? residuals[i][band] / r : 0));
+            by_even[band] += absorbed * even[i][band];
+        }
+    for (std::size_t band = 0; band < bands; ++band) {
+        if (!(by_even[band] > 0)) continue;
+        const double more = wrong[band] / by_even[band];
+        for (std::size_t i = 0; i < rho.size(); ++i) errors[i][band] -= more * rho[i][band] * even[i][band];
+    }
+}
+
+/// The coarse response to the mean residuals, less those themselves; `first`: the share of the first of the two gathers
+/// of every sample, 0.5 of both alike.
+std::vector<Spectrum> Certifier::Content::response_to(double first, const RayRows& rows) const {
+    const std::vector<Spectrum> rhs = mean_residuals(first);
+    std::vector<Spectrum> response = respond({rows, rho, rhs, area}, calibrated::refined_residual);
+    if (options.keeps_flux && !options.summed) balance(rhs, response);  // sums have no noise to correct
+    for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
+    return response;
+}
+
+/// The smooth part of the error, by leaf number of the coarse mesh. The responses to both gathers have it in common,
+/// and noise of their rays apart: in every room the mean of both is made as large as what they agree on, in the mean
+/// square.
+std::vector<Spectrum> Certifier::Content::late_response() const {
+    // Light of a lighter room has to be told from noise in a darker one; where all is one room, means say enough.
+    if (options.summed || stage.rooms.count() == 0) return response_to(0.5, H);
+    std::vector<Spectrum> one = response_to(1, H);
+    const std::vector<Spectrum> other = response_to(0, *other_H);
+    const std::size_t count = stage.rooms.count();
+    std::vector<double> agreed(count), all(count);
+    std::vector<std::size_t> room(one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        room[i] = stage.rooms.of(light.tree, light.numbering.leaves[i]);
+        agreed[room[i]] += area[i] * mean(one[i] * other[i]);
+        one[i] = 0.5 * (one[i] + other[i]);
+        all[room[i]] += area[i] * mean(one[i] * one[i]);
+    }
+    for (std::size_t i = 0; i < one.size(); ++i)
+        one[i] *= all[room[i]] > 0 ? std::sqrt(std::clamp(agreed[room[i]] / all[room[i]], 0.0, 1.0)) : 0.0;
+    return one;
+}
+
+/// Every room by itself; parts of the residual are then those of the rooms, each by what it may have.
+void Certifier::Content::judge_rooms(Certificate& out) {
+    const std::size_t count = stage.rooms.count();
+    const std::vector<double> found = mean_by_room();
+    if (count == 0) {
+        rooms = {{stage.area, found[0], out.estimate, mean_reflected}};
+        out.worst_room = out.of_rooms = out.estimate, out.room_uncertainty = out.uncertainty;
+        return;
+    }
+    std::vector<std::array<double, batches>> squares(count);
+    std::vector<double> weight(count), told(count), local(count), method(count);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const ResidualSample& s = samples[k];
+        squares[s.room][k % batches] += s.weight * batches * s.squared;
+        weight[s.room] += s.weight;
+        if (!s.tells_local) continue;
+        told[s.room] += s.weight;
+        local[s.room] += s.weight * mean(s.local1 * s.local2);
+        method[s.room] += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
+    }
+    rooms.clear();
+    double all = 0, all_local = 0, all_method = 0;
+    for (std::size_t room = 0; room < count; ++room) {
+        const double light_there = options.light_in[room] * mean_reflected;
+        for (double& square : squares[room]) square /= weight[room] > 0 ? weight[room] : 1;
+        const BatchMean error(squares[room]);
+        const double estimate = std::sqrt(std::max(error.mean, error.standard_error)) / light_there;
+        rooms.push_back({stage.rooms.area(room), found[room], estimate, light_there});
+        if (estimate > out.worst_room) {
+            out.worst_room = estimate;
+            out.room_uncertainty = 0.5 * error.standard_error / (estimate * light_there * light_there);
+        }
+        const double allowed = options.allowed_in[room] * mean_reflected, by_allowed = light_there / allowed;
+        const auto relative = [&](double sum) { return told[room] > 0 ? sum / told[room] / (allowed * allowed) : 0; };
+        const double share = 1 / static_cast<double>(count);
+        all += share * estimate * estimate * by_allowed * by_allowed;
+        all_local += share * std::max(0.0, relative(local[room]));
+        all_method += share * std::max(0.0, relative(method[room]));
+    }
+    out.of_rooms = std::sqrt(all);
+    out.local = std::sqrt(all_local), out.method = std::sqrt(all_method);
+}
+
+Certificate Certifier::Content::judge() {
+    Certificate out{.constant = constant,
+                    .mean_reflected = mean_reflected,
+                    .points = samples.size(),
+                    .rays = H.rays() + (other_H ? other_H->rays() : 0)};
+    late = late_response();
+    std::array<double, batches> residual_squared{}, error_squared{};
+    double local_squared = 0, method_squared = 0, told = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        ResidualSample& s = samples[k];
+        const double weight = s.weight / static_cast<double>(looks);
+        residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
+        s.squared = mean((s.r1 + late[s.leaf]) * (s.r2 + late[s.leaf]));
+        error_squared[k % batches] += weight * batches * s.squared;
+        if (s.tells_local) {
+            told += weight;
+            local_squared += weight * mean(s.local1 * s.local2);
+            method_squared += weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
+        }
+        out.rays += s.rays;
+    }
+    const BatchMean residual(residual_squared), error(error_squared);
+    const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
+    out.residual = std::sqrt(std::max(0.0, residual.mean)) / mean_reflected;
+    if (options.gathered) {
+        out.local = std::sqrt(std::max(0.0, local_squared / told)) / mean_reflected;
+        out.method = std::sqrt(std::max(0.0, method_squared / told)) / mean_reflected;
+    }
+    // Less than its own uncertainty cannot be claimed.
+    out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
+    out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
+    out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
+    judge_rooms(out);
+    return out;
+}
+
+/// Every body by points of its own; where there is only one, it is the whole.
+void Certifier::Content::look_at_bodies(Certificate& out) {
+    if (!options.bodies || !options.places.empty()) return;
+    if (options.bodies->all.size() == 1) {
+        const SceneBody& body = options.bodies->all[0];
+        bodies = {{body.surfaces, body.area, mean_reflected, out.estimate, samples.size(), body.first}};
+    } else {
+        const BodyCheck body_check{stage, indirect, b, check, sampler(), *options.bodies, late, options.seed};
+        const auto light = [&](std::size_t room) { return light_of_room(room); };
+        MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
+        bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;
+    }
+    for (const BodyError& body : bodies)
+        if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);
+}
+
+/// Adds what the coarse response misses, as far as paths tell it for certain.
+void Certifier::Content::check_late(Certificate& out) {
+    if (options.bounces >= 0 || options.summed || !options.places.empty()) return;
+    const LatePaths by_paths(stage, indirect, b, check, options.direct_in_elements);
+    const LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
+    out.rays += misfit.rays;
+    if (misfit.mean_square <= 2 * misfit.standard_error) return;
+    const double more = std::sqrt(misfit.mean_square) / mean_reflected;
+    out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
+}
+
+void Certifier::Content::tell_p99(Certificate& out) {
+    constexpr double share = 0.01;  // given by the name
+    constexpr unsigned most_rays = 1 << 14;
+    std::vector<WeightedError> points;
+    std::vector<unsigned> rays;
+    double mean_square = 0;
+    for (const ResidualSample& s : samples) {
+        const double weight = s.weight / static_cast<double>(looks);
+        points.push_back({rms_over_bands(0.5 * (s.r1 + s.r2) + late[s.leaf]), weight});
+        rays.push_back(s.rays);
+        mean_square += weight * s.squared;
+    }
+    if (options.summed) {
+        out.p99 = error_below(points, {}, share) / mean_reflected;
+        return;
+    }
+    const ResidualSampler sampler = this->sampler();
+    const auto by_more_rays = [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
+        const auto rays_at = [&](std::size_t i) { return std::min(most_rays, factor * samples[i].rays / 2); };
+        for (std::size_t i : which) out.rays += 2 * rays_at(i);
+        shared_ranges(
+            which.size(), 1,
+            [&](std::size_t begin, std::size_t end) {
+                ResidualSampler::Workspace workspace;
+                for (std::size_t k = begin; k < end; ++k) {
+                    const ResidualSample& s = samples[which[k]];
+                    for (std::uint64_t half = 0; half < 2; ++half) {
+                        const std::uint64_t key =
+                            hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);
+                        error[k][half] = late[s.leaf] + sampler.by_rays(s, plan, rays_at(which[k]), key, workspace);
+                    }
+                }
+            },
+            [&](std::size_t k) -> TwoErrors& { return error[k]; }, {"certificate"});
+    };
+    out.p99 = error_below(points, rays, mean_square, share, by_more_rays) / mean_reflected;
+}
+
+Certifier::Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
+                     const ReflectedLight& b, const CertificateOptions& options)
+    : content_(std::make_unique<Content>(stage, light, indirect, b, options)) {}
+Certifier::~Certifier() = default;
+
+const std::vector<RoomError>& Certifier::rooms() const {
+    return content_->rooms;
+}
+
+std::vector<FaceError> Certifier::surface_errors() const {
+    const Content& c = *content_;
+    if (c.rooms.empty()) return {};
+    const Scene& scene = c.stage.scene;
+    // Points of a body that was looked at closely check direct light at more hits: where they suffice, they replace the
+    // others of a face.
+    std::vector<PointError> points = c.body_points;
+    Field<SurfaceId, std::size_t> close(scene.surfaces().size(), 0);
+    for (const PointError& p : points) ++close[p.surface];
+    std::erase_if(points, [&](const PointError& p) { return close[p.surface] < BodyMeasure::min_points; });
+    for (const ResidualSample& s : c.samples) {
+        if (close[s.surface] >= BodyMeasure::min_points) continue;
+        const double light_there = c.rooms[s.room].reference;
+        points.push_back({s.surface, s.weight, s.squared / (light_there * light_there)});
+    }
+    std::vector<double> of_rooms;
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const RegionId region = scene.surfaces()[s].region;
+        const bool is_one = c.stage.rooms.count() == 0;
+        of_rooms.push_back(c.rooms[is_one ? 0 : c.stage.rooms.at(region, centroid(scene.outline(s)))].error);
+    }
+    return exitance::surface_errors(points, of_rooms);
+}
+
+Certificate Certifier::look() {
+    if (content_->mean_reflected <= 0) return {};
+    content_->measure_residuals();
+    return content_->judge();
+}
+
+void Certifier::look_at_bodies(Certificate& certificate) {
+    if (content_->samples.empty()) return;
+    content_->look_at_bodies(certificate);
+    content_->check_late(certificate);
+}
+
+const std::vector<BodyError>& Certifier::bodies() const {
+    return content_->bodies;
+}
+
+void Certifier::tell_p99(Certificate& certificate) {
+    if (!content_->samples.empty()) content_->tell_p99(certificate);
+}
+
+}  // namespace exitance

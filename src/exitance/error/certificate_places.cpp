@@ -1,0 +1,87 @@
+#include "exitance/error/certificate_places.hpp"
+
+#include "exitance/calibration/numbers.hpp"
+
+namespace exitance {
+namespace {
+
+/// A number in [0, 1) moved towards both ends, where it is 1 / share as dense: elements are most wrong at their edges,
+/// beside corners and contacts, where light varies faster than any polynomial.
+struct TowardsEnds {
+    double at, share;
+
+    explicit TowardsEnds(double s) : at(s * s * (3 - 2 * s)), share(6 * s * (1 - s)) {}
+};
+
+}  // namespace
+
+std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
+                                              const Field<ElementId, std::uint8_t>& narrow,
+                                              const CertificateOptions& options, std::uint64_t seed) {
+    const Field<ElementId, LocalPassReport::Leaf>* const known = options.leaves;
+    const std::vector<ElementId> leaves = tree.leaves();
+    // Where rooms are judged apart, all are looked at alike, and errors count by what is allowed there.
+    const auto error_at = [&](ElementId e) {
+        const double allowed = options.allowed_in.empty() ? 1 : options.allowed_in[stage.rooms.of(tree, e)];
+        return std::pow(LocalPassReport::known(*known, tree, e).expected_error / allowed, 2);
+    };
+    double area = 0, error = 0, in_gaps = 0;
+    for (ElementId e : leaves) {
+        area += stage.counted_area(tree, e);
+        error += known ? stage.counted_area(tree, e) * error_at(e) : 0;
+        in_gaps += narrow[e] ? stage.counted_area(tree, e) : 0;
+    }
+    constexpr int of_left_out = 10;  // one of so many
+    const double mean_error = error / area;
+    const double share = calibrated::narrow_points;
+    const double of_narrow = in_gaps > 0 ? share / (1 - share) * area / in_gaps : 0;
+    const std::size_t count = options.points;
+    const auto density = [&](ElementId e) {
+        const double seldom = stage.is_left_out(tree.region(e)) ? 1.0 / of_left_out : 1;
+        const double expected = mean_error > 0 ? 0.5 + 0.5 * error_at(e) / mean_error : 1.0;
+        return seldom * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
+    };
+    double total = 0;
+    for (ElementId e : leaves) total += tree.area(e) * density(e);
+    const double share_of_all = total / stage.area;  // 1 where nothing is left out or narrow
+    const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
+    std::vector<WeightedSample> out;
+    double before = 0;
+    std::size_t leaf = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
+        const auto share_of = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
+        while (leaf + 1 < leaves.size() && before + share_of() <= wanted) before += share_of(), ++leaf;
+        const ElementId e = leaves[leaf];
+        const TowardsEnds s(points(k, 1)), t(points(k, 2));
+        out.push_back({{e, tree.uniform(e, s.at, t.at)},
+                       share_of_all * s.share * t.share / (density(e) * static_cast<double>(count))});
+    }
+    return out;
+}
+
+std::vector<WeightedSample> places_on_body(const ElementTree& tree, std::span<const ElementId> leaves,
+                                           std::size_t count, std::uint64_t seed) {
+    double total = 0;
+    for (ElementId e : leaves) total += tree.area(e);
+    const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
+    std::vector<WeightedSample> out;
+    double before = 0;
+    std::size_t leaf = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
+        while (leaf + 1 < leaves.size() && before + tree.area(leaves[leaf]) <= wanted)
+            before += tree.area(leaves[leaf++]);
+        out.push_back(
+            {{leaves[leaf], tree.uniform(leaves[leaf], points(k, 1), points(k, 2))}, 1 / static_cast<double>(count)});
+    }
+    return out;
+}
+
+std::vector<WeightedSample> in_turn(const std::vector<ElementTree::Place>& places, std::size_t count) {
+    std::vector<WeightedSample> out;
+    for (std::size_t k = 0; k < count; ++k) out.push_back({places[k % places.size()], 1 / static_cast<double>(count)});
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,172 @@
+#include "exitance/error/direct_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "exitance/processes/distributed.hpp"
+
+namespace exitance {
+
+DirectCheck::DirectCheck(const Stage& stage, const PathTracer& paths, const ProjectedDirect& projected,
+                         const LightAccuracy& accuracy)
+    : stage_(&stage), paths_(&paths), projected_(projected), accuracy_(accuracy) {}
+
+Spectrum DirectCheck::difference(bool is_exact, const HitPoint& hit, const Spectrum& projected, RandomStream& random,
+                                 ClusteredLight::Workspace& room) const {
+    const Normal& n = stage_->scene.regions()[hit.region].plane.n;
+    const Spectrum direct = is_exact ? stage_->clustered.at(hit.y, n, hit.region, accuracy_, room).irradiance
+                                     : paths_->step({hit.y, n, hit.region}, random).direct;
+    return projected_.weight * (direct - projected);
+}
+
+Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gather, std::uint64_t key,
+                              Workspace& room) const {
+    if (!has_projection() || gather.hits.empty()) return {};
+    RandomStream random(key, Stream::certificate);
+    room.hits.clear(), room.counts.clear();
+    for (std::size_t k = 0; k < gather.fronts.size(); ++k) {
+        const double q = probability(plan, gather.fronts[k]);
+        if (random.uniform() >= q) continue;
+        room.hits.push_back(gather.fronts[k]);
+        room.counts.push_back((gather.counts.empty() ? 1 : gather.counts[k]) / q);
+    }
+    room.projected.resize(room.hits.size());
+    projected_.irradiance->read(room.hits, room.projected);
+    Spectrum sum;
+    for (std::size_t k = 0; k < room.hits.size(); ++k) {
+        const Spectrum& rho = stage_->scene.material(room.hits[k].region).reflectance;
+        if (max(rho) <= 0) continue;
+        sum +=
+            room.counts[k] * (rho * difference(plan.is_exact, room.hits[k], room.projected[k], random, room.clustered));
+    }
+    return sum / static_cast<double>(gather.hits.size());
+}
+
+double DirectCheck::exact_work() const {
+    constexpr double diffuse = 5, directed = 100;
+    double out = 0;
+    for (const DirectLight::Emitter& emitter : stage_->direct.emitters())
+        out += emitter.radiance.is_directed() ? directed : diffuse;
+    return out;
+}
+
+double DirectCheck::probability(const CheckPlan& plan, const HitPoint& hit) const {
+    return plan.per_misfit > 0 ? std::min(1.0, plan.share + plan.per_misfit * misfit(hit)) : plan.share;
+}
+
+namespace {
+
+constexpr unsigned pilot_rays = 8;  // per place: enough for the spread between rays of one place
+
+/// One hit of a pilot's ray, with its terms in rho E, mean over bands.
+struct PilotHit {
+    double weight = 0;   ///< Of one ray in the mean over all rays.
+    double step = 0;     ///< Square of the difference by one step, (W/m^2)^2;
+    double exact = -1;   ///< exactly; below 0: not evaluated.
+    double misfit = 0;   ///< As the projection claims it, in rho E at the receiver, W/m^2.
+    double claimed = 0;  ///< The same at the hit.
+};
+
+/// What a pilot finds at one place: squares of terms by one ray.
+struct PilotFound {
+    double gather = 0;  ///< Variance of the gather, by the weight.
+    std::array<PilotHit, pilot_rays> hits;
+};
+
+PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const ReflectedLight& b, const PilotPlace& place,
+                    std::uint64_t key, GatherWorkspace& gather, DirectCheck::Workspace& room) {
+    PilotFound out;
+    const Region& region = stage.scene.regions()[place.at.region];
+    cast_gather(stage, place.at.at, region.plane.n, place.at.region, pilot_rays, key, gather);
+    const Gathered found = read_gather(b, gather);
+    RandomStream random(key, Stream::certificate);
+    room.projected.resize(gather.fronts.size());
+    if (check.has_projection()) check.projected().irradiance->read(gather.fronts, room.projected);
+    const Spectrum& reflectance = stage.scene.material(place.at.region).reflectance;
+    const double rho2 = mean(reflectance * reflectance), n = pilot_rays;
+    double square = 0;
+    for (std::size_t k = 0; k < gather.fronts.size(); ++k) {
+        const double count = gather.counts.empty() ? 1 : gather.counts[k];
+        const HitPoint& hit = gather.fronts[k];
+        const Spectrum rho = count * stage.scene.material(hit.region).reflectance;
+        square += mean(count * gather.values[k] * (count * gather.values[k]));
+        if (!check.has_projection()) continue;
+        PilotHit& told = out.hits[k];
+        told.weight = place.weight / n;
+        told.claimed = check.misfit(hit), told.misfit = count * std::sqrt(rho2) * told.claimed;
+        const auto by = [&](bool is_exact) {
+            const Spectrum term = rho * check.difference(is_exact, hit, room.projected[k], random, room.clustered);
+            return rho2 * mean(term * term);
+        };
+        told.step = by(false);
+        if (k == 0) told.exact = by(true);  // exact light may be expensive: one hit of a place
+    }
+    out.gather =
+        place.weight * rho2 * std::max(0.0, (square / n - mean(found.irradiance * found.irradiance)) * n / (n - 1));
+    return out;
+}
+
+/// Sums over the hits of a pilot.
+struct PilotSums {
+    double gather = 0, step = 0, misfit = 0, exact = 0, exact_weight = 0, weight = 0;
+};
+
+PilotSums sums_of(std::span<const PilotFound> found) {
+    PilotSums V;
+    for (const PilotFound& p : found) {
+        V.gather += p.gather;
+        for (const PilotHit& hit : p.hits) {
+            V.weight += hit.weight, V.step += hit.weight * hit.step, V.misfit += hit.weight * hit.misfit;
+            if (hit.exact < 0) continue;
+            V.exact_weight += hit.weight, V.exact += hit.weight * hit.exact;
+        }
+    }
+    if (V.exact_weight > 0) V.exact *= V.weight / V.exact_weight;
+    return V;
+}
+
+}  // namespace
+
+CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const ReflectedLight& b,
+                     std::span<const PilotPlace> places, std::uint64_t seed, const OtherNoise& other) {
+    if (places.empty()) return {};
+    std::vector<PilotFound> found(places.size());
+    shared_ranges(
+        places.size(), 1,
+        [&](std::size_t begin, std::size_t end) {
+            GatherWorkspace gather;
+            DirectCheck::Workspace room;
+            for (std::size_t k = begin; k < end; ++k)
+                found[k] = pilot_at(check, stage, b, places[k],
+                                    hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, 0), gather, room);
+        },
+        [&](std::size_t k) -> PilotFound& { return found[k]; }, {"certificate"});
+    const PilotSums V = sums_of(found);
+    const double beside =
+        std::max({other.gather_is_noisy ? V.gather : 0, other.tolerated, std::numeric_limits<double>::min()});
+    // Single steps, at all hits alike.
+    constexpr double least_share = 1.0 / 256;  // finds what the projection does not know to be wrong
+    const double step_work = check.paths().rays_per_step(), exact_work = std::max(1.0, check.exact_work());
+    CheckPlan step{false, std::clamp(std::sqrt(V.step / (beside * step_work)), least_share, 1.0)};
+    step.variance = V.step / step.share, step.work = step.share * step_work;
+    // Exact, in proportion to the misfit: the variance is least where what is known of it is true.
+    CheckPlan exact{true, least_share * std::min(1.0, step_work / exact_work), 1 / std::sqrt(beside * exact_work)};
+    double weight = 0;
+    for (const PilotFound& p : found)
+        for (const PilotHit& hit : p.hits) {
+            if (hit.exact < 0) continue;
+            const double q = std::min(1.0, exact.share + exact.per_misfit * hit.claimed);
+            exact.variance += hit.weight * hit.exact / q, exact.work += hit.weight * q * exact_work;
+            weight += hit.weight;
+        }
+    if (weight > 0) exact.variance *= V.weight / weight, exact.work *= V.weight / weight;
+    // A difference at fewer hits than were evaluated may be as large as one by a step.
+    exact.variance += V.step / static_cast<double>(places.size());
+    for (CheckPlan* plan : {&step, &exact}) plan->gather_variance = V.gather;
+    const auto cost = [&](const CheckPlan& plan) { return (beside + plan.variance) * (1 + plan.work); };
+    return V.exact_weight > 0 && cost(exact) < cost(step) ? exact : step;
+}
+
+}  // namespace exitance

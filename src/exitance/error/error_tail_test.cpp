@@ -1,0 +1,95 @@
+#include "exitance/error/error_tail.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace exitance {
+namespace {
+
+TEST(ErrorTail, IsAQuantileWhereAllErrorsAreKnown) {
+    std::vector<WeightedError> known;
+    for (int k = 1; k <= 100; ++k) known.push_back({0.01 * k, 0.01});
+    EXPECT_NEAR(error_below(known, {0, 0}, 0.05), 0.95, 0.01 + 1e-12);  // to a step
+    EXPECT_NEAR(error_below(known, {0, 0}, 0.5), 0.5, 0.01 + 1e-12);
+}
+
+TEST(ErrorTail, IsThatOfGaussWhereNoneIsKnown) {
+    EXPECT_NEAR(error_below({}, {2, 1}, 0.01), 2 * 2.5758293, 1e-6);  // tables of the normal distribution
+}
+
+TEST(ErrorTail, CountsTheOthersAboveTheKnown) {
+    // A hundredth is known to be at 1; as much of the others must lie above the limit, too, as would make a hundredth.
+    const std::vector<WeightedError> known = {{1, 0.005}};
+    EXPECT_NEAR(error_below(known, {0.1, 0.995}, 0.01), 0.1 * 2.8055, 1e-3);  // erfc(2.8055 / sqrt 2) = 0.005025
+    EXPECT_DOUBLE_EQ(error_below(std::vector<WeightedError>{{1, 0.02}}, {0.1, 0.98}, 0.01), 1);
+}
+
+TEST(ErrorTail, IsNoLargerThanWhatNoneIsAbove) {
+    EXPECT_NEAR(error_below({}, {2, 1}, 0.01, 2.5), 2.5, 1e-9);
+}
+
+TEST(ErrorTail, IsNothingWhereNothingIsWrong) {
+    EXPECT_EQ(error_below({}, {0, 1}, 0.01), 0);
+    EXPECT_EQ(error_below(std::vector<WeightedError>{{0, 1}}, {0, 0}, 0.01), 0);
+}
+
+/// Errors that are known by noisy measurements: a thousandth of the area has `large`, a fiftieth `some`, all others are
+/// spread as Gauss has it.
+struct NoisyErrors {
+    static constexpr int count = 4000;
+    std::mt19937_64 random{7};
+    std::normal_distribution<double> gauss;
+    std::vector<double> truth;
+    std::vector<WeightedError> measured;
+    double mean_square = 0, noise;
+
+    NoisyErrors(double even, double some, double noise_of_one) : noise(noise_of_one) {
+        for (int k = 0; k < count; ++k) {
+            truth.push_back(k < count / 50 ? some : even * gauss(random));
+            const double e1 = truth.back() + noise * gauss(random), e2 = truth.back() + noise * gauss(random);
+            measured.push_back({std::abs(0.5 * (e1 + e2)), 1.0 / count});
+            mean_square += e1 * e2 / count;
+        }
+    }
+    double told() {
+        return error_below(measured, std::vector<unsigned>(count, 64), mean_square, 0.01,
+                           [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
+                               const double left = noise * std::pow(factor, -0.75);  // as Sobol points have it
+                               for (std::size_t i = 0; i < which.size(); ++i)
+                                   for (Spectrum& e : error[i]) e = Spectrum(truth[which[i]] + left * gauss(random));
+                           });
+    }
+    double true_p99() const {
+        std::vector<double> size;
+        for (double e : truth) size.push_back(std::abs(e));
+        std::sort(size.begin(), size.end());
+        return size[count - count / 100];
+    }
+};
+
+TEST(ErrorTail, IsFoundUnderNoiseAsLargeAsIt) {
+    NoisyErrors planted(0.01, 0.2, 0.1);
+    ASSERT_NEAR(planted.true_p99(), 0.2, 1e-12);
+    std::vector<double> size;
+    for (const WeightedError& e : planted.measured) size.push_back(e.error);
+    std::sort(size.begin(), size.end());
+    ASSERT_GT(size[NoisyErrors::count - NoisyErrors::count / 100], 0.21);  // what is measured at first is too large
+    // A third of those at 0.2 seem smaller than many others, and are not measured again: of 1.4% of the area that are,
+    // the limit leaves a hundredth above it, half of the noise of four times the rays, 0.025, below 0.2.
+    EXPECT_NEAR(planted.told(), 0.2, 0.03);
+}
+
+TEST(ErrorTail, IsNoNoiseWhereErrorsAreSmall) {
+    NoisyErrors planted(0.01, 0.01, 0.03);
+    const double truth = planted.true_p99();
+    EXPECT_NEAR(truth, 0.0257, 0.003);
+    // Four times the rays leave noise of 0.0075, which is taken out, but for its spread.
+    EXPECT_NEAR(planted.told(), truth, 0.35 * truth);
+}
+
+}  // namespace
+}  // namespace exitance

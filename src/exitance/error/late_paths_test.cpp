@@ -1,0 +1,76 @@
+#include "exitance/error/late_paths.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// A furnace of reflectance 1/2 whose delivered light E_ind = 1 is everywhere too large by `delta`.
+struct WrongFurnace {
+    static constexpr double rho = 0.5, delta = 0.3;
+    Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
+    Stage stage{scene};
+    ElementFunction delivered;
+    PathTracer paths{stage};
+    DirectCheck check{stage, paths, {}, LightAccuracy()};
+    PointwiseLight b{[](RegionId, const Point&) { return Spectrum(rho * (1 + 1 + delta)); }};
+    std::vector<ResidualSample> samples;
+
+    WrongFurnace() {
+        for (const auto& [region, patch] : stage.pieces) {
+            const ElementId e = delivered.tree.add_root(region, patch);
+            delivered.first_value.resize(delivered.tree.size(), 0);
+            delivered.first_value[e] = static_cast<std::uint32_t>(delivered.values.size());
+            for (int k = 0; k < patch.corner_count(); ++k) delivered.add_value(Spectrum(1 + delta));
+            for (double u : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+                ResidualSample s;
+                s.place = {e, {u, 1 - u}}, s.region = region, s.weight = patch.area(), s.leaf = 0;
+                samples.push_back(s);
+            }
+        }
+    }
+
+    LateMisfit misfit(double late, std::uint64_t seed) const {
+        const std::vector<Spectrum> told{Spectrum(late)};
+        return LatePaths(stage, delivered, b, check, false).misfit(samples, told, seed, 1 << 18);
+    }
+};
+
+// The error of irradiance is e = 1 - (1 + delta) = -delta everywhere; by way of other surfaces comes rho e of it.
+constexpr double late_part = -WrongFurnace::rho * WrongFurnace::rho * WrongFurnace::delta;  // of radiosity
+
+TEST(LatePaths, FindWhatComesByWayOfOtherSurfaces) {
+    const WrongFurnace furnace;
+    RandomStream random(7, Stream::certificate);
+    const LatePaths paths(furnace.stage, furnace.delivered, furnace.b, furnace.check, false);
+    const PathTracer::Vertex x{{0.7, 0.4, 0}, {0, 0, 1}, RegionId(0)};
+    double sum = 0;
+    std::size_t rays = 0;
+    constexpr int count = 4000;
+    for (int k = 0; k < count; ++k)
+        sum += mean(paths.sample(x, random.uniform(), random.uniform(), random, rays)) / count;
+    // A path's value is -delta (1 - rho) times its vertices, of which there are rho / (1 - rho) = 1 in the mean, with a
+    // variance of 2: the mean of 4000 is known to 0.022 of -rho delta.
+    EXPECT_NEAR(sum, -furnace.rho * furnace.delta, 4 * 0.023 * furnace.rho * furnace.delta);
+    EXPECT_GT(rays, 2u * count);
+}
+
+TEST(LatePaths, FindFaultsOfTheCoarseRows) {
+    const WrongFurnace furnace;
+    int right = 0, wrong = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const LateMisfit none = furnace.misfit(late_part, seed);
+        right += none.mean_square <= 2 * none.standard_error;
+        // Rows that find half of the light are off by half of it.
+        const LateMisfit half = furnace.misfit(0.5 * late_part, seed);
+        wrong += half.mean_square > 2 * half.standard_error;
+        EXPECT_NEAR(std::sqrt(std::max(0.0, half.mean_square)), -0.5 * late_part, -0.25 * late_part);
+    }
+    EXPECT_GE(right, 9);  // two standard errors are passed by chance once in forty
+    EXPECT_EQ(wrong, 10);
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,161 @@
+#include "exitance/error/residual_samples.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "exitance/base/polygon.hpp"
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/processes/distributed.hpp"
+
+namespace exitance {
+namespace {
+
+/// The face of a region that holds a point of it.
+SurfaceId surface_at(const Scene& scene, RegionId region, const Point& x) {
+    const auto& surfaces = scene.regions()[region].surfaces;
+    if (surfaces.size() > 1)
+        for (SurfaceId s : surfaces)
+            if (contains(scene.outline(s), scene.surfaces()[s].normal, x)) return s;
+    return surfaces[0];
+}
+
+/// Where light is summed, one sample in so many tells the parts of the residual: that is another sum, for less to know.
+constexpr std::size_t local_every = 4;
+
+/// Where light is reflected often, a small mean of the residual makes a large error, and has to be told from noise:
+/// rays in proportion to the power of 4/3, as noise of a mean square asks for.
+double more_where_reflected_often(double constant) {
+    return std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, calibrated::most_rays_often);  // given by that power
+}
+
+}  // namespace
+
+double rays_to_tell(double error, std::size_t points) {
+    return calibrated::certificate_noise / (error * error * std::sqrt(static_cast<double>(points)));
+}
+
+unsigned certificate_rays(double wanted) {
+    const double most = calibrated::most_certificate_rays;
+    return std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, calibrated::least_rays, most)));
+}
+
+ResidualSampler::ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
+                                 const DirectCheck& check, const CertificateOptions& options, double constant,
+                                 const ElementLocator& coarse, const LeafNumbering& numbering)
+    : stage_(stage),
+      indirect_(indirect),
+      b_(b),
+      check_(check),
+      options_(options),
+      often_(more_where_reflected_often(constant)),
+      coarse_(coarse),
+      numbering_(numbering) {}
+
+unsigned ResidualSampler::rays_at(ElementId leaf) const {
+    if (options_.leaves)
+        return certificate_rays(calibrated::certificate_ray_share *
+                                LocalPassReport::known(*options_.leaves, indirect_.tree, leaf).rays);
+    return certificate_rays(often_ * rays_to_tell(options_.error, options_.points));
+}
+
+Point ResidualSampler::point(const ResidualSample& sample) const {
+    return indirect_.tree.patch(sample.place.element).at(sample.place.uv);
+}
+
+/// Where a sample lies, and what is delivered there.
+void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, Workspace& w) const {
+    sample.place = at.place, sample.weight = at.weight;
+    const RegionId region = sample.region = indirect_.tree.region(at.place.element);
+    const Point x = point(sample);
+    const Normal& n = stage_.scene.regions()[region].plane.n;
+    sample.is_covered = stage_.occluders.is_covered(x, n, region);
+    if (!sample.is_covered) sample.delivered = indirect_.at(at.place);
+    if (!sample.is_covered && options_.direct_in_elements)
+        sample.delivered -= stage_.clustered.at(x, n, region, point_accuracy(options_.error), w.clustered).irradiance;
+    sample.reflected = 0;
+    if (!sample.is_covered) {
+        Spectrum E = indirect_.at(at.place);
+        if (check_.has_projection()) {
+            const HitPoint here{region, x};
+            Spectrum projected;
+            check_.projected().irradiance->read(std::span(&here, 1), std::span(&projected, 1));
+            E += check_.projected().weight * projected;
+        }
+        sample.reflected = mean(stage_.scene.material(region).reflectance * E);
+    }
+    sample.surface = surface_at(stage_.scene, region, x);
+    if (stage_.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage_.rooms.at(region, x));
+    sample.leaf = numbering_.number[coarse_.find(region, x).element];
+}
+
+/// The residual by sums over elements; what their projected direct light misses, by two gathers of independent rays.
+void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
+                                   Workspace& w) const {
+    const Point x = point(sample);
+    const Normal& n = stage_.scene.regions()[sample.region].plane.n;
+    const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;
+    const auto residual = [&](std::span<const ElementGather> parts) {
+        Spectrum arriving;
+        for (const ElementGather& part : parts)
+            if (!sample.is_covered) arriving += part(x, n, sample.region, options_.summed->share, w.sums);
+        return reflectance * (arriving - sample.delivered);
+    };
+    sample.r1 = sample.r2 = residual(options_.summed->delivered);
+    if (!options_.summed->gathered.empty() && k % local_every == 0) {
+        sample.local1 = sample.local2 = residual(options_.summed->gathered);
+        sample.tells_local = true;
+    }
+    if (sample.is_covered || !check_.has_projection()) return;
+    for (std::uint64_t which = 1; which <= 2; ++which) {
+        const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
+        cast_gather(stage_, x, n, sample.region, rays_beside_sums, key, w.rays);
+        (which == 1 ? sample.r1 : sample.r2) += reflectance * check_.missing(plan, w.rays, key, w.check);
+    }
+    sample.rays = 2 * rays_beside_sums;
+}
+
+/// The residual by two gathers of independent rays.
+void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
+                                Workspace& w) const {
+    const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;
+    const unsigned rays = rays_at(sample.place.element);
+    sample.tells_local = options_.gathered != nullptr;
+    if (sample.is_covered) return;
+    for (std::uint64_t which = 1; which <= 2; ++which) {
+        const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
+        (which == 1 ? sample.r1 : sample.r2) = by_rays(sample, plan, rays, key, w);
+        if (options_.gathered)
+            (which == 1 ? sample.local1 : sample.local2) =
+                reflectance * (read_gather(*options_.gathered, w.rays).irradiance - sample.delivered);
+    }
+    sample.rays = 2 * rays;
+}
+
+void ResidualSampler::measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
+                              std::span<ResidualSample> samples) const {
+    shared_ranges(
+        places.size(), 8,
+        [&](std::size_t begin, std::size_t end) {
+            Workspace w;
+            for (std::size_t k = begin; k < end; ++k) {
+                locate(places[k], samples[k], w);
+                if (options_.summed)
+                    sum_elements(seed, k, plan, samples[k], w);
+                else
+                    cast_rays(seed, k, plan, samples[k], w);
+            }
+        },
+        [&](std::size_t k) -> ResidualSample& { return samples[k]; }, {"certificate"});
+}
+
+Spectrum ResidualSampler::by_rays(const ResidualSample& sample, const CheckPlan& plan, unsigned rays, std::uint64_t key,
+                                  Workspace& w) const {
+    if (sample.is_covered) return {};
+    const Region& region = stage_.scene.regions()[sample.region];
+    cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, w.rays);
+    const Spectrum arriving = read_gather(b_, w.rays).irradiance + check_.missing(plan, w.rays, key, w.check);
+    return stage_.scene.material(sample.region).reflectance * (arriving - sample.delivered);
+}
+
+}  // namespace exitance

@@ -1,0 +1,76 @@
+#include "exitance/error/texture_error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+/// Squared error of a face's radiosity, mean over the bands.
+double squared_error(const Material& material, std::size_t number, const SurfaceLight& light,
+                     std::span<const Spectrum> deviation) {
+    if (number >= deviation.size() || max(material.reflectance) <= 0) return 0;
+    const Spectrum error = deviation[number] * light.irradiance;
+    return mean(error * error);
+}
+
+double mean_reflected(const Scene& scene, const Field<SurfaceId, SurfaceLight>& light) {
+    double sum = 0, area = 0;
+    for (const SurfaceId s : scene.surfaces().ids()) {
+        sum += scene.surfaces()[s].area * mean(scene.material(s).reflectance * light[s].irradiance);
+        area += scene.surfaces()[s].area;
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+void add(std::optional<double>& estimate, double more) {
+    if (estimate) *estimate = std::hypot(*estimate, more);
+}
+
+}  // namespace
+
+double texture_error(const Scene& scene, const Field<SurfaceId, SurfaceLight>& light,
+                     std::span<const Spectrum> deviation) {
+    double sum = 0, area = 0;
+    for (const SurfaceId s : scene.surfaces().ids()) {
+        const Surface& surface = scene.surfaces()[s];
+        sum += surface.area * squared_error(scene.material(s), surface.material.value, light[s], deviation);
+        area += surface.area;
+    }
+    const double reflected = mean_reflected(scene, light);
+    return reflected > 0 ? std::sqrt(sum / area) / reflected : 0;
+}
+
+void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, std::optional<double> demand) {
+    const auto varies = [](const Spectrum& d) { return max(d) > 0; };
+    SolveStatistics& s = solution.statistics;
+    if (!s.relative_error_estimate || std::none_of(deviation.begin(), deviation.end(), varies)) return;
+    const Field<SurfaceId, SurfaceLight> light = mean_light(solution);
+    const double error = texture_error(solution.scene, light, deviation);
+    if (!(error > 0)) return;
+    const double before = *s.relative_error_estimate;
+    add(s.relative_error_estimate, error), add(s.relative_error_bound, error);
+    add(s.relative_error_estimate_interpolant, error), add(s.relative_error_estimate_worst_room, error);
+    s.error_p99.reset();  // not known of light that varies within faces
+    if (s.rooms.size() == 1) s.rooms[0].error = std::hypot(s.rooms[0].error, error);
+    const double reflected = mean_reflected(solution.scene, light);
+    for (std::size_t f = 0; f < s.surface_errors.size(); ++f) {
+        const SurfaceId id(f);
+        const double own = std::sqrt(squared_error(solution.scene.material(id),
+                                                   solution.scene.surfaces()[id].material.value, light[id], deviation));
+        s.surface_errors[f].error = std::hypot(s.surface_errors[f].error, own / reflected);
+    }
+    s.figures["relative_error_textures"] = error;
+    const bool missed = demand && *s.relative_error_estimate > *demand;
+    constexpr double worth_saying = 0.1;  // given by the digits that people read, of the estimate without it
+    if (missed || error > worth_saying * before)
+        s.warnings.push_back(fmt::format(
+            "reflectance varies within faces by their pictures, and a face reflects its mean: {:.3g}% of the error "
+            "estimate; the light of faces as they are is known to {:.3g}%",
+            100 * error, 100 * before));
+    if (missed) s.converged = false;
+}
+
+}  // namespace exitance

@@ -1,0 +1,206 @@
+#include "exitance/error/tolerance/accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/calibration/numbers.hpp"
+
+namespace exitance {
+namespace {
+
+void apply_user_knobs(Knobs& knobs, const SolveOptions& options) {
+    if (options.mesh_size) knobs.solve_mesh.edge = *options.mesh_size;
+    if (options.epsilon) knobs.link_error = *options.epsilon;
+    if (options.residual) knobs.residual = *options.residual;
+    if (options.max_iterations) knobs.max_iterations = *options.max_iterations;
+}
+
+}  // namespace
+
+Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
+    namespace c = calibrated;
+    const auto count = [&](double n) { return static_cast<std::size_t>(n / error); };
+    const auto whole = [](double n) { return static_cast<int>(std::ceil(n)); };
+    // A strip of width w along a concave edge, where light varies like w^0.7, has a share of w^1.2 in the error
+    // (given by [Atkinson00]).
+    const double strips = std::log2(std::max(1.0, c::strip_share / error)) / 1.2;
+    const double further = std::clamp(std::log2(c::finer_strips_below / error), 0.0, 1.0);
+    Knobs knobs;
+    // Half of them beyond those that the pieces are: a thousand books are no reason to leave the floor whole.
+    const std::size_t elements =
+        std::max(count(c::solve_elements), pieces.size() + count(c::solve_elements_beyond_pieces));
+    knobs.solve_mesh = {edge_for_elements(pieces, elements), whole(strips + further)};
+    knobs.solve_rays = {.average = std::clamp(c::row_rays / error, c::least_row_average, c::most_row_average),
+                        .least = static_cast<unsigned>(c::least_rays),
+                        .most = static_cast<unsigned>(c::most_row_rays)};
+    // What is projected is only gathered from, and its means are right; unless it is what is delivered.
+    const bool is_delivered = options.visibility == VisibilityKind::fractional;
+    knobs.direct_tolerance = (is_delivered ? c::direct_tolerance_fractional : c::direct_tolerance) * error;
+    knobs.residual = c::residual_share * error;
+    knobs.link_error = c::link_error_share * error;
+    // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each. An element
+    // takes about as many rays whatever its size: few elements to begin with, and where light turns sooner they are
+    // cut.
+    const bool curved = knobs.gather_curved = error < c::curved_below;
+    const double of_curved = 0.5 * c::curved_gather_elements * std::clamp(c::finer_gather_below / error, 1.0, 2.0);
+    knobs.gather_mesh = {edge_for_elements(pieces, count(curved ? of_curved : c::straight_gather_elements)),
+                         whole(strips)};
+    const double rays = (curved ? c::curved_gather_rays : c::straight_gather_rays) * std::pow(0.5 / error, 4.0 / 3);
+    const double least = std::max(curved ? c::least_curved_rays : c::least_rays, rays / 4);
+    knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
+    // What hides from all places of an element weighs more where there is less noise to hide in.
+    knobs.gather_noise =
+        c::gather_noise * error * std::pow(std::min(1.0, error / c::finer_gather_below), c::quieter_exponent);
+    knobs.gather_tolerance = (curved ? c::curved_tolerance : c::straight_tolerance) * error;
+    apply_user_knobs(knobs, options);
+    return knobs;
+}
+
+namespace {
+
+/// Summed light costs by the element that is summed, not by the element that it is summed for.
+double edge_for_sums(const std::vector<Piece>& pieces, double error) {
+    return edge_for_elements(pieces, static_cast<std::size_t>(4 / error));
+}
+
+/// For errors below which every place is to be right by itself.
+Knobs knobs_for_fine_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces) {
+    namespace c = calibrated;
+    Knobs out = knobs;
+    // The gather smooths what the method has, and its own elements are cut where they have to be.
+    out.solve_mesh.edge *= 2, out.solve_rays.average *= 0.5;
+    out.gather_mesh.edge = 2 * edge_for_sums(pieces, error);
+    // At an edge, too, light is to be right: two strips more than the mean square needs, cut to squares at open ends,
+    // and no strip with so few rays that its noise is seen from the strip across the edge.
+    out.gather_mesh.grading_levels += 2;
+    out.solve_mesh.longest_end = out.gather_mesh.longest_end = c::fine_longest_end;
+    out.solve_rays.least = static_cast<unsigned>(c::fine_least_rays);
+    out.gather_tolerance = c::fine_sum_tolerance * error;
+    // Well above what the sum itself may miss, a few shares: finer elements would follow that for ever.
+    out.gather_relative_tolerance = c::fine_relative_tolerance * error;
+    out.gather_element_share = c::fine_element_share * error;
+    return out;
+}
+
+/// What is gathered is refined, so that the method may be rough; but the certificate follows late reflections on its
+/// elements, and through fewer of them sees too little.
+Knobs knobs_for_refined_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces,
+                             const SolveOptions& options) {
+    namespace c = calibrated;
+    Knobs out = knobs;
+    const double coarser = std::max(error, std::min(c::refined_coarsening * error, c::coarsest_refined));
+    const Knobs coarse = knobs_for_error(coarser, pieces, options);
+    const auto fewer = [](int levels, int less) { return std::max(0, levels - less); };
+    out.solve_mesh = {std::sqrt(2.0) * coarse.solve_mesh.edge, fewer(coarse.gather_mesh.grading_levels, 2)};
+    out.solve_rays = coarse.solve_rays, out.solve_rays.average = c::refined_row_rays;
+    out.gather_mesh = {std::sqrt(2.0) * edge_for_sums(pieces, coarser), fewer(knobs.gather_mesh.grading_levels, 1)};
+    out.gather_tolerance = c::straight_tolerance * coarser;
+    out.gather_element_share = c::refined_element_share * coarser;
+    return out;
+}
+
+/// Of two settings, the share `t` of the way from the first to the second, in the logarithm of each.
+Knobs between(const Knobs& a, const Knobs& b, double t) {
+    const auto of = [t](double x, double y) { return std::pow(x, 1 - t) * std::pow(y, t); };
+    const auto mesh = [&](const MeshSize& x, const MeshSize& y) {
+        const double levels = (1 - t) * x.grading_levels + t * y.grading_levels;
+        // Without bounds on ends the first are as long as may be.
+        return MeshSize{of(x.edge, y.edge), static_cast<int>(std::lround(levels)), y.longest_end / t};
+    };
+    Knobs out = a;
+    out.solve_mesh = mesh(a.solve_mesh, b.solve_mesh), out.gather_mesh = mesh(a.gather_mesh, b.gather_mesh);
+    out.solve_rays.average = of(a.solve_rays.average, b.solve_rays.average);
+    out.solve_rays.least = static_cast<unsigned>(of(a.solve_rays.least, b.solve_rays.least));
+    out.gather_tolerance = of(a.gather_tolerance, b.gather_tolerance);
+    out.gather_relative_tolerance = b.gather_relative_tolerance / t;
+    out.gather_element_share = of(a.gather_element_share, b.gather_element_share);
+    return out;
+}
+
+}  // namespace
+
+Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
+    namespace c = calibrated;
+    Knobs straight = knobs;
+    // Places cost alike on any element, so that more straight elements cost less than places to bend fewer by.
+    straight.gather_curved = false;
+    Knobs out = straight;
+    const double t = std::clamp(
+        std::log(c::refined_sums_from / error) / std::log(c::refined_sums_from / c::fine_sums_below), 0.0, 1.0);
+    if (t < 1) out = knobs_for_refined_sums(straight, error, pieces, options);
+    if (t > 0) {
+        const Knobs fine = knobs_for_fine_sums(straight, error, pieces);
+        out = t < 1 ? between(out, fine, t) : fine;
+    }
+    // Light of so many reflections solves no equation to refine by; and where much is allowed, the method is below it
+    // by itself.
+    out.refined = options.bounces < 0 && t < 1 && error < c::refined_below;
+    apply_user_knobs(out, options);
+    return out;
+}
+
+namespace {
+
+/// Tightens the local pass where its parts are more than is allowed for both.
+void tighten_local(Tightened& out, const ErrorParts& parts, double allowed) {
+    namespace c = calibrated;
+    if (std::hypot(parts.noise, parts.interpolation) <= allowed) return;
+    // Each part is given its share by itself: one that is small already is not made smaller for the other's sake.
+    const auto share_of = [&](double part, double share) {
+        return part > share * allowed ? std::clamp(share * allowed / part, c::least_tightening, c::least_step) : 1.0;
+    };
+    const double noise = share_of(parts.noise, c::part_aim),
+                 interpolation = share_of(parts.interpolation, c::interpolation_share);
+    out.knobs.gather_noise *= noise < 1 ? noise * std::min(1.0, parts.noise / out.knobs.gather_noise) : 1;
+    out.knobs.gather_rays.average *= std::pow(noise, -4.0 / 3);
+    out.knobs.gather_tolerance *= interpolation;
+    out.knobs.gather_element_share *= interpolation;
+    out.work = std::max(out.work, std::pow(std::min(noise, interpolation), -4.0 / 3));
+}
+
+/// What the local pass may err where the method errs so much: at least half of the target.
+double allowed_locally(double target, double method) {
+    return std::sqrt(std::max(0.5 * 0.5 * target * target, target * target - method * method));
+}
+
+}  // namespace
+
+Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options) {
+    namespace c = calibrated;
+    // The method may have half of the target, or all of it where nothing is gathered. Its light is smoothed by the
+    // gather, and much finer is soon much dearer.
+    const double methods_share = parts.noise > 0 || parts.interpolation > 0 ? 0.5 : 1;
+    Tightened out{knobs};
+    double method = parts.method;
+    const double local = std::hypot(parts.noise, parts.interpolation);
+    // Where all parts are small, their sum is not: the error is one that reflects to and fro, which is the method's.
+    out.method = method > methods_share * target || std::hypot(method, local) <= target;
+    if (out.method) {
+        const double factor =
+            std::clamp(c::part_aim * methods_share * target / method, c::least_tightening, c::most_method_tightening);
+        out.knobs.solve_mesh.edge *= std::sqrt(factor);
+        out.knobs.solve_mesh.grading_levels += 1;
+        out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, c::most_row_rays);
+        out.knobs.direct_tolerance *= factor;
+        out.knobs.residual *= factor;
+        out.knobs.link_error *= factor;
+        method *= factor;
+        out.left = factor, out.work = 1 / factor;
+    }
+    tighten_local(out, parts, allowed_locally(target, method));
+    apply_user_knobs(out.knobs, options);
+    return out;
+}
+
+Tightened refined(const Knobs& knobs, const ErrorParts& parts, double left, double limit, double target,
+                  const SolveOptions& options) {
+    Tightened out{.knobs = knobs, .method = true, .left = left};
+    const double method = left * parts.method, local = std::hypot(parts.noise, parts.interpolation);
+    // Steps go on until the method has no more than its half.
+    if (std::hypot(method, local) > limit)
+        tighten_local(out, parts, allowed_locally(target, std::min(method, 0.5 * target)));
+    apply_user_knobs(out.knobs, options);
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,196 @@
+#include "exitance/evaluate/energy.hpp"
+
+#include <algorithm>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/scene/photometric_units.hpp"
+
+namespace exitance {
+namespace {
+
+/// Light of emitters is lost where a pane mirrors it.
+bool is_lost(const Stage& stage, const Point& x, const Vec3& w, RegionId region, Mirrored mirrored) {
+    RayHit hit;
+    stage.tracer.nearest(std::span(&x, 1), std::span(&w, 1), region, std::span(&hit, 1), mirrored);
+    return hit.surface.is_none() || !hit.front;
+}
+
+/// The share of what a piece emits by its profile that meets no front.
+double directed_loss(const Stage& stage, const Piece& piece) {
+    constexpr std::uint32_t rays = 1024;
+    const RelativeRadiance radiance = stage.scene.relative_radiance(piece.region);
+    const Frame frame(radiance.normal());
+    const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::shooting), piece.region.value));
+    double lost = 0, sent = 0;
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        const Vec3 w = cosine_direction(frame, points(i, 0), points(i, 1));
+        const Point y = piece.patch.at(uniform_in_shape(piece.patch.shape, points(i, 2), points(i, 3)));
+        const double p = radiance(w);
+        sent += p;
+        if (is_lost(stage, y, w, piece.region, Mirrored::lost)) lost += p;
+    }
+    return sent > 0 ? lost / sent : 0;
+}
+
+/// Power that leaves a surface diffusely, and where: from an element, or else from a patch.
+struct Leaving {
+    RegionId region;
+    double power = 0;  ///< W or lm.
+    const ElementTree* tree = nullptr;
+    ElementId element;
+    Patch patch;
+    Mirrored mirrored = Mirrored::followed;
+
+    Point place(double s, double t) const {
+        if (tree) return tree->patch(element).at(tree->uniform(element, s, t));
+        return patch.at(uniform_in_shape(patch.shape, s, t));
+    }
+};
+
+/// Where light may be lost at all, its share is known to 1 / (2 sqrt(rays)) of what leaves surfaces: 0.3%.
+constexpr std::uint32_t escape_rays = 1 << 15;
+
+/// The power that meets no front, by rays from where power leaves, as many as there is of it. `each(visit)` calls
+/// visit(Leaving) for all, alike every time.
+template <class Each>
+double escaping(const Stage& stage, const Each& each) {
+    double total = 0;
+    bool open = false;
+    each([&](const Leaving& l) {
+        total += l.power;
+        open |= l.power > 0 && stage.rooms.lost_share(l.region, l.place(0.5, 0.5)) > 0;
+    });
+    if (!open) return 0;
+    const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::shooting), escape_rays));
+    struct Ray {
+        Point x;
+        Vec3 w;
+        RegionId region;
+        Mirrored mirrored;
+    };
+    std::vector<Ray> rays;
+    rays.reserve(escape_rays);
+    double before = 0;
+    each([&](const Leaving& l) {
+        before += l.power;
+        while (rays.size() < escape_rays) {
+            const auto k = static_cast<std::uint32_t>(rays.size());
+            if ((k + 0.5) * total > before * escape_rays) break;
+            const Frame frame(stage.scene.regions()[l.region].plane.n);
+            rays.push_back({l.place(points(k, 0), points(k, 1)), cosine_direction(frame, points(k, 2), points(k, 3)),
+                            l.region, l.mirrored});
+        }
+    });
+    std::vector<std::uint8_t> lost(rays.size());
+    parallel_for(rays.size(), 64, [&](std::size_t k) {
+        lost[k] = is_lost(stage, rays[k].x, rays[k].w, rays[k].region, rays[k].mirrored);
+    });
+    const auto count = std::count(lost.begin(), lost.end(), std::uint8_t(1));
+    return rays.empty() ? 0 : total * static_cast<double>(count) / static_cast<double>(rays.size());
+}
+
+/// Calls visit(area, E, place) for all light that arrives; the power that leaves the place is not set.
+template <class Visit>
+void for_arriving(const Solution& solution, const DirectProjection& direct, const Visit& visit) {
+    if (const SixNodeMesh& mesh = solution.discontinuity; !mesh.empty()) {
+        for (std::uint32_t t = 0; t < mesh.size(); ++t) {
+            const auto& n = mesh.nodes[t];
+            const Spectrum E = mesh.mean(t);
+            const Point &a = mesh.points[n[0]], &b = mesh.points[n[1]], &c = mesh.points[n[2]];
+            visit(
+                mesh.area(t), E,
+                Leaving{mesh.region[t], 0, nullptr, {}, {a, b - a, c - a, Patch::Shape::triangle}, Mirrored::followed});
+        }
+        return;
+    }
+    const auto of = [](const ElementTree& tree, ElementId e) {
+        return Leaving{tree.region(e), 0, &tree, e, {}, Mirrored::followed};
+    };
+    if (!solution.direct_in_elements)
+        for (ElementId e : direct.tree.leaves())
+            visit(direct.tree.area(e), (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean,
+                  of(direct.tree, e));
+    // A linear or bilinear function has its mean at the centre of its element.
+    const ElementTree& tree = solution.indirect.tree;
+    for (ElementId e : tree.leaves()) visit(tree.area(e), solution.indirect.at({e, tree.centre(e)}), of(tree, e));
+}
+
+}  // namespace
+
+EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage) {
+    const Scene& scene = solution.scene;
+    const LightUnit total = own_unit(scene.is_photometric());
+    EnergyBalance out;
+    for (const Region& region : scene.regions())
+        out.emitted += region.area * total(scene.materials()[region.material].exitance);
+    for (const PunctualLight& light : scene.lights()) out.emitted += total(light.power());
+    // Parallel light and that of the sky come from outside: what meets a surface counts as emitted.
+    for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * total(direct.fit[e].parallel);
+    for_arriving(solution, direct, [&](double area, const Spectrum& E, const Leaving& at) {
+        out.absorbed += area * total((Spectrum(1.0) - scene.material(at.region).reflectance) * E);
+    });
+    out.escaped = escaping(stage, [&](const auto& visit) {
+        for (const auto& [region, patch] : stage.pieces) {
+            const Material& material = scene.material(region);
+            if (material.emits() && !material.is_directed())
+                visit(Leaving{region, patch.area() * total(material.exitance), nullptr, {}, patch, Mirrored::lost});
+        }
+        for_arriving(solution, direct, [&](double area, const Spectrum& E, Leaving at) {
+            at.power = area * total(scene.material(at.region).reflectance * E);
+            visit(at);
+        });
+    });
+    for (const Piece& piece : stage.pieces)
+        if (scene.material(piece.region).is_directed())
+            out.escaped +=
+                directed_loss(stage, piece) * piece.patch.area() * total(scene.material(piece.region).exitance);
+    out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
+    return out;
+}
+
+DirectMeans mean_direct_light(const Stage& stage, const DirectProjection& direct) {
+    DirectMeans out;
+    for (ElementId e : direct.tree.leaves()) {
+        const double share = direct.tree.area(e) / stage.area;
+        out.arriving += share * mean(direct.fit[e].mean);
+        out.reflected += share * mean(stage.scene.material(direct.tree.region(e)).reflectance * direct.fit[e].mean);
+    }
+    return out;
+}
+
+EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage) {
+    const Scene& scene = solution.scene;
+    const ElementTree& tree = solution.interpolant.tree;
+    const LightUnit total = own_unit(scene.is_photometric());
+    EnergyBalance out;
+    for (const Region& region : scene.regions())
+        out.emitted += region.area * total(scene.materials()[region.material].exitance);
+    for (const PunctualLight& light : scene.lights()) out.emitted += total(light.power());
+    const auto arriving = [&](ElementId e) { return solution.interpolant.at({e, tree.centre(e)}); };
+    for (const ElementId e : tree.leaves())
+        out.absorbed +=
+            tree.area(e) * total((Spectrum(1.0) - scene.material(tree.region(e)).reflectance) * arriving(e));
+    out.escaped = escaping(stage, [&](const auto& visit) {
+        for (const ElementId e : tree.leaves()) {
+            const Material& material = scene.material(tree.region(e));
+            visit(Leaving{tree.region(e),
+                          tree.area(e) * total(material.exitance + material.reflectance * arriving(e)),
+                          &tree,
+                          e,
+                          {}});
+        }
+    });
+    out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
+    return out;
+}
+
+EnergyBalance energy_balance(const Solution& solution, const Stage& stage) {
+    DirectProjection none;
+    for (const Piece& piece : stage.pieces) none.tree.add_root(piece.region, piece.patch);
+    none.fit.resize(none.tree.size());
+    return energy_balance(solution, none, stage);
+}
+
+}  // namespace exitance

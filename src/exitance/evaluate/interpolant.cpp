@@ -1,0 +1,220 @@
+#include "exitance/evaluate/interpolant.hpp"
+
+#include <optional>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/basis/element_fit.hpp"
+#include "exitance/basis/misfit_along.hpp"
+#include "exitance/evaluate/interpolant_error.hpp"
+#include "exitance/mesh/adaptive.hpp"
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/processes/distributed.hpp"
+#include "exitance/solution/continuous.hpp"
+
+namespace exitance {
+namespace {
+
+class Interpolation {
+  public:
+    Interpolation(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
+                  const Spectrum& direct_share, const InterpolantOptions& options)
+        : stage_(stage),
+          direct_(direct),
+          indirect_(indirect),
+          direct_weight_(Spectrum(1.0) - direct_share),
+          options_(options) {
+        out_.tree = direct.tree;
+    }
+
+    /// A leaf that a request to stop leaves no time for holds what its parent held there.
+    ElementFunction run(InterpolantReport& report, const StopRequest& stop) {
+        std::vector<ElementId> active = out_.tree.leaves();
+        for (int round = 0;; ++round) {
+            fitted_.resize(out_.tree.size());
+            locator_.emplace(indirect_.tree, stage_.scene.regions().size());
+            shared_ranges_of(
+                fitted_.span(), active.size(), 8,
+                [&](std::size_t begin, std::size_t end) {
+                    DirectFitRoom room;
+                    for (std::size_t i = begin; i < end; ++i) {
+                        const ElementId e = active[i];
+                        fitted_[e] = round > 0 && stop.requested()
+                                         ? Fit(inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)].as_direct()))
+                                         : Fit(fit(e, room));
+                    }
+                },
+                [&](std::size_t i) -> Fit& { return fitted_[active[i]]; },
+                {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
+            locator_.reset();  // it makes room for what comes next
+            double misfit = error();
+            report.interrupted = stop.requested();
+            const bool last =
+                round == options_.max_depth || report.interrupted || out_.tree.size() > options_.max_elements;
+            if (misfit <= options_.tolerance || last) {
+                ElementFunction continuous = join(stop);
+                misfit = error();
+                if (misfit <= options_.tolerance || last) {
+                    if (!stop.requested()) report.error = measured_error(continuous);
+                    report.interrupted |= stop.requested();
+                    return continuous;
+                }
+            }
+            active = split_largest(misfit);
+        }
+    }
+
+  private:
+    /// What of a fit is delivered, as precisely as it is.
+    struct Fit {
+        std::array<std::array<float, bands>, 4> corners;
+        double misfit_squared = 0;
+        std::array<float, 2> misfit_along = {};
+
+        Fit() = default;
+        explicit Fit(const DirectFit& fit)
+            : misfit_squared(fit.misfit_squared),
+              misfit_along{static_cast<float>(fit.misfit_along[0]), static_cast<float>(fit.misfit_along[1])} {
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                for (std::size_t k = 0; k < bands; ++k) corners[i][k] = static_cast<float>(fit.corners[i][k]);
+        }
+        DirectFit as_direct() const {
+            DirectFit out;
+            out.misfit_squared = misfit_squared;
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                for (std::size_t k = 0; k < bands; ++k) out.corners[i][k] = static_cast<double>(corners[i][k]);
+            return out;
+        }
+    };
+
+    /// Direct light as projected, or anew on a leaf that is new; indirect light on top.
+    DirectFit fit(ElementId e, DirectFitRoom& room) const {
+        const Patch& patch = out_.tree.patch(e);
+        const RegionId region = out_.tree.region(e);
+        DirectFit out = e.value < direct_.tree.size()
+                            ? direct_.fit[e]
+                            : fit_direct_light(stage_, out_.tree, e, options_.tolerance * options_.tolerance, room);
+        for (Spectrum& corner : out.corners) corner *= direct_weight_;
+        out.mean *= direct_weight_;
+        const double of_direct = max(direct_weight_ * direct_weight_);
+        out.misfit_squared *= of_direct;
+        const std::vector<WeightedPlace> rule = element_rule(out_.tree, e, RuleOrder::fine);
+        std::vector<Spectrum> value(rule.size());
+        for (std::size_t i = 0; i < rule.size(); ++i) {
+            value[i] = indirect_.at(locator_->find(region, patch.at(rule[i].uv)));
+            out.mean += rule[i].weight * value[i];
+        }
+        const ElementFit indirect(out_.tree, e, rule, value);
+        for (int i = 0; i < patch.corner_count(); ++i) out.corners[static_cast<std::size_t>(i)] += indirect.corner(i);
+        const Spectrum w = light_weight(stage_.scene.material(region));
+        for (std::size_t i = 0; i < rule.size(); ++i) {
+            value[i] = w * (value[i] - indirect.at(rule[i].uv));
+            out.misfit_squared += rule[i].weight * squared(value[i]) / static_cast<double>(bands);
+        }
+        const double counts = options_.light_in.empty() ? 1 : relative_weight(e);
+        out.misfit_squared *= counts;
+        const std::array<double, 2> along = misfit_along(out_.tree, e, rule, value, Degree::straight);
+        for (std::size_t k = 0; k < 2; ++k) out.misfit_along[k] = counts * (of_direct * out.misfit_along[k] + along[k]);
+        return out;
+    }
+
+    /// The continuous function nearest to all fits. What it is further from the light than they are counts with them.
+    ElementFunction join(const StopRequest& stop) {
+        ElementFunction apart;
+        apart.tree = out_.tree;
+        apart.first_value.resize(out_.tree.size());
+        for (ElementId e : out_.tree.leaves()) {
+            apart.first_value[e] = static_cast<std::uint32_t>(apart.values.size());
+            for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i)
+                apart.values.push_back(fitted_[e].corners[static_cast<std::size_t>(i)]);
+        }
+        // Nodes of a large mesh take their time: what is cut short is delivered with its steps.
+        ElementFunction out =
+            stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts, &stop);
+        // All light together is nowhere below zero. Only what changes is written: pages stand once a node until then.
+        for (auto& value : out.values)
+            for (float& of_band : value)
+                if (of_band < 0) of_band = 0;
+        share_on_node(std::span(out.values));
+        shared_ranges_of(
+            fitted_.span(), apart.tree.size(), 64,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const ElementId e(i);
+                    if (apart.tree.is_leaf(e)) fitted_[e].misfit_squared += squared_step(apart, out, e);
+                }
+            },
+            [&](std::size_t i) -> double& { return fitted_[ElementId(i)].misfit_squared; }, {"interpolate"});
+        return out;
+    }
+
+    /// The mean square of w (a - b) on a leaf of a, which is a leaf or a fan of b.
+    double squared_step(const ElementFunction& a, const ElementFunction& b, ElementId e) const {
+        const Patch& whole = a.tree.patch(e);
+        const Spectrum w = light_weight(stage_.scene.material(a.tree.region(e)));
+        const auto on = [&](ElementId part) {
+            double sum = 0;
+            for (const WeightedPlace& place : element_rule(b.tree, part, RuleOrder::nodes)) {
+                const Spectrum there = a.at({e, whole.coordinates(b.tree.patch(part).at(place.uv))});
+                sum += place.weight * squared(w * (there - b.at({part, place.uv}))) / static_cast<double>(bands);
+            }
+            return b.tree.area(part) / b.tree.area(e) * sum;
+        };
+        double sum = b.tree.is_leaf(e) ? on(e) : 0;
+        for (ElementId part : b.tree.children(e)) sum += on(part);
+        return options_.light_in.empty() ? sum : relative_weight(e) * sum;
+    }
+
+    /// By which an error counts where rooms are judged apart.
+    double relative_weight(ElementId e) const {
+        const double light = options_.light_in[stage_.rooms.of(out_.tree, e)];
+        return stage_.rooms.weight(out_.tree, e) / (light * light);
+    }
+
+    double measured_error(const ElementFunction& continuous) const {
+        std::vector<InterpolatedLeaf> leaves;
+        for (ElementId e : out_.tree.leaves()) leaves.push_back({e, fitted_[e].misfit_squared});
+        return interpolant_error(stage_, continuous, leaves, {indirect_, direct_weight_}, options_.seed);
+    }
+
+    /// By the fits' own misfits.
+    double error() const {
+        double sum = 0;
+        for (ElementId e : out_.tree.leaves()) sum += out_.tree.area(e) * fitted_[e].misfit_squared;
+        return std::sqrt(sum / stage_.area);
+    }
+
+    /// Cuts the leaves whose squared error is more than an even share of what is allowed; returns the new ones.
+    std::vector<ElementId> split_largest(double error) {
+        const std::vector<ElementId> leaves = out_.tree.leaves();
+        const double allowed = options_.tolerance * options_.tolerance * stage_.area;
+        const double share =
+            allowed / static_cast<double>(leaves.size()) * std::min(1.0, 2 * options_.tolerance / error);
+        std::vector<ElementId> fresh;
+        for (ElementId e : leaves) {
+            if (out_.tree.area(e) * fitted_[e].misfit_squared <= share) continue;
+            const auto& [u, v] = fitted_[e].misfit_along;
+            const Cut only = sufficient_cut(fitted_[e].misfit_squared, {u, v}, share / out_.tree.area(e));
+            for (ElementId child : refine_element(out_.tree, e, only)) fresh.push_back(child);
+        }
+        return fresh;
+    }
+
+    const Stage& stage_;
+    const DirectProjection& direct_;
+    const ElementFunction& indirect_;
+    const Spectrum direct_weight_;
+    const InterpolantOptions& options_;
+    std::optional<ElementLocator> locator_;  ///< Of the indirect light, while leaves are fitted.
+    ElementFunction out_;
+    Field<ElementId, Fit> fitted_;
+};
+
+}  // namespace
+
+ElementFunction make_interpolant(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
+                                 const Spectrum& direct_share, const InterpolantOptions& options,
+                                 InterpolantReport& report, const StopRequest& stop) {
+    return Interpolation(stage, direct, indirect, direct_share, options).run(report, stop);
+}
+
+}  // namespace exitance

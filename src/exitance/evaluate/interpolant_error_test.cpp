@@ -1,0 +1,78 @@
+#include "exitance/evaluate/interpolant_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/error/area_samples.hpp"
+#include "exitance/scene/locator.hpp"
+#include "support/built_scene.hpp"
+#include "support/solved.hpp"
+
+namespace exitance {
+namespace {
+
+/// RMS of B - B_exact of the exported mesh at points uniform in area, relative to the mean of B_exact - M; of E if
+/// nothing reflects. Direct light alone: the full function is exact.
+double error_of_export(const Solution& solution) {
+    const std::vector<ProbePoint> points = points_uniform_in_area(solution.scene, 20'000, 7);
+    const RadiosityFunction function(solution);
+    const std::vector<Light> exact = function.at(points), exported = function.interpolant_at(points);
+    const Locator locator(solution.scene);
+    double square = 0, square_of_E = 0, reflected = 0, arriving = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Spectrum off = exported[i].irradiance - exact[i].irradiance;
+        const Spectrum rho = solution.scene.material(locator.find(points[i].x, points[i].n)).reflectance;
+        square += squared(rho * off) / bands, square_of_E += squared(off) / bands;
+        reflected += mean(rho * exact[i].irradiance), arriving += mean(exact[i].irradiance);
+    }
+    const auto n = static_cast<double>(points.size());
+    return reflected > 0 ? std::sqrt(square / n) / (reflected / n) : std::sqrt(square_of_E / n) / (arriving / n);
+}
+
+struct Case {
+    const char* family;
+    std::map<std::string, std::string> parameters;
+    double error;
+};
+
+class InterpolantErrorOf : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, InterpolantErrorOf,
+                         testing::Values(Case{"cornell", {}, 0.05}, Case{"cornell", {{"rot", "31.7,0.3,0.5,1"}}, 0.02},
+                                         Case{"boxes", {{"scale", "0.001"}}, 0.02},
+                                         Case{"tube", {{"rho", "0.1"}}, 0.03},
+                                         Case{"blocker", {{"h", "0.7"}, {"shift", "1000,370,-210"}}, 0.02}));
+
+TEST_P(InterpolantErrorOf, DirectLightIsReportedAsItIs) {
+    const Scene scene = built_scene(GetParam().family, GetParam().parameters);
+    const Solution solution = solved(scene, {.method = Method::matrix, .bounces = 0, .error = GetParam().error});
+    const double error = error_of_export(solution);
+    // Both are measured at places that hold most of the error: each square is known to a fifth.
+    ASSERT_TRUE(solution.statistics.relative_error_estimate_interpolant);
+    EXPECT_NEAR(*solution.statistics.relative_error_estimate_interpolant, error, 0.2 * error);
+}
+
+TEST(InterpolantError, FindsLightThatAFitAtItsPlacesDoesNotSee) {
+    // Half of a square of 1 m^2 is off by 1 W/m^2, and the fit knows of no error.
+    const Scene scene = box_scene(1, 1, 1, 0.5, 1);
+    const Stage stage(scene);
+    ElementFunction exact, interpolant;
+    std::vector<InterpolatedLeaf> leaves;
+    for (const Piece& piece : stage.pieces) leaves.push_back({exact.tree.add_root(piece.region, piece.patch)});
+    exact.tree.split(leaves[0].element, Cut::u);
+    for (ElementFunction* f : {&exact, &interpolant}) {
+        f->tree = exact.tree;
+        f->first_value.resize(f->tree.size(), 0);
+        for (ElementId e : f->tree.leaves()) {
+            f->first_value[e] = static_cast<std::uint32_t>(f->values.size());
+            const bool is_off = f == &interpolant && e == *f->tree.children(leaves[0].element).begin();
+            for (int k = 0; k < 4; ++k) f->add_value(Spectrum(is_off ? 3 : 2));
+        }
+    }
+    const double error = interpolant_error(stage, interpolant, leaves, {exact, Spectrum()}, 1);
+    const double right = 0.5 * std::sqrt(0.5 / 6);  // rho 1 W/m^2 on half of one of six faces
+    EXPECT_NEAR(error, right, 0.1 * right);         // 1024 stratified places, a sixth of them on that face
+}
+
+}  // namespace
+}  // namespace exitance

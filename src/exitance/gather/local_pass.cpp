@@ -1,0 +1,342 @@
+#include "exitance/gather/local_pass.hpp"
+
+#include <bit>
+
+#include "exitance/base/error_share.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/trace.hpp"
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/mesh/adaptive.hpp"
+#include "exitance/processes/distributed.hpp"
+#include "exitance/solution/continuous.hpp"
+
+namespace exitance {
+
+LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
+    : stage_(stage), seed_(seed), tree_(stage.make_elements(mesh)) {
+    const std::vector<ElementId> leaves = tree_.leaves();
+    noise_area_ = mean_area_ = stage.area / static_cast<double>(leaves.size());
+    is_crowd_ = ErrorShare::is_crowd(leaves.size(), stage.pieces.size());
+    if (is_crowd_) {
+        std::vector<double> areas;
+        for (ElementId e : leaves)
+            if (!stage.is_left_out(tree_.region(e))) areas.push_back(stage.counted_area(tree_, e));
+        noise_area_ = std::max(mean_area_, even_noise_area(areas));
+    }
+    share_on_node(tree_);
+}
+
+/// The light of the room that an element is in, by the mean light.
+double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
+    return demand.light_in.empty() ? 1 : demand.light_in[stage_.rooms.of(tree_, e)];
+}
+
+/// How much noisier than allowed. All elements of the first mesh may be alike if the error falls with the root of the
+/// rays; small ones count less. Where many rays are needed, the next one takes away less: there more noise may stay,
+/// and less where few do. (The least rays for an error in the mean square leave noise in proportion to the root of the
+/// rays; half of that exponent, since both are estimates.) What is far lighter than its room is noisier by as much, and
+/// for the same reason more of it may stay, by the root of that: beside the opening of a dark room some square
+/// centimetres would take most rays. It is so on a quarter of a room's light at most, and adds a quarter to the square
+/// of its noise.
+double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
+    constexpr double far_lighter = 4;  // given by the quarter
+    const double usual = 4 * demand.rays.average;
+    // Exponents are given by the least rays for a mean square, halved.
+    const double dear = std::clamp(std::pow(sampled.place_rays / usual, 0.25), 0.5, 2.0);
+    const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
+    const double bright = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
+    const double allowed = demand.noise * near * dear * bright *
+                           std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
+    return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
+}
+
+/// An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Without noise it can
+/// be told how far dim places are off, too; not the darkest, where that would follow the method's elements.
+double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
+    const double counted = stage_.counted_area(tree_, e), near = light_near(e, demand);
+    const double even = demand.tolerance * near * std::sqrt(mean_area_ / counted);
+    const double share = std::max(even, near * std::sqrt(least_share_ / counted));
+    if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
+    return std::min(share, std::max(demand.relative_tolerance * light, calibrated::minor_misfit * demand.tolerance));
+}
+
+/// The mean square that its polynomial may leave over, noise and all.
+double LocalPass::tolerated_misfit_squared(ElementId e, const SampledElement& sampled,
+                                           const LocalPassDemand& demand) const {
+    const double share = allowed_misfit(e, sampled.light, demand);
+    // Given by five freedoms: noise alone leaves over 2.3 times what they do on average once in twenty times.
+    return share * share + 2.3 * sampled.noise_in_misfit;
+}
+
+bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
+    return sampled.misfit_squared > tolerated_misfit_squared(e, sampled, demand);
+}
+
+/// All places' light: summed over elements, exact but for what they may miss, or by rays, twice as many at every second
+/// place if there are to be `more`. Returns how many that makes.
+unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b,
+                              unsigned rays, bool more, const LocalPassDemand& demand, Workspace& w) const {
+    const RegionId region = tree_.region(e);
+    const Normal& n = stage_.scene.regions()[region].plane.n;
+    w.gathered.assign(places.size(), {});
+    w.short_places.clear(), w.short_of.clear();
+    const unsigned most = more ? 2 * rays : rays;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Point x = tree_.patch(e).at(places[i].uv);
+        if (!demand.elements.empty()) {
+            if (stage_.occluders.is_covered(x, n, region)) continue;
+            for (const ElementGather& part : demand.elements)
+                w.gathered[i].irradiance += part(x, n, region, demand.element_share, w.elements);
+        } else if (w.growing[i].rays() < most && !(more && i % 2 == 0)) {
+            w.short_places.push_back({x, hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, i)});
+            w.short_of.push_back(&w.growing[i]);
+        }
+    }
+    if (demand.elements.empty()) {
+        grow_together(stage_, w.short_places, n, region, most, b, w.short_of, w.rays);
+        for (std::size_t i = 0; i < places.size(); ++i) w.gathered[i] = w.growing[i].gathered();
+    }
+    const auto count = static_cast<unsigned>(places.size());
+    return rays * (count + (more ? count / 2 : 0));
+}
+
+/// Gathers with the fewer rays that the element's area suggests or that it or its parent took before, and with half as
+/// many more, twice as many and so on until the noise is what is allowed. An element that is seen to be cut is left
+/// noisy: its pieces are gathered.
+SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
+                                 Workspace& w) const {
+    const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(demand.curved));
+    const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
+    const ElementId parent = tree_.parent(e);
+    const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays
+                            : parent.is_none()         ? 0
+                                                       : sampled_[parent].place_rays / 2;
+    const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area counts for no rays
+    // Of a crowd each has so small a share in the light that its noise alone tells how many rays it needs.
+    constexpr unsigned least_rays = 4;
+    const unsigned first = is_crowd_  ? least_rays
+                           : hopeless ? std::bit_ceil(demand.rays.least)
+                                      : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
+    unsigned rays = std::max({least_rays, first, before});
+    w.growing.assign(places.size(), {});
+    for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
+        const unsigned cast = gather_at(e, places, b, rays, more, demand, w);
+        SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, demand.curved, spread_.gain());
+        out.place_rays = rays;
+        out.rays = cast;
+        if (may_cut && is_too_rough(e, out, demand)) return out;
+        if (noise_excess(e, out, demand) <= calibrated::tolerated_noise || 2 * rays > demand.rays.most) {
+            if (may_cut && demand.elements.empty()) look_between(e, out, b, demand, w);
+            return out;
+        }
+    }
+}
+
+/// What is known of an element and what a change of the light adds to it: rays that say more of it than of all light
+/// are few. One that is too noisy in any case is left to be gathered anew.
+SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Workspace& w) const {
+    const SampledElement& before = sampled_[e];
+    if (noise_excess(e, before, demand) > calibrated::kept_noise) return before;
+    constexpr unsigned least_rays = 4, share = 8;  // of the rays of a place, 1 / share to begin with
+    const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(before.curved));
+    const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
+    w.growing.assign(places.size(), {});
+    for (unsigned rays = std::max(least_rays, before.place_rays / share);; rays *= 2) {
+        const unsigned cast = gather_at(e, places, *demand.change, rays, false, demand, w);
+        SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, before.curved, spread_.gain());
+        for (std::size_t k = 0; k < out.coefficient.size(); ++k)
+            for (std::size_t b = 0; b < bands; ++b) out.coefficient[k][b] += before.coefficient[k][b];
+        out.light = before.light, out.quarters = before.quarters, out.halves = before.halves;
+        out.noise_squared += before.noise_squared;
+        out.misfit_squared += before.misfit_squared, out.noise_in_misfit += before.noise_in_misfit;
+        out.rays = before.rays + cast, out.place_rays = before.place_rays;
+        if (noise_excess(e, out, demand) <= calibrated::kept_noise || 2 * rays > before.place_rays) return out;
+    }
+}
+
+/// Light in a slit between two boards changes within less than the distance of the rule's places. So that it does not
+/// go unseen, the polynomial is compared with what a few rays find at random places; where that is further off than
+/// their noise, it counts as misfit.
+void LocalPass::look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b,
+                             const LocalPassDemand& demand, Workspace& w) const {
+    constexpr unsigned rays = 16, share = 8;  // of the rays that it took, 1 / share
+    constexpr unsigned least_places = 4, most_places = 32;
+    const unsigned count = std::min(most_places, sampled.rays / (share * rays));
+    if (count < least_places) return;  // their noise would not be known
+    const RegionId region = tree_.region(e);
+    const Normal& n = stage_.scene.regions()[region].plane.n;
+    const Spectrum& rho = stage_.scene.material(region).reflectance;
+    const SampledFunction polynomial(tree_, e, sampled);
+    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), e.value, ~std::uint64_t{0});
+    const ScrambledSobol random(key);
+    double misfit = 0, noise = 0;
+    for (unsigned k = 0; k < count; ++k) {
+        const Vec2 uv = tree_.uniform(e, random(k, 0), random(k, 1));
+        const Gathered g = gather_reflected(stage_, tree_.patch(e).at(uv), n, region, rays, hash(key, k), b, w.rays);
+        misfit += squared(rho * (g.irradiance - polynomial.at(uv))) / static_cast<double>(bands) / count;
+        noise += spread_.gain() * mean(rho * rho * g.quarters) / count;
+    }
+    sampled.rays += rays * count;
+    const double allowed = allowed_misfit(e, sampled.light, demand);
+    if (!(misfit > allowed * allowed + 3 * noise)) return;
+    // Given by five freedoms, as in is_too_rough.
+    sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
+}
+
+/// What misfit is left to each of many small elements by what all have now.
+double LocalPass::share_in_crowd(const LocalPassDemand& demand) const {
+    std::vector<double> errors;
+    for (ElementId e : tree_.leaves()) {
+        const SampledElement& s = sampled_[e];
+        const double light = light_near(e, demand);
+        const double misfit = std::max(0.0, s.misfit_squared - s.noise_in_misfit);
+        if (light > 0) errors.push_back(stage_.counted_area(tree_, e) * misfit / (light * light));
+    }
+    return share_of_crowd(std::move(errors), demand.tolerance * demand.tolerance * stage_.area);
+}
+
+/// Cuts the elements whose error has too large a share in the whole; returns the new leaves.
+std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId>& candidates,
+                                                     const LocalPassDemand& demand) {
+    std::vector<ElementId> fresh;
+    for (ElementId e : candidates)
+        if (const SampledElement& s = sampled_[e]; is_too_rough(e, s, demand)) {
+            const double tolerated = tolerated_misfit_squared(e, s, demand);
+            const Cut only = sufficient_cut(s.misfit_squared, s.misfit_along, tolerated);
+            for (ElementId child : refine_element(tree_, e, only)) fresh.push_back(child);
+        }
+    return fresh;
+}
+
+ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassReport& report) const {
+    ElementFunction out;
+    out.tree = tree_;
+    const std::vector<StraightLeaf> straight = add_straight(
+        out, tree_.leaves(), [&](ElementId e) -> const SampledElement& { return sampled_[e]; },
+        [&](ElementId e) { return stage_.scene.material(tree_.region(e)).reflectance; },
+        [&](ElementId e) { return calibrated::minor_misfit * allowed_misfit(e, sampled_[e].light, demand); });
+    report.leaves.resize(out.tree.size());
+    for (const auto [leaf, of] : straight) {
+        const SampledElement& s = sampled_[of];
+        report.leaves[leaf] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
+    }
+    out = nearest_continuous(out, stage_.scene, stage_.contacts);
+    double noise = 0, interpolation = 0;
+    for (ElementId e : tree_.leaves()) {
+        const SampledElement& s = sampled_[e];
+        const double light = light_near(e, demand);
+        const double counted = stage_.counted_area(tree_, e) / (light * light);
+        noise += counted * s.noise_squared;
+        interpolation += counted * (s.misfit_squared - s.noise_in_misfit);
+    }
+    report.noise = std::sqrt(noise / stage_.area);
+    report.interpolation = std::sqrt(std::max(0.0, interpolation) / stage_.area);
+    return out;
+}
+
+/// Of leaves that are known, those that are too noisy, and the pieces of others that are cut: of what is quiet enough,
+/// the pieces are all that has to be gathered.
+std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves, const LocalPassDemand& demand) {
+    const auto good = [&](ElementId e) {
+        return sampled_[e].place_rays > 0 && noise_excess(e, sampled_[e], demand) <= calibrated::kept_noise;
+    };
+    std::vector<ElementId> kept;
+    std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(kept), good);
+    std::erase_if(leaves, good);
+    if (is_crowd_) least_share_ = share_in_crowd(demand);
+    for (ElementId child : split_where_needed(kept, demand)) leaves.push_back(child);
+    return leaves;
+}
+
+/// Of an element that was cut, what its polynomial is on a part.
+SampledElement LocalPass::part_of(ElementId whole, ElementId part) const {
+    const SampledElement& known = sampled_[whole];
+    const SampledFunction polynomial(tree_, whole, known);
+    const std::vector<WeightedPlace> places = element_rule(tree_, part, rule_order(known.curved));
+    std::vector<Gathered> values(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        values[i].irradiance = polynomial.at(tree_.patch(whole).coordinates(tree_.patch(part).at(places[i].uv)));
+    const Spectrum& rho = stage_.scene.material(tree_.region(part)).reflectance;
+    SampledElement out = fit_gathered(tree_, part, places, values, rho, known.curved, 1);
+    out.noise_squared = known.noise_squared;
+    out.misfit_squared = known.misfit_squared, out.noise_in_misfit = known.noise_in_misfit;
+    return out;
+}
+
+/// Gives elements that there was no time for what is known of those that they were cut from. False where nothing is.
+bool LocalPass::inherit() {
+    bool is_whole = true;
+    for (ElementId e : tree_.leaves()) {
+        ElementId whole = e;
+        while (!whole.is_none() && sampled_[whole].place_rays == 0) whole = tree_.parent(whole);
+        if (whole.is_none())
+            is_whole = false;
+        else if (whole != e)
+            sampled_[e] = part_of(whole, e);
+    }
+    return is_whole;
+}
+
+std::size_t LocalPass::rays_of(std::span<const ElementId> elements) const {
+    std::size_t rays = 0;
+    for (ElementId e : elements) rays += sampled_[e].rays;
+    return rays;
+}
+
+ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand,
+                                  LocalPassReport& report, Progress& progress, const StopRequest& stop,
+                                  SafePoints safe_points) {
+    constexpr int change = -1;  // the round of a change comes before those that cut
+    std::vector<ElementId> active = tree_.leaves();
+    const bool known = !fresh && sampled_.size() == tree_.size();
+    int depth = known && demand.change ? change : 0;
+    std::size_t begun = 0;        // how many of `active` an earlier run has gathered
+    std::size_t rays_before = 0;  // of `active`, where they are changed
+    const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays, rays_before); });
+    if (!resumed && depth == change) rays_before = rays_of(active);
+    if (!resumed && known && depth == 0) active = to_gather_again(std::move(active), demand);
+    // What those of a crowd may leave follows from what all of them have.
+    const auto may_cut = [&](int at) { return at < demand.max_depth && !(is_crowd_ && at == 0); };
+    for (; !active.empty(); ++depth) {
+        sampled_.resize(tree_.size());
+        // In slices, so that progress can be told; few, since threads wait for one another at the end of each. A
+        // request to stop is heard at every element: what it leaves out is not used.
+        const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
+        for (std::size_t first = std::exchange(begun, 0); first < active.size() && !stop.requested(); first += slice) {
+            safe_points.pass([&](auto& a) { a(active, depth, first, report.rays, rays_before); });
+            const auto slice_of = std::span(active).subspan(first, std::min(slice, active.size() - first));
+            const auto [lowest, highest] = std::minmax_element(slice_of.begin(), slice_of.end());
+            shared_ranges_of(
+                sampled_.span().subspan(lowest->value, highest->value - lowest->value + 1), slice_of.size(), 1,
+                [&](std::size_t begin, std::size_t end) {
+                    Workspace workspace;
+                    for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
+                        const ElementId e = active[i];
+                        sampled_[e] = depth == change ? changed(e, demand, workspace)
+                                                      : sample(e, b, demand, may_cut(depth), workspace);
+                        note_touched("rays", sampled_[e].rays);
+                    }
+                },
+                [&](std::size_t i) -> SampledElement& { return sampled_[active[first + i]]; },
+                {"gather", [&](std::size_t i) { return tree_.region(active[first + i]).value; }});
+            for (std::size_t i = first; depth != change && i < std::min(first + slice, active.size()); ++i) {
+                const SampledElement& s = sampled_[active[i]];
+                spread_.quarters += tree_.area(active[i]) * s.quarters;
+                spread_.halves += tree_.area(active[i]) * s.halves;
+            }
+            // The first round is about half of the work, every further one half of what is left.
+            const double done = static_cast<double>(first) / static_cast<double>(active.size());
+            if (depth != change) progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
+        }
+        if (demand.elements.empty()) report.rays += rays_of(active) - std::exchange(rays_before, 0);
+        if (stop.requested()) report.interrupted = !inherit();
+        if (depth == demand.max_depth || stop.requested()) break;
+        if (depth != change && is_crowd_) least_share_ = share_in_crowd(demand);
+        active = depth == change ? to_gather_again(std::move(active), demand) : split_where_needed(active, demand);
+    }
+    tree_.shrink_to_fit(), sampled_.shrink_to_fit();
+    share_on_node(tree_), share_on_node(sampled_.span());
+    return finished(demand, report);
+}
+
+}  // namespace exitance

@@ -1,0 +1,168 @@
+#include "exitance/gather/local_pass.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "exitance/base/random.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+#include "support/built_scene.hpp"
+#include "support/test_scenes.hpp"
+
+namespace exitance {
+namespace {
+
+/// A box of which one face reflects light, 1 W/m^2, and nothing else does: what arrives is a form factor.
+class OneBrightFace : public testing::Test {
+  protected:
+    Scene scene = test::make(test::closed_box({}, {2, 1.5, 1}));
+    Stage stage{scene};
+    RegionId bright = scene.surfaces()[SurfaceId(5)].region;
+    PointwiseLight b{[this](RegionId region, const Point&) { return Spectrum(region == bright ? 1.0 : 0.0); }};
+    LocalPass pass{stage, {.edge = 0.8, .grading_levels = 0}, 1};
+    static constexpr LocalPassDemand coarse = {.rays = {.average = 32}, .noise = 0.002, .tolerance = 0.002},
+                                     fine = {.rays = {.average = 64}, .noise = 0.0007, .tolerance = 0.0007};
+
+    ElementFunction gather(const LocalPassDemand& demand, LocalPassReport& report, bool fresh = false) {
+        Progress progress;
+        const StopRequest stop;
+        report = {};
+        return pass.gather(b, fresh, demand, report, progress, stop);
+    }
+
+    /// RMS over all surfaces of rho (E - exact), rho = 0.5.
+    double error(const ElementFunction& E) const {
+        double sum = 0;
+        for (ElementId e : E.tree.leaves()) {
+            RandomStream random(1, Stream::mesh, e.value);
+            const RegionId region = E.tree.region(e);
+            for (int k = 0; k < 16; ++k) {
+                const double s = random.uniform(), t = random.uniform();
+                const Vec2 uv = E.tree.uniform(e, s, t);
+                const double exact = region == bright
+                                         ? 0
+                                         : point_to_polygon(E.tree.patch(e).at(uv), scene.regions()[region].plane.n,
+                                                            scene.outline(SurfaceId(5)));
+                sum += E.tree.area(e) / 16 * std::pow(0.5 * (E.at({e, uv})[0] - exact), 2);
+            }
+        }
+        return std::sqrt(sum / stage.area);
+    }
+};
+
+TEST_F(OneBrightFace, IsGatheredWithTheErrorThatTheReportTells) {
+    for (const LocalPassDemand& demand : {coarse, fine}) {
+        LocalPassReport report;
+        const double truth = error(gather(demand, report));
+        const double told = std::hypot(report.noise, report.interpolation);
+        // Noise is known from four quarters of the rays, interpolation from nine places: both to a third or so.
+        EXPECT_LT(truth, 1.5 * told);
+        EXPECT_GT(truth, 0.6 * told);
+        EXPECT_LT(truth, 1.5 * std::hypot(demand.noise, demand.tolerance));
+    }
+}
+
+TEST_F(OneBrightFace, HasTheVarianceThatQuartersAndHalvesOfTheRaysTell) {
+    const Point x = {0.9, 0.6, 0.4};
+    const Normal n = normalized(Vec3{0.3, 0.2, 0.1} - scene.regions()[bright].plane.n);
+    constexpr unsigned gathers = 1000;
+    GatherWorkspace workspace;
+    double told = 0, by_chance = 0;  // logarithms of what is told of the variance over what it is
+    for (const unsigned rays : {32u, 64u, 128u, 256u}) {
+        double sum = 0, square = 0, quarters = 0, halves = 0;
+        for (unsigned k = 0; k < gathers; ++k) {
+            const Gathered g = gather_reflected(stage, x, n, RegionId(), rays, k, b, workspace);
+            sum += g.irradiance[0], square += g.irradiance[0] * g.irradiance[0];
+            quarters += g.quarters[0], halves += g.halves[0];
+        }
+        const double variance = square - sum * sum / gathers;
+        told += 0.25 * std::log(halves / quarters * halves / variance);
+        by_chance += 0.25 * std::log(quarters / variance);
+    }
+    // Powers of 4 fill the square better than their doubles: a power law holds for both together, to a third.
+    EXPECT_NEAR(std::exp(told), 1, 0.35);
+    EXPECT_GT(std::exp(by_chance), 1.5);
+}
+
+TEST_F(OneBrightFace, IsNotGatheredAgainWhereItIsGoodEnough) {
+    LocalPassReport first, same, finer, anew;
+    const ElementFunction once = gather(coarse, first);
+    const ElementFunction twice = gather(coarse, same);
+    EXPECT_EQ(same.rays, 0u);
+    EXPECT_EQ(once.values, twice.values);
+    const ElementFunction better = gather(fine, finer);
+    EXPECT_LT(error(better), 0.7 * error(once));
+    // Other light: everything is gathered, on the mesh found so far, with the rays that it took.
+    gather(fine, anew, true);
+    EXPECT_GT(anew.rays, finer.rays / 2);
+    EXPECT_LT(anew.rays, 2 * (first.rays + finer.rays));
+}
+
+TEST_F(OneBrightFace, AChangeOfTheLightIsGatheredByFewRays) {
+    LocalPassReport first, second;
+    const ElementFunction dim = gather(fine, first);
+    const PointwiseLight change{
+        [this](RegionId region, const Point&) { return Spectrum(region == bright ? 0.05 : 0.0); }};
+    LocalPassDemand demand = fine;
+    demand.change = &change;
+    ElementFunction brighter = gather(demand, second);
+    EXPECT_LT(second.rays, first.rays / 4);
+    // As far off as before, but for noise of the change that rays for all of the light would have: what is allowed.
+    for (std::array<float, bands>& value : brighter.values)
+        for (float& v : value) v /= 1.05F;
+    EXPECT_LT(error(brighter), 1.2 * error(dim) + 0.2 * fine.noise);
+    EXPECT_GT(second.noise, 0.9 * first.noise);
+}
+
+TEST_F(OneBrightFace, StoppedEarlyIsWhatLargerElementsAre) {
+    LocalPassReport whole;
+    const double least = error(gather(fine, whole));
+    for (const double share : {0.7, 0.0}) {
+        std::atomic<std::size_t> read = 0;
+        StopRequest stop;
+        const PointwiseLight until_stopped{[&](RegionId region, const Point&) {
+            if (static_cast<double>(++read) > share * static_cast<double>(whole.rays)) stop.interrupt();
+            return Spectrum(region == bright ? 1.0 : 0.0);
+        }};
+        LocalPass stopped(stage, {.edge = 0.8, .grading_levels = 0}, 1);
+        Progress progress;
+        LocalPassReport report;
+        const ElementFunction E = stopped.gather(until_stopped, true, fine, report, progress, stop);
+        EXPECT_EQ(report.interrupted, share == 0);  // before every element of the first mesh was gathered for
+        if (report.interrupted) continue;
+        EXPECT_LT(report.rays, whole.rays);
+        EXPECT_LT(error(E), 3 * least);
+        EXPECT_LT(error(E), 1.5 * std::hypot(report.noise, report.interpolation));
+    }
+}
+
+TEST_F(OneBrightFace, WhatIsFarLighterMayBeNoisier) {
+    LocalPassReport usual, dim;
+    LocalPassDemand demand = fine;
+    demand.noise = 1e-4;
+    gather(demand, usual);
+    LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // which has not gathered before
+    Progress progress;
+    demand.light = 0.002;  // of a room that is dark but for this face's light, which is up to 0.1 elsewhere
+    const double truth = error(other.gather(b, true, demand, dim, progress, StopRequest()));
+    EXPECT_LT(dim.rays, usual.rays / 2);
+    EXPECT_LT(truth, 1.5 * std::hypot(dim.noise, dim.interpolation));
+}
+
+TEST(LocalPass, GathersConstantLightExactly) {
+    const Scene scene = box_scene(2, 1, 1.5, 0.5, 0);
+    const Stage stage(scene);
+    LocalPass pass(stage, {.edge = 0.7, .grading_levels = 1}, 1);
+    Progress progress;
+    const StopRequest stop;
+    LocalPassReport report;
+    const ElementFunction E =
+        pass.gather(PointwiseLight([](RegionId, const Point&) { return Spectrum(2.0); }), true,
+                    {.rays = {.average = 16}, .noise = 1e-3, .tolerance = 1e-3}, report, progress, stop);
+    for (const auto& value : E.values) EXPECT_NEAR(value[0], 2, 1e-6);  // single precision
+    EXPECT_EQ(report.noise, 0);
+    EXPECT_NEAR(report.interpolation, 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "exitance/base/random.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// Follows paths of light from the place where it arrives [Kajiya86]. At every vertex the direct light is estimated by
+/// one shadow ray to an emitter, chosen by its unoccluded contribution, by one ray to each distant disc, and by the
+/// path's next ray (weighted by the balance heuristic [Veach95]; a lost ray sees the sky). Paths end by Russian
+/// roulette with the reflectance as survival. The stage must outlive the tracer.
+class PathTracer {
+  public:
+    /// A point that a path has reached.
+    struct Vertex {
+        Point x;
+        Normal n;
+        RegionId region;
+        /// True if a pane mirrored the path on its way here. Emission here is then ignored, as direct light ignores it.
+        bool mirrored = false;
+    };
+
+    /// What one step of a path finds at a vertex.
+    struct Step {
+        Spectrum direct;             ///< One unbiased sample of the direct irradiance at the vertex, W/m^2.
+        std::optional<Vertex> next;  ///< Where a ray of density cos / pi arrives; none if it meets no front.
+    };
+
+    explicit PathTracer(const Stage& stage);
+
+    /// Returns one unbiased sample of the irradiance at `probe` that was reflected at least once, W/m^2. a, b in [0, 1)
+    /// choose its first direction.
+    Spectrum path(const Vertex& probe, double a, double b, RandomStream& random) const;
+
+    /// Returns the vertex that a ray of density cos / pi from `from` reaches; none if it meets no front. Follows panes
+    /// that mirror. a, b in [0, 1) choose its direction.
+    std::optional<Vertex> first(const Vertex& from, double a, double b) const;
+
+    /// Takes a step from `y`, from either side of a diffusing pane in proportion to the light that leaves `y` by it.
+    Step step(const Vertex& y, RandomStream& random) const;
+
+    /// Upper limit of the rays of a step.
+    double rays_per_step() const;
+
+  private:
+    /// A piece of an emitter that shadow rays are aimed at.
+    struct LightPiece {
+        RegionId region;
+        Patch patch;
+        Normal n;
+        double area;
+        Spectrum exitance;
+        RelativeRadiance radiance;
+    };
+
+    /// `lost`, if given, is set if a ray meets nothing and no pane mirrored it.
+    std::optional<Vertex> follow(const Vertex& from, const Vec3& direction, bool* lost = nullptr,
+                                 Mirrored mirrored = Mirrored::lost) const;
+    Spectrum light_of_discs(const Vertex& y, RandomStream& random) const;
+    double chances(const Vertex& y, std::vector<double>& chance) const;
+    double shadow_density(const Vertex& y, const Vertex& target) const;
+    double weight_of_shadow_ray(const Vertex& y, const Vertex& target) const;
+    Spectrum shadow_ray(const Vertex& y, RandomStream& random) const;
+
+    const Stage& stage_;
+    std::vector<LightPiece> lights_;
+};
+
+}  // namespace exitance

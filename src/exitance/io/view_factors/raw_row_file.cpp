@@ -1,0 +1,119 @@
+#include "exitance/io/view_factors/raw_row_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <span>
+
+#include "exitance/base/random.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::array<char, 8> magic = {'E', 'X', 'I', 'R', 'O', 'W', 'S', '1'};
+
+/// What precedes the entries of a record.
+struct RecordHead {
+    std::uint64_t checksum;  ///< Of all that follows.
+    std::uint64_t entries, rays;
+    std::uint32_t face, round;
+    double cast_density, missed, missed_variance, bound;
+};
+static_assert(std::is_trivially_copyable_v<RecordHead> && std::is_trivially_copyable_v<RowEntry>);
+static_assert(sizeof(RowEntry) == 24, "without gaps, as its bytes are hashed");
+
+std::uint64_t hash_bytes(std::span<const std::byte> bytes, std::uint64_t seed) {
+    std::uint64_t sum = hash(seed, bytes.size());
+    for (std::size_t k = 0; k < bytes.size(); k += 8) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + k, std::min<std::size_t>(8, bytes.size() - k));
+        sum = hash(sum ^ word);
+    }
+    return sum;
+}
+
+std::uint64_t checksum_of(const RecordHead& head, std::span<const RowEntry> entries) {
+    const auto bytes = std::as_bytes(std::span(&head, 1)).subspan(sizeof head.checksum);
+    return hash_bytes(std::as_bytes(entries), hash_bytes(bytes, 0));
+}
+
+Error refused(const std::string& path, int error) {
+    return {ErrorCode::cannot_write, std::string("cannot be written: ") + std::strerror(error), path, ""};
+}
+
+}  // namespace
+
+long RawRowFile::read_records(std::size_t faces) {
+    long whole = std::ftell(file_.get());
+    RecordHead head;
+    while (std::fread(&head, sizeof head, 1, file_.get()) == 1) {
+        if (head.face >= faces || head.entries > faces) break;
+        RawRow row;
+        row.entries.resize(head.entries);
+        if (std::fread(row.entries.data(), sizeof(RowEntry), head.entries, file_.get()) != head.entries) break;
+        if (checksum_of(head, row.entries) != head.checksum) break;
+        row.face = head.face, row.round = head.round, row.rays = head.rays;
+        row.cast_density = head.cast_density, row.bound = head.bound;
+        row.missed = head.missed, row.missed_variance = head.missed_variance;
+        resumed_.push_back(std::move(row));
+        whole = std::ftell(file_.get());
+    }
+    return whole;
+}
+
+Result<RawRowFile> RawRowFile::open(const std::string& path, const std::string& work, bool resume, std::size_t faces) {
+    RawRowFile out;
+    out.path_ = path;
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) return refused(path, errno);
+    out.file_.reset(::fdopen(descriptor, "r+b"));
+    if (!out.file_) return refused(path, errno);
+    const std::string all = work + " version " EXITANCE_VERSION;
+    const std::array<std::uint64_t, 2> id = {hash_bytes(std::as_bytes(std::span(all)), 1), all.size()};
+    std::FILE* const file = out.file_.get();
+    long end = 0;
+    if (resume) {
+        std::array<char, magic.size()> found_magic;
+        std::array<std::uint64_t, 2> found_id;
+        const bool any = std::fread(found_magic.data(), found_magic.size(), 1, file) == 1;
+        if (any && found_magic != magic)
+            return Error{ErrorCode::bad_input, "is not a file of rows of view factors", path, "remove it"};
+        if (any && std::fread(found_id.data(), sizeof found_id, 1, file) == 1) {
+            if (found_id != id)
+                return Error{ErrorCode::bad_input, "holds rows of another scene, other options or another program",
+                             path, "run with the same options, or without --resume"};
+            end = out.read_records(faces);
+        }
+    }
+    if (::ftruncate(descriptor, end) != 0) return refused(path, errno);
+    std::fseek(file, end, SEEK_SET);
+    if (end == 0) {
+        out.failed_ |= std::fwrite(magic.data(), magic.size(), 1, file) != 1;
+        out.failed_ |= std::fwrite(id.data(), sizeof id, 1, file) != 1;
+    }
+    out.flush();
+    return out;
+}
+
+void RawRowFile::keep(const RawRow& row) {
+    if (failed_) return;
+    RecordHead head{0,          row.entries.size(),  row.rays, row.face, row.round, row.cast_density,
+                    row.missed, row.missed_variance, row.bound};
+    head.checksum = checksum_of(head, row.entries);
+    failed_ |= std::fwrite(&head, sizeof head, 1, file_.get()) != 1;
+    failed_ |= std::fwrite(row.entries.data(), sizeof(RowEntry), row.entries.size(), file_.get()) != row.entries.size();
+}
+
+void RawRowFile::flush() {
+    failed_ |= std::fflush(file_.get()) != 0;
+}
+
+void RawRowFile::remove() {
+    file_.reset();
+    ::unlink(path_.c_str());
+}
+
+}  // namespace exitance

@@ -1,0 +1,228 @@
+#include "exitance/io/view_factors/view_factor_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/solution/hdf5_file.hpp"
+
+namespace exitance {
+namespace {
+
+template <class... Values>
+void append(std::string& text, const char* format, Values... values) {
+    char buffer[64];
+    const int length = std::snprintf(buffer, sizeof buffer, format, values...);
+    text.append(buffer, static_cast<std::size_t>(length));
+}
+
+/// As by %.17g: no digit is lost; millions of entries are most of what writing takes.
+void append_exactly(std::string& text, double value) {
+    char buffer[64];
+    text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 17).ptr);
+}
+
+Error stopped() {
+    return {ErrorCode::limit, "stopped while view factors were written", "", "allow more time"};
+}
+
+/// A format of text: what comes before the rows, each row, and what comes after them.
+class TextFormat {
+  public:
+    explicit TextFormat(const SparseFactors& table) : table_(table) {}
+    virtual ~TextFormat() = default;
+    virtual void begin(std::string& text) const = 0;
+    virtual void add_row(std::string& text, std::size_t i) const = 0;
+    virtual void end(std::string& /*text*/) const {}
+
+  protected:
+    /// Calls take(F) for every column of a row, zeros included.
+    template <class Take>
+    void for_all_columns(std::size_t i, const Take& take) const {
+        const std::span<const std::uint32_t> columns = table_.row_columns(i);
+        std::size_t k = 0;
+        for (std::size_t j = 0; j < table_.size(); ++j)
+            take(k < columns.size() && columns[k] == j ? table_.row_values(i)[k++] : 0.0);
+    }
+    const SparseFactors& table_;
+};
+
+class Csv : public TextFormat {
+  public:
+    using TextFormat::TextFormat;
+    void begin(std::string& text) const override {
+        text = "surface,area,row_sum";
+        for (std::size_t j = 1; j <= table_.size(); ++j) append(text, ",F_%zu", j);
+        text += '\n';
+    }
+    void add_row(std::string& text, std::size_t i) const override {
+        if (!table_.finished[i]) return;
+        append(text, "%zu,%.17g,%.17g", i + 1, table_.areas[i], table_.row_sums[i]);
+        for_all_columns(i, [&](double F) {
+            if (F == 0)
+                text += ",0";
+            else
+                append_exactly(text += ',', F);
+        });
+        text += '\n';
+    }
+};
+
+class Vf : public TextFormat {
+  public:
+    using TextFormat::TextFormat;
+    void begin(std::string& text) const override {
+        text = "View3D 4.0.0 0 0 0 " + std::to_string(table_.size());  // out encl emit N
+        if (text.size() < 30) text.resize(30, ' ');
+        text += '\n';
+        for (double area : table_.areas) append(text, " %g", area);
+        text += '\n';
+    }
+    void add_row(std::string& text, std::size_t i) const override {
+        for_all_columns(i, [&](double F) { append(text, " %.6f", F); });
+        text += '\n';
+    }
+    void end(std::string& text) const override {
+        for (double emittance : table_.emittances) append(text, " %.3f", emittance);
+        text += '\n';
+    }
+};
+
+class MatrixMarket : public TextFormat {
+  public:
+    using TextFormat::TextFormat;
+    void begin(std::string& text) const override {
+        const std::size_t n = table_.size();
+        text =
+            "%%MatrixMarket matrix coordinate real general\n"
+            "% view factors: row i, column j is the share of the flux leaving face i that reaches face j\n"
+            "% areas in m^2, a line a face:\n";
+        for (std::size_t i = 0; i < n; ++i) append(text, "%% %zu %.17g\n", i + 1, table_.areas[i]);
+        const auto unfinished = static_cast<std::size_t>(std::count(table_.finished.begin(), table_.finished.end(), 0));
+        if (unfinished > 0) append(text, "%% %zu rows are not finished\n", unfinished);
+        append(text, "%zu %zu ", n, n);
+        append(text, "%zu\n", table_.entries());
+    }
+    void add_row(std::string& text, std::size_t i) const override {
+        for (std::size_t k = table_.starts[i]; k < table_.starts[i + 1]; ++k) {
+            append(text, "%zu %zu ", i + 1, std::size_t(table_.columns[k]) + 1);
+            append_exactly(text, table_.values[k]);
+            text += '\n';
+        }
+    }
+};
+
+std::string whole_text(const TextFormat& format, std::size_t rows) {
+    std::string text;
+    format.begin(text);
+    for (std::size_t i = 0; i < rows; ++i) format.add_row(text, i);
+    format.end(text);
+    return text;
+}
+
+/// A row at a time: a large table is never held as text.
+Result<void> write_text(const std::string& path, const TextFormat& format, std::size_t rows, const StopRequest& stop) {
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return file.error();
+    std::string text;
+    format.begin(text);
+    for (std::size_t i = 0; i < rows; ++i) {
+        format.add_row(text, i);
+        file->write(text);
+        text.clear();
+        if (stop.requested()) return stopped();
+    }
+    format.end(text);
+    file->write(text);
+    if (stop.requested()) return stopped();
+    return file->commit();
+}
+
+/// Compressed rows, by the names that SciPy gives their parts.
+Result<void> write_hdf5(const std::string& path, const SparseFactors& table, const StopRequest& stop) {
+    if (stop.requested()) return stopped();
+    const std::string group = "view_factors";
+    Hdf5Writer file(path);
+    file.make_group(group);
+    file.set_attribute(group, "format", std::string_view("csr"));
+    const std::int64_t shape[] = {static_cast<std::int64_t>(table.size()), static_cast<std::int64_t>(table.size())};
+    file.set_attribute(group, "shape", std::span<const std::int64_t>(shape));
+    file.set_attribute(group, "combined", static_cast<std::int32_t>(table.combined));
+    file.set_attribute(group, "reciprocity_defect", table.reciprocity_defect);
+    if (table.row_errors.empty())
+        file.set_attribute(group, "entry_reciprocity_defect", table.entry_defect);
+    else
+        file.set_attribute(group, "closure_defect", table.closure_defect);
+    file.write_rows<std::int64_t>(
+        group + "/indptr", table.starts.size(), 1, {"1", "where rows begin in data, and the end"},
+        [&](std::size_t i, std::span<std::int64_t> row) { row[0] = static_cast<std::int64_t>(table.starts[i]); });
+    file.write_rows<std::int32_t>(
+        group + "/indices", table.entries(), 1, {"1", "columns of data, from 0"},
+        [&](std::size_t k, std::span<std::int32_t> row) { row[0] = static_cast<std::int32_t>(table.columns[k]); });
+    file.write(group + "/data", table.values, 1, {"1", "view factors from the row's face to the column's"});
+    file.write(group + "/areas", table.areas, 1, {"m^2", "areas of faces"});
+    file.write(group + "/emittances", table.emittances, 1, {"1", "emittances of faces"});
+    file.write(group + "/row_sums", table.row_sums, 1, {"1", "sums of rows"});
+    file.write(group + "/finished", table.finished, 1, {"1", "1 for rows that were computed"});
+    file.write(group + "/dropped", table.dropped, 1, {"1", "sums of entries of rows left out as too small"});
+    if (!table.row_errors.empty())
+        file.write(group + "/row_errors", table.row_errors, 1,
+                   {"1", "root of the sum of the variances of a row, and bounds of what was integrated or dropped"});
+    if (stop.requested()) return stopped();
+    return file.commit();
+}
+
+}  // namespace
+
+std::string view_factors_csv(const SparseFactors& table) {
+    return whole_text(Csv(table), table.size());
+}
+
+std::string view_factors_vf(const SparseFactors& table) {
+    return whole_text(Vf(table), table.size());
+}
+
+std::string view_factors_mtx(const SparseFactors& table) {
+    return whole_text(MatrixMarket(table), table.size());
+}
+
+Result<SparseFactors> read_view_factors(const std::string& path) {
+    Result<Hdf5Reader> file = Hdf5Reader::open(path);
+    if (!file) return file.error();
+    const std::string group = "view_factors/";
+    SparseFactors table;
+    table.areas = file->read<double>(group + "areas");
+    const std::size_t n = table.size();
+    const auto starts = file->read<std::int64_t>(group + "indptr", 1, n + 1);
+    const auto columns = file->read<std::int32_t>(group + "indices");
+    table.values = file->read<double>(group + "data", 1, columns.size());
+    table.finished = file->read<std::uint8_t>(group + "finished", 1, n);
+    table.emittances = file->read<double>(group + "emittances", 1, n);
+    table.row_sums = file->read<double>(group + "row_sums", 1, n);
+    if (file->has(group + "row_errors")) table.row_errors = file->read<double>(group + "row_errors", 1, n);
+    table.dropped = file->read<double>(group + "dropped", 1, n);
+    table.combined = file->integer_attribute("view_factors", "combined").value_or(0) != 0;
+    if (file->failed()) return file->error();
+    const bool is_ascending = std::is_sorted(starts.begin(), starts.end());
+    if (!is_ascending || starts.front() != 0 || starts.back() != static_cast<std::int64_t>(columns.size()))
+        file->fail(group + "indptr", "does not divide the entries into rows");
+    for (std::int32_t column : columns)
+        if (column < 0 || static_cast<std::size_t>(column) >= n)
+            file->fail(group + "indices", "names a face that is not there");
+    if (file->failed()) return file->error();
+    table.starts.assign(starts.begin(), starts.end());
+    table.columns.assign(columns.begin(), columns.end());
+    return table;
+}
+
+Result<void> write_view_factors(const std::string& path, const SparseFactors& table, const StopRequest& stop) {
+    const std::string end = ending(path);
+    if (end == ".h5") return write_hdf5(path, table, stop);
+    if (end == ".vf") return write_text(path, Vf(table), table.size(), stop);
+    if (end == ".mtx") return write_text(path, MatrixMarket(table), table.size(), stop);
+    return write_text(path, Csv(table), table.size(), stop);
+}
+
+}  // namespace exitance

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "exitance/basis/nodal_basis.hpp"
+#include "exitance/lab/classical/snapshots.hpp"
+
+namespace exitance {
+
+/// What a classical form of a method is given.
+struct ClassicalInput {
+    const Stage& stage;
+    const SolveOptions& options;
+    const ClassicalOptions& classical;
+    const Knobs& knobs;
+    Progress& progress;
+    const StopRequest& stop;
+    Snapshots& snapshots;
+
+    /// Does it carry the emitters' light itself?
+    bool carries() const { return classical.carried(); }
+    const Material& material(const ElementTree& tree, ElementId e) const {
+        return stage.scene.material(tree.region(e));
+    }
+};
+
+/// What it found: E on its elements (all light where it carries that of emitters, else what is reflected).
+struct ClassicalLight {
+    ElementFunction irradiance;
+    SolveReport report;
+    std::size_t elements = 0, leaf_elements = 0, rays = 0, form_factors = 0, links = 0, initial_links = 0;
+    std::size_t link_memory_bytes = 0, coefficient_memory_bytes = 0;
+    const char* stopped_by = "";
+};
+
+/// Constant elements to solve on: `uniform` by `--mesh-size` alone, or those of the direct projection, `aligned`.
+ElementTree constant_mesh(const ClassicalInput& input);
+/// Mean exact direct light of leaves, W/m^2.
+std::vector<Spectrum> mean_direct_light(const ClassicalInput& input, const ElementTree& tree,
+                                        std::span<const ElementId> leaves);
+/// What leaves emit, W/m^2.
+std::vector<Spectrum> exitances(const ClassicalInput& input, const ElementTree& tree,
+                                std::span<const ElementId> leaves);
+/// A function that is constant on every leaf.
+ElementFunction constant_function(const ElementTree& tree, std::span<const ElementId> leaves,
+                                  std::span<const Spectrum> values);
+
+/// Fails where its entries do not fit into the memory that it may use.
+Result<ClassicalLight> solve_classical_matrix(const ClassicalInput& input);
+ClassicalLight solve_classical_shooting(const ClassicalInput& input, bool substructuring);
+ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis basis);
+
+}  // namespace exitance

@@ -1,0 +1,400 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/lab/classical/classical_input.hpp"
+#include "exitance/lab/classical/interaction_kernel.hpp"
+#include "exitance/solve/growth_watch.hpp"
+
+namespace exitance {
+namespace {
+
+/// A_eps where none is given, of the scene's area: eight cuts of a whole.
+constexpr double default_least_share = 1.0 / 65536;
+constexpr std::size_t default_memory = std::size_t(1) << 32;  // of links, bytes
+constexpr double rounding = 1e-6;         // of lengths and areas that count as equal: coordinates in files are rounded
+constexpr std::size_t most_rounds = 200;  // of refinement and gathering; a safeguard
+
+/// Into quarters; a parallelogram much longer than wide across its length, so that elements come to be as long as wide.
+Cut way_to_cut(const Patch& patch) {
+    constexpr double long_ratio = 1.5;
+    const double a = norm(patch.a), b = norm(patch.b);
+    if (patch.is_triangle() || std::max(a, b) <= (1 + rounding) * long_ratio * std::min(a, b)) return Cut::both;
+    return a > b ? Cut::u : Cut::v;
+}
+
+struct Link {
+    ElementId source;
+    float share = 1;  ///< What of it is visible.
+    bool has_block = false;
+    std::uint64_t block = 0;  ///< Where its block stands.
+};
+
+/// Numbers of all elements, node by node.
+class Numbers {
+  public:
+    explicit Numbers(std::size_t nodes) : n_(nodes) {}
+    void resize(std::size_t elements) { values_.resize(elements * n_); }
+    std::span<Spectrum> operator[](ElementId e) { return std::span(values_).subspan(e.value * n_, n_); }
+    std::span<const Spectrum> operator[](ElementId e) const { return std::span(values_).subspan(e.value * n_, n_); }
+    void clear() { std::fill(values_.begin(), values_.end(), Spectrum()); }
+    std::size_t memory_bytes() const { return values_.size() * sizeof(Spectrum); }
+
+  private:
+    std::size_t n_;
+    std::vector<Spectrum> values_;
+};
+
+/// Elements, their numbers, and the links that each gathers over.
+class LinkedElements {
+  public:
+    LinkedElements(const ClassicalInput& input, HierarchyBasis kind)
+        : input_(input),
+          basis_(kind),
+          kernel_(input.stage, basis_, choice(input), input.options.seed),
+          n_(basis_.count()),
+          B_(n_),
+          E_(n_),
+          rhs_(n_) {
+        for (const auto& [region, patch] : input.stage.pieces) tree_.add_root(region, patch);
+        grow();
+        for (ElementId e : tree_.roots()) set_light(e);
+        B_ = rhs_;
+        const double whole = input.stage.area;
+        least_area_ = input.options.min_area.value_or(by_oracle() ? default_least_share * whole : 0);
+        longest_edge_ = by_oracle() ? input.options.mesh_size.value_or(0) : input.knobs.solve_mesh.edge;
+    }
+
+    void link_roots();
+    /// Links that are too strong are cut; true when any was.
+    bool refine(double threshold);
+    /// E = F b over the links, down to the leaves, and b up from them. Returns the change of b, relative.
+    double gather();
+
+    bool by_oracle() const { return input_.classical.threshold.has_value(); }
+    void report(ClassicalLight& light) const;
+    ElementFunction irradiance() const;
+    bool out_of_memory() const { return out_of_memory_; }
+
+  private:
+    static KernelChoice choice(const ClassicalInput& input) {
+        const SolveOptions& o = input.options;
+        return {.kernel = input.classical.kernel.value_or(TransferKernel::exact),
+                .visibility = o.visibility,
+                .rays = static_cast<unsigned>(std::min<std::size_t>(4096, o.visibility_samples.value_or(16)))};
+    }
+    void grow() {
+        B_.resize(tree_.size()), E_.resize(tree_.size()), rhs_.resize(tree_.size());
+        links_.resize(tree_.size());
+    }
+    void set_light(ElementId e);
+    bool may_cut(ElementId e) const;
+    void cut(ElementId e);
+    double strength(ElementId receiver, ElementId source) const;
+    ElementId to_cut(ElementId receiver, const Link& link, double threshold) const;
+    bool settle(ElementId receiver, Link link, double threshold);
+    void look(ElementId receiver, Link& link);
+    void keep(ElementId receiver, const Link& link);
+    void make_blocks();
+
+    const ClassicalInput& input_;
+    NodalBasis basis_;
+    InteractionKernel kernel_;
+    std::size_t n_;
+    ElementTree tree_;
+    Numbers B_, E_, rhs_;                        ///< b; irradiance; M, or rho E_dir.
+    Field<ElementId, std::vector<Link>> links_;  ///< By receiver.
+    std::vector<float> blocks_;
+    std::vector<std::uint64_t> free_;  ///< Blocks of links that were cut.
+    InteractionKernel::Workspace work_;
+    std::size_t initial_links_ = 0, link_count_ = 0, rays_ = 0, form_factors_ = 0;
+    double least_area_ = 0, longest_edge_ = 0;  ///< What is no larger is not cut: m^2, m.
+    bool out_of_memory_ = false;
+};
+
+/// What enters at an element: M, or rho E_dir at its nodes.
+void LinkedElements::set_light(ElementId e) {
+    const Material& material = input_.material(tree_, e);
+    if (input_.carries()) {
+        for (Spectrum& value : rhs_[e]) value = material.exitance;
+        return;
+    }
+    const Patch& patch = tree_.patch(e);
+    const auto nodes = basis_.nodes(patch.shape);
+    DirectLight::Workspace scratch;
+    for (std::size_t k = 0; k < n_; ++k)
+        rhs_[e][k] = material.reflectance *
+                     input_.stage.direct.irradiance(patch.at(nodes[k].at), patch.normal(), tree_.region(e), scratch);
+}
+
+bool LinkedElements::may_cut(ElementId e) const {
+    if (!tree_.is_leaf(e)) return true;
+    const Patch& patch = tree_.patch(e);
+    if (patch.area() / (way_to_cut(patch) == Cut::both ? 4 : 2) < least_area_) return false;
+    const double edge = std::max({norm(patch.a), norm(patch.b), patch.is_triangle() ? norm(patch.a - patch.b) : 0.0});
+    return edge > longest_edge_ * (1 + rounding);
+}
+
+/// Children begin with their parent's light.
+void LinkedElements::cut(ElementId e) {
+    if (!tree_.is_leaf(e)) return;
+    tree_.split(e, way_to_cut(tree_.patch(e)));
+    grow();
+    std::size_t i = 0;
+    for (ElementId child : tree_.children(e)) {
+        const auto push = basis_.push(tree_.patch(e).shape, tree_.way(e), i++);
+        set_light(child);
+        for (std::size_t k = 0; k < n_; ++k) {
+            Spectrum b = rhs_[child][k];
+            for (std::size_t j = 0; j < n_; ++j) b += push[k * n_ + j] * (B_[e][j] - rhs_[e][j]);
+            B_[child][k] = b;
+        }
+    }
+}
+
+/// F_eps: the larger form factor of the two. BF_eps: F_pq A_p B_q, W in the brightest band [Hanrahan91].
+double LinkedElements::strength(ElementId receiver, ElementId source) const {
+    // From either middle; by reciprocity both are the same number, of which one misses what lies near an end.
+    const double F = std::max(kernel_.unoccluded(tree_, receiver, source),
+                              kernel_.unoccluded(tree_, source, receiver) * tree_.area(source) / tree_.area(receiver));
+    if (input_.options.oracle == LinkOracle::form_factor)
+        return std::max(F, F * tree_.area(receiver) / tree_.area(source));
+    const auto nodes = basis_.nodes(tree_.patch(source).shape);
+    Spectrum B;
+    for (std::size_t k = 0; k < n_; ++k) B += nodes[k].weight * B_[source][k];
+    return F * tree_.area(receiver) * max(B);
+}
+
+/// The one of the two that is to be cut, or none: the larger, unless that is too small to be.
+ElementId LinkedElements::to_cut(ElementId p, const Link& link, double threshold) const {
+    const ElementId q = link.source;
+    if (by_oracle()) {
+        const bool partial = link.share > 0 && link.share < 1;
+        if (strength(p, q) <= (partial ? 0.5 * threshold : threshold)) return {};
+    }
+    const bool first = tree_.area(p) >= (1 - rounding) * tree_.area(q) && tree_.area(p) > 0;
+    const ElementId larger = first ? p : q, smaller = first ? q : p;
+    return may_cut(larger) ? larger : may_cut(smaller) ? smaller : ElementId();
+}
+
+void LinkedElements::look(ElementId p, Link& link) {
+    link.share = static_cast<float>(kernel_.visible_share(tree_, p, link.source, work_));
+}
+
+/// What no ray found visible is no link; triage off, or exact parts: it stays one.
+void LinkedElements::keep(ElementId p, const Link& link) {
+    const bool sure = input_.options.triage && input_.options.visibility != VisibilityKind::exact;
+    if (link.share == 0 && sure) return;
+    links_[p].push_back(link), ++link_count_;
+}
+
+/// Cuts a link until nothing of it is too strong, and keeps what comes of it. True when it was cut. By an oracle every
+/// link is looked at, and what all rays of its parent found visible is so; else leaves alone are.
+bool LinkedElements::settle(ElementId p, Link link, double threshold) {
+    const bool hidden = by_oracle() && link.share == 0 && input_.options.triage;
+    const ElementId e = hidden ? ElementId() : to_cut(p, link, threshold);
+    const std::size_t limit = input_.options.memory_limit_bytes.value_or(default_memory);
+    out_of_memory_ |= link_count_ * (n_ * n_ * sizeof(float) + sizeof(Link)) > limit;
+    if (e.is_none() || out_of_memory_ || input_.stop.requested()) {
+        if (!by_oracle() && !link.has_block) look(p, link);
+        keep(p, link);
+        return false;
+    }
+    if (link.has_block) free_.push_back(link.block);
+    cut(e);
+    for (ElementId child : tree_.children(e)) {
+        Link finer{.source = e == p ? link.source : child};
+        const ElementId receiver = e == p ? child : p;
+        if (!kernel_.faces(tree_, receiver, finer.source)) continue;
+        if (by_oracle() && (link.share < 1 || !input_.options.triage)) look(receiver, finer);
+        settle(receiver, finer, threshold);
+    }
+    return true;
+}
+
+void LinkedElements::link_roots() {
+    const std::vector<ElementId> roots = tree_.roots();
+    for (ElementId p : roots)
+        for (ElementId q : roots) {
+            Link link{.source = q};
+            if (p == q || !kernel_.faces(tree_, p, q)) continue;
+            if (by_oracle()) look(p, link);
+            keep(p, link);
+        }
+    initial_links_ = link_count_;
+}
+
+bool LinkedElements::refine(double threshold) {
+    bool cut_any = false;
+    const std::size_t before = tree_.size();  // what is made anew is settled already
+    for (std::uint32_t i = 0; i < before && !input_.stop.requested(); ++i) {
+        const ElementId p(i);
+        const std::vector<Link> own = std::exchange(links_[p], {});
+        link_count_ -= own.size();
+        for (const Link& link : own) cut_any |= settle(p, link, threshold);
+    }
+    make_blocks();
+    return cut_any;
+}
+
+void LinkedElements::make_blocks() {
+    const std::size_t size = n_ * n_;
+    struct Job {
+        ElementId receiver;
+        Link* link;
+    };
+    std::vector<Job> jobs;
+    for (ElementId p : tree_.ids())
+        for (Link& link : links_[p]) {
+            if (link.has_block) continue;
+            if (free_.empty()) {
+                link.block = blocks_.size();
+                blocks_.resize(blocks_.size() + size);
+            } else {
+                link.block = free_.back();
+                free_.pop_back();
+            }
+            link.has_block = true;
+            jobs.push_back({p, &link});
+        }
+    constexpr std::size_t grain = 64;
+    std::vector<std::pair<std::size_t, std::size_t>> counts((jobs.size() + grain - 1) / grain);
+    parallel_for(counts.size(), 1, [&](std::size_t b) {
+        InteractionKernel::Workspace w;
+        for (std::size_t i = b * grain; i < std::min(jobs.size(), (b + 1) * grain); ++i)
+            kernel_.block(tree_, jobs[i].receiver, jobs[i].link->source, jobs[i].link->share,
+                          std::span(blocks_).subspan(jobs[i].link->block, size), w);
+        counts[b] = {w.rays, w.form_factors};
+    });
+    for (const auto& [rays, factors] : counts) rays_ += rays, form_factors_ += factors;
+}
+
+double LinkedElements::gather() {
+    parallel_for(tree_.size(), 64, [&](std::size_t i) {
+        const ElementId p(i);
+        for (Spectrum& value : E_[p]) value = {};
+        for (const Link& link : links_[p]) {
+            const float* K = &blocks_[link.block];
+            for (std::size_t k = 0; k < n_; ++k)
+                for (std::size_t l = 0; l < n_; ++l)
+                    E_[p][k] += static_cast<double>(K[k * n_ + l]) * B_[link.source][l];
+        }
+    });
+    for (ElementId p : tree_.ids()) {  // push
+        std::size_t i = 0;
+        for (ElementId child : tree_.children(p)) {
+            const auto push = basis_.push(tree_.patch(p).shape, tree_.way(p), i++);
+            for (std::size_t k = 0; k < n_; ++k)
+                for (std::size_t j = 0; j < n_; ++j) E_[child][k] += push[k * n_ + j] * E_[p][j];
+        }
+    }
+    double change = 0, scale = 0;
+    for (std::size_t i = tree_.size(); i-- > 0;) {  // reflect, pull
+        const ElementId p(i);
+        if (tree_.is_leaf(p)) {
+            const Spectrum rho = input_.material(tree_, p).reflectance;
+            const auto nodes = basis_.nodes(tree_.patch(p).shape);
+            for (std::size_t k = 0; k < n_; ++k) {
+                const Spectrum b = rhs_[p][k] + rho * E_[p][k];
+                const double weight = tree_.area(p) * nodes[k].weight;
+                change += weight * squared(b - B_[p][k]), scale += weight * squared(rhs_[p][k]);
+                B_[p][k] = b;
+            }
+            continue;
+        }
+        std::vector<Spectrum> b(n_);
+        std::size_t c = 0;
+        for (ElementId child : tree_.children(p)) {
+            const auto pull = basis_.pull(tree_.patch(p).shape, tree_.way(p), c++);
+            for (std::size_t j = 0; j < n_; ++j)
+                for (std::size_t k = 0; k < n_; ++k) b[j] += pull[j * n_ + k] * B_[child][k];
+        }
+        std::copy(b.begin(), b.end(), B_[p].begin());
+    }
+    return scale > 0 ? std::sqrt(change / scale) : 0;
+}
+
+/// As the elements' polynomials have it: flatlets as the multiwavelets of their order [Willmott97]. Quadratic ones on
+/// quarters of quarters, (bi)linear each.
+ElementFunction LinkedElements::irradiance() const {
+    ElementFunction out;
+    out.tree = tree_;
+    const std::vector<ElementId> leaves = tree_.leaves();
+    std::vector<std::pair<ElementId, ElementId>> cells;  // a leaf, and what is delivered of it
+    for (ElementId leaf : leaves) {
+        if (basis_.order() < 3) {
+            cells.push_back({leaf, leaf});
+            continue;
+        }
+        out.tree.split(leaf, Cut::both);
+        const auto quarters = out.tree.children(leaf);
+        for (ElementId quarter : quarters) {
+            out.tree.split(quarter, Cut::both);
+            for (ElementId cell : out.tree.children(quarter)) cells.push_back({leaf, cell});
+        }
+    }
+    out.first_value.resize(out.tree.size(), 0);
+    std::vector<double> factors(n_);
+    for (const auto& [leaf, cell] : cells) {
+        out.first_value[cell] = static_cast<std::uint32_t>(out.values.size());
+        const Patch &whole = tree_.patch(leaf), &part = out.tree.patch(cell);
+        for (int i = 0; i < part.corner_count(); ++i) {
+            basis_.interpolate(whole.shape, whole.coordinates(part.corner(i)), factors);
+            Spectrum E;
+            for (std::size_t k = 0; k < n_; ++k) E += factors[k] * E_[leaf][k];
+            out.add_value(E);
+        }
+    }
+    return out;
+}
+
+void LinkedElements::report(ClassicalLight& light) const {
+    light.irradiance = irradiance();
+    light.elements = tree_.size(), light.leaf_elements = tree_.leaves().size();
+    light.links = link_count_, light.initial_links = initial_links_;
+    light.rays = rays_ + work_.rays, light.form_factors = form_factors_;
+    light.link_memory_bytes = link_count_ * (sizeof(Link) + n_ * n_ * sizeof(float));
+    light.coefficient_memory_bytes = B_.memory_bytes() + E_.memory_bytes() + rhs_.memory_bytes();
+}
+
+}  // namespace
+
+/// Hierarchical and wavelet radiosity as [Hanrahan91] and [Gortler93] had it: from whole polygons down, links are cut
+/// while F or B F A is above a threshold, which is halved where visibility is partial, and elements are larger than
+/// A_eps; gathered over, pushed and pulled; again by the light that came of it, until no link is cut and the change is
+/// small. With `--multigrid N` first by a threshold 2^(N-1) times as large, and so on down. Without an oracle all links
+/// lead between leaves of `--mesh-size`: the uniform mesh, O(leaves^2).
+ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis kind) {
+    ClassicalLight light;
+    input.progress.phase("link");
+    LinkedElements elements(input, kind);
+    elements.link_roots();
+    const std::size_t grids = input.classical.multigrid.value_or(1);
+    std::size_t grid = 1;
+    double change = 1;
+    for (std::size_t round = 0; round < most_rounds + input.knobs.max_iterations; ++round) {
+        const double coarser = std::exp2(static_cast<double>(grids - std::min(grid, grids)));
+        const bool cut = round < most_rounds && elements.refine(coarser * input.classical.threshold.value_or(0));
+        change = elements.gather();
+        ++light.report.iterations;
+        input.snapshots.after_round([&] {
+            ClassicalLight so_far = light;
+            elements.report(so_far);
+            return so_far;
+        });
+        light.report.interrupted = input.stop.requested();
+        if (light.report.interrupted || !(change < hopeless_residual) || elements.out_of_memory()) break;
+        if (input.options.max_iterations && light.report.iterations >= *input.options.max_iterations) break;
+        if (cut || change > input.knobs.residual) continue;
+        if (grid >= grids) break;
+        ++grid;
+    }
+    light.report.residual = change;
+    light.report.converged = !light.report.interrupted && change <= input.knobs.residual;
+    if (elements.out_of_memory()) light.stopped_by = "memory limit";
+    elements.report(light);
+    return light;
+}
+
+}  // namespace exitance

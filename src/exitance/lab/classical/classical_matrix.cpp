@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exitance/base/available_memory.hpp"
+#include "exitance/base/memory.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/lab/classical/classical_input.hpp"
+#include "exitance/solve/dense_relaxation.hpp"
+#include "exitance/transport/hemicube_rows.hpp"
+#include "exitance/transport/patch_transfer.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t default_visibility_samples = 16;
+constexpr unsigned default_hemicube_cells = 64;
+constexpr double default_sor_factor = 1.15;  // within the 1.1 to 1.2 that radiosity likes [Gortler94]
+
+/// Relaxes b = rhs + rho F b as asked for; after every sweep `swept` is called.
+SolveReport relax(const ClassicalInput& input, const RadiositySystem& system, std::vector<Spectrum>& b,
+                  const std::function<void()>& swept) {
+    const StopRule stop{
+        .residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop};
+    const auto& c = input.classical;
+    if (c.relaxation == ClassicalRelaxation::direct) return solve_dense(system, b, input.stop);
+    const Relaxation asked = input.options.relaxation.value_or(Relaxation::gauss_seidel);
+    if (c.relaxation == ClassicalRelaxation::sor)
+        return relax_in_turn(system, c.sor_factor.value_or(default_sor_factor), b, stop, swept);
+    if (asked == Relaxation::gauss_seidel) return relax_in_turn(system, 1, b, stop, swept);
+    if (asked == Relaxation::jacobi) return relax_at_once(system, b, stop, swept);
+    if (asked == Relaxation::southwell) return relax_largest_residual(system, b, stop, swept);
+    return solve_radiosity(system, asked, b, stop);
+}
+
+/// E = F b once b is found.
+void solve_with(const ClassicalInput& input, const ElementTree& tree, const LeafNumbering& numbering,
+                const TransportOperator& F, ClassicalLight& light) {
+    input.progress.phase("solve");
+    const std::size_t n = numbering.leaves.size();
+    const std::vector<double> area = leaf_areas(tree, numbering);
+    const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, tree, numbering);
+    std::vector<Spectrum> rhs =
+        input.carries() ? exitances(input, tree, numbering.leaves) : mean_direct_light(input, tree, numbering.leaves);
+    if (!input.carries())
+        for (std::size_t i = 0; i < n; ++i) rhs[i] *= rho[i];
+    std::vector<Spectrum> b = rhs, E(n);
+    light.link_memory_bytes = F.memory_bytes();
+    light.coefficient_memory_bytes = 3 * n * sizeof(Spectrum);  // b, E and what enters
+    std::size_t rounds = 0;
+    const auto light_so_far = [&] {
+        F.gather(b, E);
+        light.irradiance = constant_function(tree, numbering.leaves, E);
+        light.report.iterations = rounds;
+        return light;
+    };
+    const auto swept = [&] { ++rounds, input.snapshots.after_round(light_so_far); };
+    const SolveReport report = relax(input, {F, rho, rhs, area}, b, swept);
+    light_so_far();
+    light.report = report;
+}
+
+unsigned hemicube_cells(const SolveOptions& options) {
+    const auto cells = std::min<std::size_t>(1024, options.hemicube_cells.value_or(default_hemicube_cells));
+    return static_cast<unsigned>(2 * ((cells + 1) / 2));
+}
+
+RayBudget ray_budget(const ClassicalInput& input) {
+    RayBudget budget = input.knobs.solve_rays;
+    if (input.options.visibility_samples) budget.average = static_cast<double>(*input.options.visibility_samples);
+    return budget;
+}
+
+/// Do the entries of n leaves fit into the memory asked for, or the machine's?
+Result<void> check_memory(const ClassicalInput& input, FormFactorKind kind, double n) {
+    const double c = hemicube_cells(input.options), cells = 3 * c * c;
+    const double bytes = kind == FormFactorKind::analytic   ? 4 * n * n
+                         : kind == FormFactorKind::hemicube ? 8 * n * std::min(n, cells)
+                                                            : 4 * n * ray_budget(input).average;
+    const auto used = static_cast<double>(peak_memory_bytes()),
+               limit = static_cast<double>(
+                   input.options.memory_limit_bytes.value_or(resident_memory_bytes() + available_memory_bytes()));
+    if (used + bytes <= limit) return {};
+    return Error{
+        ErrorCode::limit,
+        fmt::format("{:.0f} MiB are in use and the matrix of {:.0f} elements takes up to {:.0f} MiB more, over "
+                    "the {:.0f} MiB there are",
+                    used / 0x1p20, n, bytes / 0x1p20, limit / 0x1p20),
+        "--method matrix", "a larger --mesh-size, more --memory-limit, or a method with links"};
+}
+
+}  // namespace
+
+/// The matrix method as [Goral84], [Cohen85] and [Cohen86] had it: constant elements, and all N x N form factors at
+/// once. `analytic` (the default): from the receiver's middle to the whole source polygon, times the share of rays
+/// between the two that meet nothing, without a level of patches: the reference among the methods. `hemicube`,
+/// `ray-cast`: rows of those. O(N^2) entries.
+Result<ClassicalLight> solve_classical_matrix(const ClassicalInput& input) {
+    ClassicalLight light;
+    const ElementTree tree = constant_mesh(input);
+    const LeafNumbering numbering(tree);
+    light.elements = tree.size(), light.leaf_elements = numbering.leaves.size();
+    input.progress.phase("link");
+    const Stage& stage = input.stage;
+    const SolveOptions& o = input.options;
+    const FormFactorKind kind = o.form_factors.value_or(FormFactorKind::analytic);
+    if (const Result<void> fits = check_memory(input, kind, static_cast<double>(numbering.leaves.size())); !fits)
+        return fits.error();
+    if (kind == FormFactorKind::analytic) {
+        const PatchLevel patches(tree, numbering, 0);
+        const PatchTransfer transfer(
+            stage, tree, static_cast<unsigned>(o.visibility_samples.value_or(default_visibility_samples)), o.seed);
+        const DenseTransport F(transfer, numbering, patches, input.progress, input.stop);
+        solve_with(input, tree, numbering, F, light);
+        light.rays = transfer.rays(), light.form_factors = transfer.form_factors(), light.links = F.entries();
+        return light;
+    }
+    const ElementLocator locator(tree, stage.scene.regions().size());
+    if (kind == FormFactorKind::hemicube) {
+        const HemicubeRows F(stage, tree, numbering, locator, hemicube_cells(o));
+        solve_with(input, tree, numbering, F, light);
+        light.rays = F.rays(), light.form_factors = light.links = F.entries();
+        return light;
+    }
+    const RayRows F(stage, tree, numbering, locator, ray_budget(input), o.seed);
+    solve_with(input, tree, numbering, F, light);
+    light.rays = light.links = F.rays();
+    return light;
+}
+
+}  // namespace exitance

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exitance/base/result.hpp"
+#include "exitance/solve/solve_options.hpp"
+
+namespace exitance {
+
+enum class ClassicalDirect : std::uint8_t { apart, carried };
+enum class MeshKind : std::uint8_t { aligned, uniform };
+enum class TransferKernel : std::uint8_t { point, disc, exact };
+enum class RefineWhen : std::uint8_t { during, after };
+enum class ClassicalRelaxation : std::uint8_t { sor, direct };
+enum class ShootingReceivers : std::uint8_t { vertex, middle };
+
+inline constexpr std::array<std::pair<ClassicalDirect, std::string_view>, 2> classical_direct_names{
+    {{ClassicalDirect::apart, "apart"}, {ClassicalDirect::carried, "carried"}}};
+inline constexpr std::array<std::pair<MeshKind, std::string_view>, 2> mesh_kind_names{
+    {{MeshKind::aligned, "aligned"}, {MeshKind::uniform, "uniform"}}};
+inline constexpr std::array<std::pair<TransferKernel, std::string_view>, 3> transfer_kernel_names{
+    {{TransferKernel::point, "point"}, {TransferKernel::disc, "disc"}, {TransferKernel::exact, "exact"}}};
+inline constexpr std::array<std::pair<RefineWhen, std::string_view>, 2> refine_when_names{
+    {{RefineWhen::during, "during"}, {RefineWhen::after, "after"}}};
+inline constexpr std::array<std::pair<ClassicalRelaxation, std::string_view>, 2> classical_relaxation_names{
+    {{ClassicalRelaxation::sor, "sor"}, {ClassicalRelaxation::direct, "direct"}}};
+inline constexpr std::array<std::pair<ShootingReceivers, std::string_view>, 2> shooting_receiver_names{
+    {{ShootingReceivers::vertex, "vertex"}, {ShootingReceivers::middle, "middle"}}};
+
+/// When solutions on the way are kept: at these seconds of the method's own time, after these shots, or after every
+/// round (sweep, iteration) of a method.
+struct SnapshotPlan {
+    std::vector<double> seconds;
+    std::vector<std::size_t> shots;
+    bool rounds = false;
+
+    bool any() const { return rounds || !seconds.empty() || !shots.empty(); }
+};
+
+/// What a method in the form of its paper is asked for, beside SolveOptions. An empty optional: not asked for.
+struct ClassicalOptions {
+    std::optional<ClassicalDirect> direct;  ///< apart: E_dir exact; carried: through the method's own transport.
+    std::optional<MeshKind> mesh;
+    std::optional<bool> gather;            ///< The final gather.
+    std::optional<bool> certify;           ///< Only `off` is there: these forms have no certificate.
+    std::optional<double> threshold;       ///< F_eps, no unit, or BF_eps, W in the brightest band, by the oracle.
+    std::optional<std::size_t> multigrid;  ///< Rounds in which the threshold is halved down to what was asked for.
+    std::optional<TransferKernel> kernel;
+    std::optional<double> refine_gradient;  ///< Of radiosity across an element, W/m^2.
+    std::optional<RefineWhen> refine;
+    std::optional<ClassicalRelaxation> relaxation;
+    std::optional<double> sor_factor;  ///< omega of over-relaxation, in (0, 2).
+    std::optional<ShootingReceivers> receivers;
+    bool ambient = false;
+    SnapshotPlan snapshots;
+
+    /// Is a classical form asked for?
+    bool any() const {
+        return direct || mesh || gather || certify || threshold || multigrid || kernel || refine_gradient || refine ||
+               relaxation || sor_factor || receivers || ambient || snapshots.any();
+    }
+    bool carried() const { return direct == ClassicalDirect::carried; }
+};
+
+/// The method in force: as asked for, or of `auto` the first that obeys all that is asked for. A usage error names the
+/// option that the method does not obey, and the methods that do.
+Result<Method> classical_method(const SolveOptions& options, const ClassicalOptions& classical);
+
+}  // namespace exitance

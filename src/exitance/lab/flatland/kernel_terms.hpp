@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "exitance/lab/flatland/line_basis.hpp"
+
+namespace exitance::flatland {
+
+/// How products of one-dimensional functions are combined: every level of x with every level of y, or the two of one
+/// level. Source: [Gortler93], [Willmott97].
+enum class Decomposition { standard, non_standard };
+
+/// A function of (x, y) in the unit square by its coefficients in a basis of products.
+class KernelTerms {
+  public:
+    /// Projects k by Gauss rules on about 2^levels functions a direction (a power of two of intervals, k functions on
+    /// each, at least as many as that), and decomposes it. O(4^levels).
+    KernelTerms(LineBasis basis, Decomposition way, int levels, const std::function<double(double, double)>& k);
+
+    std::size_t size() const { return side_ * side_; }  ///< Terms.
+
+    /// Relative error in the mean square when the m terms are kept that contribute most by themselves (|c| times the
+    /// norm of the term), for every m of the list; m past size() counts as size(). Exact: by reconstruction, in the
+    /// finest space.
+    std::vector<double> errors(std::span<const std::size_t> m) const;
+
+    /// The coefficients in the finest space, and those that reconstruction gives when all terms are kept.
+    const std::vector<double>& finest() const { return finest_; }
+    std::vector<double> reconstructed() const { return reconstruct(terms_); }
+
+  private:
+    void step_rows(std::vector<double>& a, std::size_t intervals, std::size_t rows, bool back) const;
+    void step_columns(std::vector<double>& a, std::size_t intervals, std::size_t columns, bool back) const;
+    std::vector<double> decompose(std::vector<double> a) const;
+    std::vector<double> reconstruct(std::vector<double> a) const;
+    double norm_of_function(std::size_t n, std::size_t which) const;
+    void measure_norms();
+    double norm_of_term(std::size_t row, std::size_t column) const;
+
+    TwoScaleStep step_;
+    Decomposition way_;
+    std::size_t intervals_, side_;  ///< side_ = k intervals_
+    std::vector<double> finest_, terms_;
+    /// Norms of what is summed, by place among the coefficients of a line: as a detail, and as a coarse function.
+    std::vector<double> detail_norm_, coarse_norm_;
+};
+
+}  // namespace exitance::flatland

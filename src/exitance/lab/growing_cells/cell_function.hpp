@@ -1,0 +1,78 @@
+#pragma once
+
+#include <vector>
+
+#include "exitance/base/bvh.hpp"
+#include "exitance/lab/growing_cells/cell_light.hpp"
+#include "exitance/solution/solution.hpp"
+
+namespace exitance {
+
+/// How much a cell counts at a point: exp(-q), with
+///
+///     q = |t|^2 / d^2 + h^2 / (s_h d)^2 + (1 - n . n_c) / s_n,
+///
+/// t and h the parts of x - w_c along the cell's plane and across it. In the plane it is the isotropic Gaussian of the
+/// published method; a cell does not reach across folds (the third term) or to a parallel surface behind (the second),
+/// but over facets that are tilted by a few degrees it does: surfaces are told apart by their shape, not by how they
+/// were cut. Returns q.
+double cell_distance(const CellLight::Cell& cell, const Point& x, const Normal& n);
+
+/// Light of cells as a function of place.
+class CellFunction {
+  public:
+    /// Keeps a reference. O(cells log cells).
+    explicit CellFunction(const CellLight& light);
+
+    /// Irradiance at x on a surface of normal n, W/m^2: the sum over cells within three widths of exp(-q) v_c, or,
+    /// where `normalised`, the mean of v_c + slope . (x - w_c) by these weights. Where no cell is near, the nearest one
+    /// of those that face alike speaks for itself (normalised), or there is no light (summed). Not below 0.
+    Spectrum at(const Point& x, const Normal& n) const;
+
+    /// Calls visit(cell, weight) for every cell within three widths, in the order of the index.
+    template <class Visit>
+    void visit(const Point& x, const Normal& n, const Visit& visit) const {
+        Box here;
+        here.add(x);
+        index_.visit_box(here, [&](std::uint32_t c) {
+            const double q = cell_distance(light_->cells[c], x, n);
+            if (q < cutoff) visit(c, std::exp(-q));
+        });
+    }
+    static constexpr double cutoff = 9;  ///< q beyond which a cell does not count: three widths.
+
+  private:
+    std::uint32_t nearest(const Point& x, const Normal& n) const;
+
+    const CellLight* light_;
+    Bvh index_;  ///< Boxes of three widths around the cells.
+};
+
+/// Cells as the engine evaluates and keeps them.
+class CellsForm final : public LightForm {
+  public:
+    static constexpr std::string_view name = "growing cells";
+
+    explicit CellsForm(CellLight light) : light_(std::move(light)), function_(light_) {}
+    CellsForm(const CellsForm&) = delete;
+    CellsForm& operator=(const CellsForm&) = delete;
+
+    std::string_view kind() const override { return name; }
+    Spectrum at(const Scene& scene, RegionId region, const Point& x) const override {
+        return function_.at(x, scene.regions()[region].plane.n);
+    }
+    std::string packed() const override;
+    static LightFormPointer unpack(std::string_view bytes);
+
+    const CellLight& light() const { return light_; }
+    const CellFunction& function() const { return function_; }
+
+  private:
+    CellLight light_;
+    CellFunction function_;
+};
+
+/// The cells of a solution; empty where it has none.
+const CellLight& cells_of(const Solution& solution);
+
+}  // namespace exitance

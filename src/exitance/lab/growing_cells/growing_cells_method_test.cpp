@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/error/tolerance/accuracy.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/lab/growing_cells/cell_function.hpp"
+#include "exitance/lab/growing_cells/kernel_network.hpp"
+#include "exitance/lab/growing_cells/least_squares.hpp"
+#include "exitance/methods/methods.hpp"
+#include "exitance/methods/solve_scene.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+Solution solve_cells(const Scene& scene, CellsKind kind, std::size_t units, int threads = 0) {
+    SolveOptions options{.method = Method::growing_cells, .smoothing = false};
+    options.gcs = kind, options.max_units = units, options.threads = threads;
+    Progress progress;
+    const StopRequest stop;
+    Result<Solution> solution = solve_scene(scene, options, progress, stop);
+    EXPECT_TRUE(solution);
+    return std::move(*solution);
+}
+
+TEST(GrowingCellsMethod, AFurnaceGlowsEverywhereAlike) {
+    const double rho = 0.5, right = 1 / (1 - rho);  // E where M = 1
+    const Scene scene = box_scene(3, 2, 1.5, rho, 1, 1);
+    const Solution solution = solve_cells(scene, CellsKind::improved, 96);
+    ASSERT_TRUE(solution.delivers_own_form);
+    const RadiosityFunction f(solution);
+    std::vector<ProbePoint> points;
+    for (const SurfaceId s : scene.surfaces().ids())
+        points.push_back({centroid(scene.outline(s)), scene.surfaces()[s].normal});
+    // Cells are a quarter of a metre wide: what they send to one another is summed over points of 1e-3 m^2.
+    for (const Light& light : f.at(points)) EXPECT_NEAR(light.irradiance[0], right, 0.03 * right);
+}
+
+TEST(GrowingCellsMethod, BitsDoNotDependOnTheNumberOfThreads) {
+    const Scene scene = box_scene(3, 2, 1.5, 0.5, 1, 1);
+    for (const CellsKind kind : {CellsKind::classic, CellsKind::improved}) {
+        const Solution one = solve_cells(scene, kind, 16, 1), two = solve_cells(scene, kind, 16, 3);
+        ASSERT_EQ(cells_of(one).cells.size(), cells_of(two).cells.size());
+        for (std::size_t c = 0; c < cells_of(one).cells.size(); ++c) {
+            EXPECT_EQ(cells_of(one).cells[c].value, cells_of(two).cells[c].value);
+            EXPECT_EQ(cells_of(one).cells[c].at, cells_of(two).cells[c].at);
+        }
+        EXPECT_EQ(one.indirect.values, two.indirect.values);
+    }
+    set_threads(0);
+}
+
+TEST(GrowingCellsMethod, ClassicCarriesAllLightAndImprovedHasDirectLightApart) {
+    const Scene scene = box_scene(3, 2, 1.5, 0.5, 1, 1);
+    EXPECT_TRUE(solve_cells(scene, CellsKind::classic, 16).direct_in_elements);
+    EXPECT_FALSE(solve_cells(scene, CellsKind::improved, 16).direct_in_elements);
+}
+
+TEST(GrowingCellsMethod, ACellIsNotLitByItsOwnSurfaceHoweverTheSceneLies) {
+    const std::map<std::string, std::string> turn{{"rot", "31.7,0.3,0.5,1"}};
+    for (auto more : {std::pair("shift", "0,0,0"), {"shift", "1000,370,-210"}, {"scale", "0.001"}, {"scale", "1000"}}) {
+        std::map<std::string, std::string> parameters = turn;
+        parameters.insert(more);
+        const Scene scene = built_scene("gcr1", parameters);
+        const Solution solution = solve_cells(scene, CellsKind::classic, 64);
+        EXPECT_TRUE(solution.statistics.converged);
+        // The estimate of the scene as it is: 11%. With cells that light themselves: 30% and more.
+        EXPECT_LT(*solution.statistics.relative_error_estimate, 0.2) << more.first << " " << more.second;
+    }
+}
+
+TEST(GrowingCellsMethod, LightThatGrowsIsNotReached) {
+    // Far too few units for seventeen surfaces: reflections bring more light than there was.
+    const Solution solution = solve_cells(built_scene("cornell"), CellsKind::classic, 32);
+    EXPECT_FALSE(solution.statistics.converged);
+    EXPECT_EQ(solution.statistics.stopped_by, "divergence");
+    ASSERT_FALSE(solution.statistics.warnings.empty());
+    EXPECT_NE(solution.statistics.warnings.back().find("grows with every reflection"), std::string::npos);
+}
+
+TEST(SurfacePool, IsEvenAndItsBlocksLieTogether) {
+    const Scene scene = box_scene(3, 2, 1.5, 0.5, 1, 1);
+    const Stage stage(scene);
+    const SurfacePool pool(stage, 4096, 1);
+    ASSERT_EQ(pool.size(), 4096u);
+    std::vector<double> area(scene.regions().size());
+    for (const PoolPoint& p : pool.points()) {
+        EXPECT_NEAR(scene.regions()[p.region].plane.signed_distance(p.at), 0, 1e-9);
+        area[p.region.value] += pool.area_each();
+    }
+    for (const RegionId r : scene.regions().ids())
+        EXPECT_NEAR(area[r.value], scene.regions()[r].area, 2 * pool.area_each());  // systematic in area
+    int far = 0, all = 0;
+    for (std::uint32_t i = 0; i < pool.size(); i += 17, ++all)
+        far += norm(pool[pool.near(i, 0.1, 0.99)].at - pool[i].at) > 0.4;
+    EXPECT_LT(far, all / 5);  // a block in which two faces meet is longer
+}
+
+TEST(LeastSquares, AreExactWhereTheFunctionCanBeHeld) {
+    FitProblem problem;
+    problem.samples = 200, problem.unknowns = 5, problem.outputs = 2, problem.ridge = 1e-12;
+    problem.row = [](std::size_t s, FitRow& row) {
+        for (std::uint32_t c = 0; c < 5; ++c) row.emplace_back(c, std::pow(static_cast<double>(s) / 200, c));
+    };
+    problem.target = [](std::size_t s, std::size_t k) {
+        const double x = static_cast<double>(s) / 200;
+        return k == 0 ? 1 + 2 * x : x * x - 3 * x * x * x;
+    };
+    problem.weight = [](std::size_t s) { return s % 2 ? 1.0 : 0.5; };
+    std::vector<double> v(10);
+    fit_least_squares(problem, v);
+    const double right[] = {1, 0, 2, 0, 0, 1, 0, -3, 0, 0};
+    for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(v[i], right[i], 1e-4);  // powers are nearly alike: condition 1e5
+}
+
+TEST(CellFunction, NormalisedWithSlopesAPlaneIsExactAndFoldsPart) {
+    CellLight light;
+    const auto plane = [](const Point& p) { return 1 + 2 * p.x - 0.5 * p.y; };
+    for (int i = 0; i < 100; ++i) {
+        const Point at{0.1 * (i % 10), 0.1 * (i / 10), 0};
+        light.cells.push_back({at, {0, 0, 1}, 0.1, Spectrum(plane(at)), {Spectrum(2), Spectrum(-0.5), Spectrum(0)}});
+    }
+    light.cells.push_back({{0.5, 0.5, 0.01}, {0, 0, -1}, 0.3, Spectrum(50), {}});  // of the other side
+    light.cells.push_back({{0.5, 0.5, 0.0}, {1, 0, 0}, 0.3, Spectrum(70), {}});    // of a wall
+    const CellFunction f(light);
+    for (const Point& p : {Point{0.33, 0.42, 0}, Point{0.5, 0.5, 0}, Point{0.9, 0.05, 0}})
+        EXPECT_NEAR(f.at(p, {0, 0, 1})[0], plane(p), 1e-3 * plane(p));  // what is turned away weighs e^-10
+    EXPECT_EQ(f.at({0.5, 0.5, 0}, {0, 0, -1})[0], 50);
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/base/bvh.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/lab/growing_cells/cell_function.hpp"
+#include "exitance/lab/growing_cells/cells_method.hpp"
+#include "exitance/lab/growing_cells/gaussian_integrals.hpp"
+#include "exitance/lab/growing_cells/least_squares.hpp"
+#include "exitance/solve/growth_watch.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_reflections = 12;
+constexpr std::size_t system_steps = 1000;  ///< Of conjugate gradients on the mass matrix.
+constexpr double negligible = 1e-6;         ///< Amplitude of a product of Gaussians below which it is left out.
+constexpr double alike = 0.9;               ///< Cosine of normals that count as of one surface.
+
+/// Gaussians integrated over the scene's polygons: exact at their borders.
+class PolygonIntegrals {
+  public:
+    PolygonIntegrals(const Stage& stage, double in_plane) : in_plane_(in_plane) {
+        std::vector<Box> boxes;
+        for (const Piece& piece : stage.lit_pieces()) {
+            Polygon p{{},
+                      stage.scene.regions()[piece.region].plane.n,
+                      piece.region,
+                      stage.scene.material(piece.region).emits()};
+            Box box;
+            for (int i = 0; i < piece.patch.corner_count(); ++i)
+                p.corners.push_back(piece.patch.corner(i)), box.add(p.corners.back());
+            polygons_.push_back(p), boxes.push_back(box);
+        }
+        tree_ = Bvh(boxes);
+    }
+
+    struct Polygon {
+        std::vector<Point> corners;
+        Normal n;
+        RegionId region;
+        bool emits;
+    };
+    const std::vector<Polygon>& polygons() const { return polygons_; }
+
+    /// Calls visit(polygon, integral over it, m^2) for all within three widths.
+    template <class Visit>
+    void visit(const Gaussian& g, const Visit& visit) const {
+        const double reach = 3 * g.width;
+        Box box;
+        box.add(g.centre - Vec3{reach, reach, reach});
+        box.add(g.centre + Vec3{reach, reach, reach});
+        tree_.visit_box(
+            box, [&](std::uint32_t i) { visit(i, integral_over_polygon(g, polygons_[i].corners, polygons_[i].n)); });
+    }
+
+    /// Over all polygons that face as a cell does, m^2.
+    double on_surface_of(const CellLight::Cell& cell, const Gaussian& g) const {
+        double sum = 0;
+        visit(g, [&](std::uint32_t i, double integral) { sum += dot(polygons_[i].n, cell.n) > alike ? integral : 0; });
+        return sum;
+    }
+
+    /// Do a cell and a polygon face each other, as pairs of samples do? A cell never faces its own surface, on which
+    /// it lies but for rounding, nor what lies in one plane with it.
+    bool face_each_other(const CellLight::Cell& cell, const std::vector<RegionId>& own, std::uint32_t i) const {
+        const Polygon& p = polygons_[i];
+        if (std::binary_search(own.begin(), own.end(), p.region)) return false;
+        if (dot(p.n, cell.at - p.corners[0]) <= in_plane_) return false;
+        return std::any_of(p.corners.begin(), p.corners.end(),
+                           [&](const Point& corner) { return dot(cell.n, corner - cell.at) > in_plane_; });
+    }
+
+  private:
+    double in_plane_;  ///< As `SurfacePool` has it, metres.
+    std::vector<Polygon> polygons_;
+    Bvh tree_;
+};
+
+/// G_qp = int Phi_q Phi_p over the surface of q; 0 between cells that do not face alike.
+std::vector<double> mass_matrix(const std::vector<CellLight::Cell>& cells, const PolygonIntegrals& integrals) {
+    const std::size_t n = cells.size();
+    std::vector<double> G(n * n);
+    parallel_for(n, 4, [&](std::size_t q) {
+        for (std::size_t p = 0; p <= q; ++p) {
+            if (dot(cells[q].n, cells[p].n) < alike) continue;
+            const Gaussian both = product({cells[q].at, cells[q].width}, {cells[p].at, cells[p].width});
+            if (both.amplitude < negligible) continue;
+            G[q * n + p] = integrals.on_surface_of(cells[q], both);
+        }
+    });
+    for (std::size_t q = 0; q < n; ++q)
+        for (std::size_t p = 0; p < q; ++p) G[p * n + q] = G[q * n + p];
+    return G;
+}
+
+/// rhs_q = sum_o v_o I_q(o_x) J_q(o_y): I_q = int Phi_q(x) exp(-|x - o_x|^2 / d_o^2), J_q the same of y alone over all
+/// sources of the network's kind that q faces.
+std::vector<Spectrum> arriving(const std::vector<CellLight::Cell>& cells,
+                               const std::vector<std::vector<RegionId>>& own_regions, const KernelNetwork& kernel,
+                               const PolygonIntegrals& integrals, bool of_emitters) {
+    const GrowingCells& network = kernel.cells();
+    const std::vector<GrowingCells::Unit> units = network.units();
+    std::vector<std::vector<std::pair<std::uint32_t, double>>> J(units.size());
+    parallel_for(units.size(), 8, [&](std::size_t i) {
+        integrals.visit({kernel.place_y(units[i]), network.width(units[i])}, [&](std::uint32_t polygon, double part) {
+            if (integrals.polygons()[polygon].emits == of_emitters && part > 0) J[i].emplace_back(polygon, part);
+        });
+    });
+    std::vector<Spectrum> out(cells.size());
+    parallel_for(cells.size(), 4, [&](std::size_t q) {
+        const CellLight::Cell& cell = cells[q];
+        std::vector<std::uint8_t> faces(integrals.polygons().size());
+        for (std::uint32_t i = 0; i < faces.size(); ++i) faces[i] = integrals.face_each_other(cell, own_regions[q], i);
+        for (std::size_t i = 0; i < units.size(); ++i) {
+            const Gaussian both = product({cell.at, cell.width}, {kernel.place_x(units[i]), network.width(units[i])});
+            if (both.amplitude < negligible) continue;
+            double sent = 0;
+            for (const auto& [polygon, part] : J[i]) sent += faces[polygon] ? part : 0;
+            if (!(sent > 0)) continue;
+            const double I = integrals.on_surface_of(cell, both);
+            const auto v = network.output(units[i]);
+            for (std::size_t b = 0; b < bands; ++b) out[q][b] += v[b] * I * sent;
+        }
+    });
+    return out;
+}
+
+/// G b = rhs: the outputs of the shading network.
+void solve_outputs(const std::vector<double>& G, const std::vector<Spectrum>& rhs,
+                   std::vector<CellLight::Cell>& cells) {
+    const std::size_t n = cells.size();
+    std::vector<double> x(n), b(n);
+    for (std::size_t band = 0; band < bands; ++band) {
+        for (std::size_t q = 0; q < n; ++q) b[q] = rhs[q][band], x[q] = cells[q].value[band];
+        solve_positive(G, b, x, system_steps);
+        for (std::size_t q = 0; q < n; ++q) cells[q].value[band] = x[q];
+    }
+}
+
+/// The shading network, by a share from the ends of rays as these were drawn, the rest being even.
+ShadingNetwork grow_at_ends(const MethodInput& input, const SurfacePool& pool, const std::vector<std::uint32_t>& ends,
+                            std::size_t units) {
+    constexpr double by_ends = 0.25;
+    const auto draw = [&](double u, double v) {
+        const bool end = v < by_ends && !ends.empty();
+        const auto i = static_cast<std::uint32_t>(u * static_cast<double>(end ? ends.size() : pool.size()));
+        return end ? ends[i] : i;
+    };
+    return grow_shading_network(pool, draw, units, true, input.stage.scene.size(), input.options.seed, input.stop);
+}
+
+/// rho E at every point of the pool, W/m^2.
+std::vector<Spectrum> reflected_radiosity(const Stage& stage, const SurfacePool& pool, const CellLight& light) {
+    const CellFunction E(light);
+    std::vector<Spectrum> out(pool.size());
+    parallel_for(pool.size(), 64, [&](std::size_t i) {
+        const Spectrum& rho = stage.scene.material(pool[i].region).reflectance;
+        if (max(rho) > 0) out[i] = rho * E.at(pool[i].at, pool[i].n);
+    });
+    return out;
+}
+
+}  // namespace
+
+/// 1. A kernel network learns G V M from rays that begin on emitters, by the delta rule while it grows and by least
+/// squares in the end. 2. The shading network learns the surfaces from the ends of rays, as these were drawn, and
+/// becomes the mesh. 3. Light goes through both by closed integrals: E. 4. A kernel network learns G V B of what
+/// surfaces reflect, B = rho E; E is that of both; targets are renewed, more samples are drawn where light comes from
+/// now, and so on: a reflection a round. Two networks, since what one gets wrong where nothing emits would be summed
+/// over all of that.
+LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
+    const Stage& stage = input.stage;
+    const std::size_t units = units_of(stage, input.knobs, input.options);
+    const auto emits = [&](const PoolPoint& p) { return stage.scene.material(p.region).emits(); };
+    const auto everything = [](const PoolPoint&) { return true; };
+    std::vector<Spectrum> M(pool.size());
+    for (std::size_t i = 0; i < pool.size(); ++i) M[i] = stage.scene.material(pool[i].region).exitance;
+    KernelNetworkOptions options{.target = KernelTarget::flow, .uniform_sources = 0, .seed = input.options.seed};
+    KernelNetwork emitted(stage, pool, options, M);
+    emitted.restrict_to(everything, emits);
+    // Surfaces that touch have kernels without bound: between discs as large as a unit's share of surface.
+    options.least_area = stage.area / std::sqrt(static_cast<double>(units));
+    options.uniform_sources = 0.2;
+    KernelNetwork reflected(stage, pool, options, M);
+    reflected.restrict_to(everything, [&](const PoolPoint& p) { return !emits(p); });
+    LearnedLight out;
+    out.light.normalised = false;
+    input.progress.phase("grow");
+    const bool has_light = emitted.grow(units / 2, input.stop, &input.progress);
+    ShadingNetwork network = grow_at_ends(input, pool, emitted.receivers_drawn(), units);
+    out.light.cells = network.cells;
+    out.light.triangles = network.triangles;
+    if (!has_light) return out;
+    const PolygonIntegrals integrals(stage, pool.in_plane());
+    const std::vector<double> G = mass_matrix(out.light.cells, integrals);
+    emitted.fit();
+    const std::vector<Spectrum> first = arriving(out.light.cells, network.own_regions, emitted, integrals, true);
+    solve_outputs(G, first, out.light.cells);
+    input.progress.phase("solve");
+    const std::size_t most_rounds = std::min(most_reflections, input.knobs.max_iterations);
+    std::vector<Spectrum> B(pool.size());
+    GrowthWatch watch;
+    for (std::size_t round = 0; round < most_rounds && !input.stop.requested(); ++round) {
+        std::vector<Spectrum> next = reflected_radiosity(stage, pool, out.light);
+        double change = 0, all = 0;
+        for (std::size_t i = 0; i < pool.size(); ++i) change += mean(next[i] - B[i]), all += mean(next[i] + M[i]);
+        B = std::move(next);
+        out.report.iterations = round + 1;
+        out.report.residual = all > 0 ? std::abs(change) / all : 0;
+        input.progress.advance(static_cast<double>(round) / static_cast<double>(most_rounds),
+                               fmt::format("change {:.1e}", out.report.residual));
+        // Below the change that fresh samples make by themselves nothing is learned from another reflection.
+        constexpr double settled = 2e-3;
+        out.report.converged = out.report.residual < std::max(settled, input.knobs.residual);
+        if (out.report.converged) break;
+        if (watch.grows(std::max(std::abs(change), settled * all))) {
+            out.report.residual = 1;  // has_diverged
+            break;
+        }
+        reflected.renew(B);
+        if (round == 0 && !reflected.grow(units / 2, input.stop, &input.progress)) break;
+        if (round > 0) reflected.learn_more(10 * units, input.stop);
+        reflected.fit();
+        std::vector<Spectrum> rhs = arriving(out.light.cells, network.own_regions, reflected, integrals, false);
+        for (std::size_t q = 0; q < rhs.size(); ++q) rhs[q] += first[q];
+        solve_outputs(G, rhs, out.light.cells);
+    }
+    keep_network(emitted, out.light);
+    keep_network(reflected, out.light);
+    out.rays = emitted.rays() + reflected.rays();
+    out.kernels = emitted.sample_count() + reflected.sample_count();
+    out.memory_bytes = G.size() * sizeof(double);
+    return out;
+}
+
+}  // namespace exitance

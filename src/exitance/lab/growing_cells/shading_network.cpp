@@ -1,0 +1,149 @@
+#include "exitance/lab/growing_cells/shading_network.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/lab/growing_cells/growing_cells.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double turn_by_size = 0.5;        ///< Length that a turn counts as, by the scene's size.
+constexpr std::size_t samples_a_unit = 60;  ///< Between two insertions.
+constexpr std::size_t thinnings = 4;        ///< Looks for idle units while a network grows to twice its size.
+constexpr double idle = 0.09;               ///< Threshold of [Fritzke94], by mean signals.
+constexpr std::size_t last_samples = 30;    ///< A unit, before the last look for idle ones.
+constexpr int last_looks = 3;
+constexpr double straddling = 0.9;     ///< Length of the mean normal below which a cell lies on a fold.
+constexpr double width_by_area = 1.0;  ///< Width over the root of a cell's area.
+
+std::array<double, 6> coordinates(const PoolPoint& p, double scale) {
+    return {p.at.x, p.at.y, p.at.z, scale * p.n.x, scale * p.n.y, scale * p.n.z};
+}
+
+/// Which unit is nearest to every point, of those that count.
+std::vector<GrowingCells::Unit> winners(const SurfacePool& pool, const GrowingCells& cells, double scale) {
+    std::vector<GrowingCells::Unit> out(pool.size());
+    parallel_for(pool.size(), 256, [&](std::size_t i) { out[i] = cells.winner(coordinates(pool[i], scale)); });
+    return out;
+}
+
+struct Gathered {
+    Vec3 place, normal;
+    double count = 0;
+};
+
+/// What every unit has won: sums in the order of the pool.
+std::vector<Gathered> gather(const SurfacePool& pool, const std::vector<GrowingCells::Unit>& won, std::size_t units) {
+    std::vector<Gathered> out(units);
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        Gathered& g = out[won[i]];
+        g.place += pool[i].at, g.normal += pool[i].n, g.count += 1;
+    }
+    return out;
+}
+
+/// The mean distance of a unit's neighbours that face alike, metres; 0 for none.
+double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::vector<Gathered>& gathered) {
+    double sum = 0, count = 0;
+    const Vec3 at = gathered[u].place / gathered[u].count;
+    for (const GrowingCells::Unit c : cells.complex().neighbours(u)) {
+        if (gathered[c].count == 0) continue;
+        if (dot(gathered[c].normal, gathered[u].normal) < straddling * gathered[c].count * gathered[u].count) continue;
+        sum += norm(gathered[c].place / gathered[c].count - at), count += 1;
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+/// Units that follow samples of the pool, until there are so many of them.
+GrowingCells grow_units(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw, double scale,
+                        std::size_t units, std::uint64_t seed, const StopRequest& stop) {
+    RandomStream random(seed, Stream::mesh, 78);
+    const auto sample = [&] {
+        const double u = random.uniform(), v = random.uniform();
+        return coordinates(pool[draw(u, v)], scale);
+    };
+    std::vector<double> corners;
+    for (int i = 0; i < 3; ++i) {
+        const auto at = sample();
+        corners.insert(corners.end(), at.begin(), at.end());
+    }
+    GrowingCells cells({.simplex = 2, .dimension = 6}, corners);
+    std::size_t since = 0;
+    for (int look = 0; look < last_looks && !stop.requested(); ++look) {
+        // Long edges lead across folds, and units that come to lie between surfaces win nothing: they go again.
+        for (std::size_t tries = 0; cells.unit_count() < units && tries < 4 * units && !stop.requested(); ++tries) {
+            for (std::size_t i = 0; i < samples_a_unit; ++i) cells.learn(sample(), {}, 1, 0);
+            cells.insert();
+            if (++since > 8 + cells.unit_count() / thinnings) cells.remove_idle(idle, false), since = 0;
+        }
+        cells.remove_idle(0, false);
+        for (std::size_t i = 0; i < last_samples * units; ++i) cells.learn(sample(), {}, 1, 0);
+        if (cells.remove_idle(idle, false) == 0) break;
+    }
+    cells.refresh();
+    return cells;
+}
+
+/// Regions of the points that are nearest to each cell and face as it does: those of a wall beside a fold do not count.
+std::vector<std::vector<RegionId>> find_own_regions(const SurfacePool& pool, const ShadingNetwork& network) {
+    std::vector<std::vector<RegionId>> out(network.cells.size());
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const std::uint32_t c = network.cell_of[i];
+        if (dot(pool[i].n, network.cells[c].n) < straddling) continue;
+        std::vector<RegionId>& own = out[c];
+        const auto at = std::lower_bound(own.begin(), own.end(), pool[i].region);
+        if (at == own.end() || *at != pool[i].region) own.insert(at, pool[i].region);
+    }
+    return out;
+}
+
+}  // namespace
+
+ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw,
+                                    std::size_t units, bool by_edges, double scene_size, std::uint64_t seed,
+                                    const StopRequest& stop) {
+    const double scale = turn_by_size * scene_size;
+    GrowingCells cells = grow_units(pool, draw, scale, units, seed, stop);
+    const std::vector<GrowingCells::Unit> won = winners(pool, cells, scale);
+    const std::vector<Gathered> gathered = gather(pool, won, cells.complex().unit_end());
+    ShadingNetwork out;
+    constexpr std::uint32_t none = 0xffffffffu;
+    std::vector<std::uint32_t> number(gathered.size(), none);
+    for (GrowingCells::Unit u = 0; u < gathered.size(); ++u) {
+        const Gathered& g = gathered[u];
+        if (g.count == 0 || norm(g.normal) < straddling * g.count) continue;
+        number[u] = static_cast<std::uint32_t>(out.cells.size());
+        const double area = g.count * pool.area_each(), by_area = width_by_area * std::sqrt(area);
+        const double by_edge = by_edges ? edge_length(cells, u, gathered) : 0;
+        out.cells.push_back({g.place / g.count, normalized(g.normal), by_edge > 0 ? by_edge : by_area, {}, {}});
+    }
+    if (out.cells.empty()) {  // a scene so small that every unit lies on a fold: one point speaks for itself
+        out.cells.push_back({pool[0].at, pool[0].n, std::sqrt(pool.area()), {}, {}});
+    }
+    // Points of units that were left out go to the nearest cell that faces alike.
+    out.cell_of.resize(pool.size());
+    parallel_for(pool.size(), 64, [&](std::size_t i) {
+        out.cell_of[i] = number[won[i]];
+        if (out.cell_of[i] != none) return;
+        double least = HUGE_VAL;
+        for (std::uint32_t c = 0; c < out.cells.size(); ++c) {
+            const Vec3 turn = out.cells[c].n - pool[i].n;
+            const double d = squared_norm(out.cells[c].at - pool[i].at) + scale * scale * squared_norm(turn);
+            if (d < least) least = d, out.cell_of[i] = c;
+        }
+    });
+    out.area.assign(out.cells.size(), 0);
+    for (const std::uint32_t c : out.cell_of) out.area[c] += pool.area_each();
+    out.own_regions = find_own_regions(pool, out);
+    const std::vector<GrowingCells::Unit> simplices = cells.complex().simplices();
+    for (std::size_t i = 0; i + 2 < simplices.size(); i += 3) {
+        const std::array<std::uint32_t, 3> t{number[simplices[i]], number[simplices[i + 1]], number[simplices[i + 2]]};
+        if (t[0] != none && t[1] != none && t[2] != none) out.triangles.push_back(t);
+    }
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,57 @@
+#include "exitance/lab/laboratory.hpp"
+
+#include "exitance/lab/bsp/ordered_light.hpp"
+#include "exitance/lab/dm_tree/tree_cutter.hpp"
+#include "exitance/lab/growing_cells/cell_function.hpp"
+#include "exitance/lab/growing_cells/cells_method.hpp"
+#include "exitance/lab/layers/source_layers.hpp"
+#include "exitance/lab/local_passes/solve_by_lines.hpp"
+#include "exitance/lab/tasks/solve_by_tasks.hpp"
+#include "exitance/methods/extensions.hpp"
+
+namespace exitance {
+namespace {
+
+void choose_structures(const DiscontinuityChoice& choice, DiscontinuityOptions& options) {
+    const TriangulationScheme scheme = choice.triangulation.value_or(TriangulationScheme::delaunay);
+    if (scheme != TriangulationScheme::delaunay) {
+        const TreeCut cut{.scheme = scheme,
+                          .grid = choice.premesh == Premesh::coarse,
+                          .penumbra_first = choice.premesh == Premesh::penumbra_first};
+        options.cutter = [cut](const ReceiverCurves& receiver, double tolerance) {
+            return cut_by_tree(receiver, cut, tolerance);
+        };
+    }
+    const bool is_merged = choice.structure == OccluderStructure::merged;
+    if (is_merged || choice.structure == OccluderStructure::bsp)
+        options.search = [is_merged](const DirectLight& direct) {
+            return std::make_unique<OrderedLight>(direct, is_merged);
+        };
+}
+
+std::map<std::string, double> single_mesh_figures(const SixNodeMesh& mesh) {
+    return {{"layer_bytes", 0}, {"winged_edge_bytes", static_cast<double>(winged_edge_bytes(mesh))}};
+}
+
+constexpr DiscontinuityExtension discontinuity{choose_structures, make_layered_light, single_mesh_figures};
+
+bool selects_local_pass(const SolveOptions& options) {
+    return options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
+}
+
+bool selects_tasks(const SolveOptions& options) {
+    return options.task_engine;
+}
+
+}  // namespace
+
+void install_lab_methods() {
+    if (extensions().discontinuity) return;
+    extensions() = {.methods = {{Method::growing_cells, solve_growing_cells, "gaussian", forecast_cells}},
+                    .solves = {{selects_local_pass, solve_by_lines}, {selects_tasks, solve_by_tasks}},
+                    .discontinuity = &discontinuity};
+    add_light_form({LayersForm::name, LayersForm::unpack});
+    add_light_form({CellsForm::name, CellsForm::unpack});
+}
+
+}  // namespace exitance

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "exitance/base/ids.hpp"
+#include "exitance/base/spectrum.hpp"
+#include "exitance/lab/layers/light_layer.hpp"
+#include "exitance/solution/solution.hpp"
+
+namespace exitance {
+
+/// Direct light as one mesh for each source and surface, to be added up.
+struct LightLayers {
+    /// Of light whose colour is the same everywhere, one a source and region; else one a band.
+    struct Sheet {
+        RegionId region;
+        std::uint32_t source = 0;  ///< Of `sources`.
+        Spectrum colour;           ///< What a value of the layer counts.
+        LightLayer light;
+    };
+    /// Regions that emit, each by itself; none, the last: what else shines, together.
+    std::vector<RegionId> sources;
+    std::vector<Sheet> sheets;  ///< By region, then by source.
+
+    bool empty() const { return sources.empty(); }
+    std::size_t size() const;          ///< Triangles that are stored.
+    std::size_t memory_bytes() const;  ///< Of the compressed layers.
+};
+
+/// The sum of all layers at a point of a region, whose grids must be made: irradiance, W/m^2.
+Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region, const Point& p);
+
+/// Layers as the engine evaluates and keeps them.
+class LayersForm final : public LightForm {
+  public:
+    static constexpr std::string_view name = "layers";
+
+    explicit LayersForm(LightLayers layers);
+
+    std::string_view kind() const override { return name; }
+    Spectrum at(const Scene& scene, RegionId region, const Point& x) const override {
+        return light_at(layers_, scene, region, x);
+    }
+    std::size_t triangle_count() const override { return first_.back(); }
+    QuadraticTriangle triangle(const Scene& scene, std::size_t i, const Spectrum& weight) const override;
+    std::string packed() const override;
+    static LightFormPointer unpack(std::string_view bytes);
+
+    const LightLayers& layers() const { return layers_; }
+
+  private:
+    LightLayers layers_;
+    std::vector<std::size_t> first_;  ///< Number of a sheet's first triangle; and one past the last.
+};
+
+/// The layers of a solution; empty ones where it has none.
+const LightLayers& layers_of(const Solution& solution);
+
+/// A place of a region in the coordinates of its layers.
+Vec2 layer_place(const Region& region, const Point& p);
+
+}  // namespace exitance

@@ -1,0 +1,212 @@
+#include "exitance/lab/layers/source_layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/calibration/numbers.hpp"
+#include "exitance/discontinuity/exact_places.hpp"
+
+namespace exitance {
+namespace {
+
+/// Some emitters of a scene, and lights without extent or not.
+struct LayerSource {
+    RegionId region;  ///< None: several, or no region.
+    std::vector<std::uint32_t> emitters;
+    bool beams = false;
+};
+
+/// The brightest by themselves, in the order of the scene; then all others together.
+std::vector<LayerSource> sources_of(const Stage& stage) {
+    constexpr std::size_t most = 64;  // every one takes a look at all regions
+    const auto& emitters = stage.direct.emitters();
+    const auto power = [&](std::uint32_t e) {
+        return mean(emitters[e].exitance) * stage.scene.regions()[emitters[e].region].area;
+    };
+    std::vector<std::uint32_t> bright;
+    LayerSource rest{.region = RegionId(), .emitters = {}, .beams = !stage.direct.beams().empty()};
+    for (std::uint32_t e = 0; e < emitters.size(); ++e)
+        (stage.direct.is_distant(e) ? rest.emitters : bright).push_back(e);
+    std::stable_sort(bright.begin(), bright.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return power(a) > power(b); });
+    if (bright.size() > most) {
+        rest.emitters.insert(rest.emitters.end(), bright.begin() + most, bright.end());
+        std::sort(rest.emitters.begin(), rest.emitters.end());
+        bright.resize(most);
+    }
+    std::sort(bright.begin(), bright.end());
+    std::vector<LayerSource> out;
+    for (const std::uint32_t e : bright) out.push_back({emitters[e].region, {e}, false});
+    if (!rest.emitters.empty() || rest.beams) out.push_back(std::move(rest));
+    return out;
+}
+
+/// A region's triangles in its own plane, for each band: their values differ, nothing else.
+std::array<LayerTriangles, bands> flat_triangles(const SixNodeMesh& mesh, std::span<const std::uint32_t> triangles,
+                                                 const Region& region) {
+    std::array<LayerTriangles, bands> out;
+    std::map<std::uint32_t, std::uint32_t> number;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle_of;
+    const auto add = [&](std::uint32_t node) {
+        const auto id = static_cast<std::uint32_t>(out[0].points.size());
+        for (std::size_t b = 0; b < bands; ++b) {
+            out[b].points.push_back(layer_place(region, mesh.points[node]));
+            out[b].values.push_back(static_cast<double>(mesh.values[node][b]));
+        }
+        return id;
+    };
+    for (const std::uint32_t t : triangles) {
+        const auto& n = mesh.nodes[t];
+        std::array<std::uint32_t, 3> corner;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [at, is_new] = number.try_emplace(n[k], 0);
+            if (is_new) at->second = add(n[k]);
+            corner[k] = at->second;
+        }
+        // Where light jumps across an edge between two corners that both sides share, this side has its own.
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto ends = std::minmax(corner[k], corner[(k + 1) % 3]);
+            if (middle_of.try_emplace(ends, n[3 + k]).first->second != n[3 + k])
+                corner[k] = add(n[k]), corner[(k + 1) % 3] = add(n[(k + 1) % 3]);
+        }
+        for (std::size_t b = 0; b < bands; ++b) {
+            out[b].corners.push_back(corner);
+            auto& middle = out[b].middles.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k) middle[k] = static_cast<double>(mesh.values[n[3 + k]][b]);
+        }
+    }
+    return out;
+}
+
+/// Light of one colour: that and its mean over the bands.
+bool join_bands(std::array<LayerTriangles, bands>& of_band, Spectrum& colour) {
+    constexpr double rounding = 1e-6;  // given by 32-bit floats
+    Spectrum sum;
+    double largest = 0;
+    const auto for_all = [&](const auto& visit) {
+        for (std::size_t p = 0; p < of_band[0].values.size(); ++p)
+            visit([&](std::size_t b) -> double& { return of_band[b].values[p]; });
+        for (std::size_t t = 0; t < of_band[0].middles.size(); ++t)
+            for (std::size_t k = 0; k < 3; ++k)
+                visit([&](std::size_t b) -> double& { return of_band[b].middles[t][k]; });
+    };
+    for_all([&](const auto& value) {
+        for (std::size_t b = 0; b < bands; ++b) sum[b] += value(b), largest = std::max(largest, std::abs(value(b)));
+    });
+    if (!(mean(sum) > 0)) return false;
+    colour = sum / mean(sum);
+    bool alike = true;
+    for_all([&](const auto& value) {
+        double light = 0;
+        for (std::size_t b = 0; b < bands; ++b) light += value(b) / static_cast<double>(bands);
+        for (std::size_t b = 0; b < bands; ++b) alike &= std::abs(value(b) - colour[b] * light) <= rounding * largest;
+    });
+    if (!alike) return false;
+    for_all([&](const auto& value) {
+        double light = 0;
+        for (std::size_t b = 0; b < bands; ++b) light += value(b) / static_cast<double>(bands);
+        value(0) = light;
+    });
+    return true;
+}
+
+std::vector<std::vector<std::uint32_t>> triangles_by_region(const SixNodeMesh& mesh, std::size_t regions) {
+    std::vector<std::vector<std::uint32_t>> out(regions);
+    for (std::uint32_t t = 0; t < mesh.size(); ++t) out[mesh.region[t].value].push_back(t);
+    return out;
+}
+
+void add_sheets(const SixNodeMesh& mesh, const Scene& scene, std::uint32_t source, LightLayer::Form form,
+                std::vector<LightLayers::Sheet>& out, LayersReport& report) {
+    const std::size_t regions = scene.regions().size();
+    const auto of_region = triangles_by_region(mesh, regions);
+    std::vector<std::vector<LightLayers::Sheet>> made(regions);
+    parallel_for(regions, 16, [&](std::size_t r) {
+        if (of_region[r].empty()) return;
+        const RegionId region(static_cast<std::uint32_t>(r));
+        std::array<LayerTriangles, bands> flat = flat_triangles(mesh, of_region[r], scene.regions()[region]);
+        Spectrum colour;
+        const bool one = join_bands(flat, colour);
+        for (std::size_t b = 0; b < (one ? 1 : bands); ++b) {
+            if (!one) colour = Spectrum(), colour[b] = 1;
+            LightLayer light(flat[b], form);
+            if (light.size() == 0) continue;
+            light.make_grid();
+            made[r].push_back({region, source, colour, std::move(light)});
+        }
+    });
+    for (auto& sheets : made)
+        for (LightLayers::Sheet& sheet : sheets) out.push_back(std::move(sheet));
+    report.triangles += mesh.size(), report.winged_edge_bytes += winged_edge_bytes(mesh);
+}
+
+}  // namespace
+
+std::size_t winged_edge_bytes(const SixNodeMesh& mesh) {
+    std::vector<bool> is_corner(mesh.points.size()), is_middle(mesh.points.size());
+    for (const auto& n : mesh.nodes)
+        for (std::size_t k = 0; k < 3; ++k) is_corner[n[k]] = is_middle[n[3 + k]] = true;
+    const auto count = [](const std::vector<bool>& of) {
+        return static_cast<std::size_t>(std::count(of.begin(), of.end(), true));
+    };
+    return count(is_corner) * sizeof(WingedEdgeMesh::Vertex) + count(is_middle) * sizeof(WingedEdgeMesh::Edge) +
+           mesh.size() * sizeof(WingedEdgeMesh::Face);
+}
+
+LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& options, LayersReport& report,
+                              const StopRequest& stop) {
+    const double share = calibrated::layers_share;
+    constexpr double rounding_of_halves = 1.0 / 2048;
+    const ExactPlaces places(stage, options.direct_weight, options.indirect, options.seed, stop);
+    const std::vector<LayerSource> sources = sources_of(stage);
+    const LightLayer::Form form =
+        4 * rounding_of_halves <= options.error ? LightLayer::Form::halves : LightLayer::Form::floats;
+    Stage alone(stage.scene);
+    const double together = std::sqrt(static_cast<double>(std::max<std::size_t>(1, sources.size())));
+    DiscontinuityOptions one = options;
+    one.indirect = {}, one.direct_weight = Spectrum(1.0), one.secondary = {}, one.safe_points = nullptr;
+    one.scale = places.mean_light(), one.brightest = places.largest_light();
+    one.error = share * options.error / together, one.largest_error = share * options.largest_error / together;
+    LightLayers out;
+    constexpr int most_attempts = 4;
+    for (int attempt = 1;; ++attempt) {
+        report = {}, out = {};
+        for (const LayerSource& source : sources) {
+            alone.direct = DirectLight(stage.scene, alone.occluders);
+            alone.direct.keep_only(source.emitters, source.beams);
+            DiscontinuityReport own;
+            const SixNodeMesh mesh = make_discontinuity_mesh(alone, one, own, stop);
+            report.interrupted = own.interrupted;
+            if (own.interrupted) return {};
+            add_sheets(mesh, stage.scene, static_cast<std::uint32_t>(out.sources.size()), form, out.sheets, report);
+            out.sources.push_back(source.region);
+        }
+        std::stable_sort(out.sheets.begin(), out.sheets.end(),
+                         [](const auto& a, const auto& b) { return a.region.value < b.region.value; });
+        const double error = places.error([&](RegionId r, const Point& p) {
+            const Spectrum light = options.direct_weight * light_at(out, stage.scene, r, p);
+            return options.indirect ? light + options.indirect(r, p) : light;
+        });
+        report.error = places.mean_light() > 0 ? error / places.mean_light() : 0;
+        if (report.error <= share * options.error || attempt == most_attempts) return out;
+        one.error *= calibrated::attempt_aim * share * options.error / report.error;
+    }
+}
+
+LayeredLight make_layered_light(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop) {
+    LayersReport report;
+    LightLayers layers = make_light_layers(stage, options, report, stop);
+    LayeredLight out{.form = {}, .error = report.error, .interrupted = report.interrupted};
+    if (layers.empty()) return out;
+    out.figures = {{"layer_bytes", static_cast<double>(layers.memory_bytes())},
+                   {"winged_edge_bytes", static_cast<double>(report.winged_edge_bytes)},
+                   {"layers", static_cast<double>(layers.sources.size())},
+                   {"layer_triangles", static_cast<double>(report.triangles)},
+                   {"lit_layer_triangles", static_cast<double>(layers.size())}};
+    out.form = std::make_shared<LayersForm>(std::move(layers));
+    return out;
+}
+
+}  // namespace exitance

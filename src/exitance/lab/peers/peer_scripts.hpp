@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+namespace exitance {
+
+/// lab/peers/blender.py
+extern const std::string_view blender_script;
+
+}  // namespace exitance

@@ -1,0 +1,265 @@
+#include "exitance/lab/studies/task_schedules.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/lab/tasks/interaction_forecast.hpp"
+#include "exitance/lab/tasks/schedule_simulator.hpp"
+#include "exitance/lab/tasks/solve_by_tasks.hpp"
+#include "exitance/lab/tasks/task_engine.hpp"
+#include "exitance/methods/solve_scene.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_processors = 1024;
+
+struct Measured {
+    double wall = std::numeric_limits<double>::infinity(), processor = wall;
+    double busiest = wall;  ///< Processor time of the busiest thread, iteration by iteration, and what is serial.
+    std::size_t stolen = 0;
+};
+
+/// Tells tables apart by what stays the same.
+struct Rows {
+    const std::string& scene;
+    const char* program;
+    std::string_view schedule;
+
+    void begin(Table& table) const {
+        table.add_row();
+        table.set("scene", scene), table.set("program", program), table.set("schedule", std::string(schedule));
+    }
+    void add(Table& runs, const char* kind, std::size_t processors, double seconds, double of_one, double task_seconds,
+             std::size_t stolen) const {
+        begin(runs);
+        runs.set("kind", kind), runs.set("processors", std::to_string(processors));
+        runs.set("seconds", field(seconds)), runs.set("speedup", field(of_one / seconds));
+        runs.set("task_seconds", field(task_seconds)), runs.set("stolen", std::to_string(stolen));
+    }
+};
+
+/// What the wall clock would have told on a machine with nothing else to do.
+double busiest_seconds(const TaskGraph& graph) {
+    double sum = 0;
+    for (const TaskGraph::Iteration& iteration : graph.iterations) {
+        std::vector<double> of_worker(graph.workers, 0);
+        for (std::size_t t = iteration.first_task; t < iteration.first_task + iteration.task_count; ++t)
+            of_worker[graph.tasks[t].worker] += graph.tasks[t].cost();
+        sum += *std::max_element(of_worker.begin(), of_worker.end()) + iteration.serial;
+    }
+    return sum;
+}
+
+/// Interactions by equations 6 and 7 of [Vinod95].
+double predicted_interactions(const TaskEngine& engine, const TaskOptions& options) {
+    return predict_interactions(
+        engine.visible_pairs(), [&](std::uint32_t root) { return engine.patches()[root].area; },
+        [&](std::uint32_t root) { return max(engine.radiosity(root)); }, options);
+}
+
+/// The least of the repeats; the graph of the one with the least processor time, where it is wanted.
+struct Recorded {
+    TaskGraph graph;
+    std::size_t interactions = 0;
+    double predicted = 0;
+};
+Measured measure(const Stage& stage, TaskOptions options, int repeats, Recorded* recorded) {
+    Measured out;
+    Progress silent;
+    const StopRequest stop;
+    options.record = recorded != nullptr;
+    for (int i = 0; i < repeats; ++i) {
+        TaskEngine engine(stage, options);
+        const TaskReport report = engine.run(silent, stop);
+        double processor = report.serial;
+        for (double s : report.seconds) processor += s;
+        if (options.record) out.busiest = std::min(out.busiest, busiest_seconds(engine.graph()));
+        if (recorded && processor < out.processor)
+            *recorded = {engine.take_graph(), report.interactions, predicted_interactions(engine, options)};
+        out.processor = std::min(out.processor, processor);
+        if (report.wall < out.wall) out.wall = report.wall, out.stolen = report.stolen;
+    }
+    return out;
+}
+
+/// What most of the processors' time went to beside tasks. Behind barriers one works and all others are idle.
+const char* limit_of(const SimulatedRun& run, std::size_t processors) {
+    const double behind = run.serial * static_cast<double>(processors - 1);
+    const std::pair<double, const char*> parts[] = {{run.idle - behind, "no task to do"},
+                                                    {run.queue, "queues"},
+                                                    {run.remote, "memory of others"},
+                                                    {behind, "barriers"}};
+    return std::max_element(std::begin(parts), std::end(parts))->second;
+}
+
+void add_replays(const TaskGraph& graph, Schedule schedule, const Rows& rows, Table& runs) {
+    for (const MachineModel& machine : machine_models) {
+        const double alone = simulate_schedule(graph, schedule, 1, machine).seconds;
+        for (std::size_t P = 1; P <= most_processors; P *= 2) {
+            const SimulatedRun run = simulate_schedule(graph, schedule, P, machine);
+            rows.add(runs, "simulated", P, run.seconds, alone, run.tasks, run.stolen);
+            runs.set("machine", std::string(machine.name)), runs.set("queue_seconds", field(run.queue));
+            // What is left of a difference of sums is rounding where one processor works.
+            const double idle = P > 1 ? run.idle : 0;
+            runs.set("remote_seconds", field(run.remote)), runs.set("idle_seconds", field(idle));
+            runs.set("serial_seconds", field(run.serial)), runs.set("limit", P > 1 ? limit_of(run, P) : "");
+        }
+    }
+}
+
+double task_seconds(const TaskGraph& graph) {
+    double sum = 0;
+    for (const TaskGraph::Task& task : graph.tasks) sum += task.cost();
+    return sum;
+}
+
+void add_graph(const TaskGraph& graph, const Rows& rows, Table& graphs) {
+    rows.begin(graphs);
+    graphs.set("tasks", std::to_string(graph.tasks.size()));
+    graphs.set("iterations", std::to_string(graph.iterations.size()));
+    graphs.set("task_seconds", field(task_seconds(graph)));
+    graphs.set("critical_seconds", field(critical_path(graph)));
+}
+
+void add_iterations(const TaskGraph& graph, const Rows& rows, Table& iterations) {
+    for (std::size_t i = 0; i < graph.iterations.size(); ++i) {
+        const TaskGraph::Iteration& iteration = graph.iterations[i];
+        std::array<double, 5> seconds{};
+        std::size_t interactions = 0;
+        for (std::size_t t = iteration.first_task; t < iteration.first_task + iteration.task_count; ++t) {
+            interactions += graph.tasks[t].interactions;
+            for (std::size_t k = 0; k < 5; ++k) seconds[k] += static_cast<double>(graph.tasks[t].seconds[k]);
+        }
+        rows.begin(iterations);
+        iterations.set("iteration", std::to_string(i + 1));
+        iterations.set("tasks", std::to_string(iteration.task_count));
+        iterations.set("interactions", std::to_string(interactions));
+        for (std::size_t k = 0; k < 5; ++k) iterations.set(TaskGraph::cost_names[k], field(seconds[k]));
+        iterations.set("serial_seconds", field(iteration.serial));
+        iterations.set("total_radiosity", field(iteration.total_radiosity));
+    }
+}
+
+/// A solve as users have it.
+struct ProductionRun {
+    TaskTrace trace;
+    double seconds = 0, processor_seconds = 0;
+};
+void run_production(const Scene& scene, const ScheduleStudy& study, Schedule schedule, int threads_asked,
+                    ProductionRun& run, const StopRequest& stop) {
+    const int threads_before = threads();
+    const Schedule schedule_before = exitance::schedule();
+    set_threads(threads_asked), set_schedule(schedule);
+    Progress silent;
+    TracedProgress progress(silent, run.trace);
+    SolveOptions options;
+    options.error = study.error;
+    set_task_trace(&run.trace);
+    const std::clock_t processor = std::clock();
+    const Stopwatch watch;
+    static_cast<void>(solve_scene(scene, options, progress, stop));
+    run.seconds = watch.seconds();
+    run.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
+    run.trace.finish();
+    set_task_trace(nullptr);
+    set_threads(threads_before), set_schedule(schedule_before);
+}
+
+void add_phases(const TaskTrace& trace, const Rows& rows, Table& phases) {
+    for (std::size_t i = 0; i < trace.phases().size(); ++i) {
+        const TaskTrace::Phase& phase = trace.phases()[i];
+        double dealt = 0;
+        std::size_t loops = 0, tasks = 0;
+        for (const TaskTrace::Loop& loop : trace.loops()) {
+            if (loop.phase != i) continue;
+            ++loops, tasks += loop.tasks.size();
+            for (const TaskTrace::Task& task : loop.tasks) dealt += task.end - task.begin;
+        }
+        rows.begin(phases);
+        phases.set("phase", phase.name), phases.set("seconds", field(phase.end - phase.begin));
+        phases.set("dealt_out_seconds", field(dealt));
+        phases.set("loops", std::to_string(loops)), phases.set("tasks", std::to_string(tasks));
+    }
+}
+
+void measure_production(const std::string& scene_name, const Scene& scene, const ScheduleStudy& study,
+                        ScheduleTables& out, const StopRequest& stop) {
+    for (const auto& [schedule, name] : schedule_names) {
+        const Rows rows{scene_name, "production", name};
+        ProductionRun one, two;
+        run_production(scene, study, schedule, 1, one, stop);
+        run_production(scene, study, schedule, 2, two, stop);
+        if (stop.requested()) return;
+        rows.add(out.runs, "measured", 1, one.seconds, one.seconds, one.processor_seconds, 0);
+        rows.add(out.runs, "measured", 2, two.seconds, one.seconds, two.processor_seconds, 0);
+        const TaskGraph graph = graph_of_loops(one.trace);
+        add_replays(graph, schedule, rows, out.runs);
+        add_graph(graph, rows, out.graphs);
+        if (schedule == Schedule::stealing) add_phases(one.trace, rows, out.phases);
+    }
+}
+
+}  // namespace
+
+TaskGraph graph_of_loops(const TaskTrace& trace) {
+    TaskGraph graph;
+    const std::vector<TaskTrace::Loop>& loops = trace.loops();
+    const double end = trace.phases().empty() ? 0 : trace.phases().back().end;
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+        TaskGraph::Iteration iteration;
+        iteration.begin = loops[i].begin, iteration.end = loops[i].end;
+        iteration.first_task = graph.tasks.size(), iteration.task_count = loops[i].tasks.size();
+        // Before the first loop, too, there is what nobody shares.
+        const double before = i == 0 ? loops[i].begin : 0;
+        const double next = i + 1 < loops.size() ? loops[i + 1].begin : end;
+        iteration.serial = before + std::max(0.0, next - loops[i].end);
+        for (const TaskTrace::Task& task : loops[i].tasks) {
+            TaskGraph::Task& out = graph.tasks.emplace_back();
+            out.iteration = static_cast<std::uint32_t>(i), out.worker = static_cast<std::uint32_t>(task.worker);
+            out.polygon = static_cast<std::uint32_t>(task.index), out.begin = task.begin, out.end = task.end;
+            out.seconds[TaskGraph::init] = static_cast<float>(task.end - task.begin);
+            graph.workers = std::max(graph.workers, task.worker + 1);
+        }
+        graph.iterations.push_back(iteration);
+    }
+    return graph;
+}
+
+void measure_schedules(const std::string& scene_name, const Scene& scene, const ScheduleStudy& study,
+                       ScheduleTables& out, const StopRequest& stop) {
+    const Stage stage(scene);
+    SolveOptions asked;
+    asked.threshold = study.threshold, asked.min_area = study.min_area;
+    TaskOptions options = task_options(scene, asked);
+    for (const auto& [schedule, name] : schedule_names) {
+        if (stop.requested()) return;
+        const Rows rows{scene_name, "engine", name};
+        options.schedule = schedule;
+        Recorded of_one, of_two;
+        options.threads = 1;
+        const Measured recorded = measure(stage, options, study.repeats, &of_one);
+        const Measured one = measure(stage, options, study.repeats, nullptr);
+        options.threads = 2;
+        const Measured two = measure(stage, options, study.repeats, nullptr);
+        const Measured shared = measure(stage, options, study.repeats, &of_two);
+        rows.add(out.runs, "measured", 1, one.wall, one.wall, one.processor, 0);
+        rows.add(out.runs, "measured", 2, two.wall, one.wall, two.processor, two.stolen);
+        rows.add(out.runs, "busiest", 1, recorded.busiest, recorded.busiest, recorded.processor, 0);
+        rows.add(out.runs, "busiest", 2, shared.busiest, recorded.busiest, shared.processor, shared.stolen);
+        add_replays(of_one.graph, schedule, rows, out.runs);
+        add_graph(of_one.graph, rows, out.graphs);
+        out.graphs.set("interactions", std::to_string(of_one.interactions));
+        out.graphs.set("predicted_interactions", field(of_one.predicted));
+        out.graphs.set("predicted_over_found", field(of_one.predicted / static_cast<double>(of_one.interactions)));
+        if (schedule == Schedule::stealing) add_iterations(of_one.graph, rows, out.iterations);
+    }
+    measure_production(scene_name, scene, study, out, stop);
+}
+
+}  // namespace exitance

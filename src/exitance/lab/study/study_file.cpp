@@ -1,0 +1,320 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/lab/peers/peers.hpp"
+#include "exitance/lab/study/study.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::array<std::pair<Measure, std::string_view>, 8> measure_names{{
+    {Measure::value, "value"},
+    {Measure::largest, "largest"},
+    {Measure::last, "last"},
+    {Measure::slope, "slope"},
+    {Measure::ratio, "ratio"},
+    {Measure::last_ratio, "last_ratio"},
+    {Measure::crossing, "crossing"},
+    {Measure::quadratic, "quadratic"},
+}};
+
+/// Thrown and caught in this file alone.
+struct Wrong {
+    Error error;
+};
+
+/// One table of the file: takes keys one by one, and refuses those that nobody took.
+class Keys {
+  public:
+    Keys(const toml::table& table, std::string file) : table_(table), file_(std::move(file)) {}
+
+    [[noreturn]] void fail(const toml::node& at, std::string message, std::string hint = "") const {
+        throw Wrong{{ErrorCode::bad_input, std::move(message), fmt::format("{}:{}", file_, at.source().begin.line),
+                     std::move(hint)}};
+    }
+    const toml::node* find(const std::string& key) {
+        known_.insert(key);
+        return table_.get(key);
+    }
+    template <class T>
+    void take(const std::string& key, T& target) {
+        if (const toml::node* node = find(key)) read(*node, key, target);
+    }
+    template <class T>
+    void need(const std::string& key, T& target) {
+        if (!find(key)) fail(table_, fmt::format("'{}' is missing", key));
+        take(key, target);
+    }
+    void finish() const {
+        for (const auto& [key, node] : table_)
+            if (!known_.contains(std::string(key.str())))
+                fail(node, fmt::format("'{}' is not known here", key.str()),
+                     fmt::format("known are {}", fmt::join(known_, ", ")));
+    }
+    const std::string& file() const { return file_; }
+    const toml::table& table() const { return table_; }
+
+  private:
+    void read(const toml::node& node, const std::string& key, std::string& target) const {
+        const std::optional<std::string> value = node.value_exact<std::string>();
+        if (!value) fail(node, fmt::format("'{}' is not text in quotes", key));
+        target = *value;
+    }
+    void read(const toml::node& node, const std::string& key, bool& target) const {
+        const std::optional<bool> value = node.value_exact<bool>();
+        if (!value) fail(node, fmt::format("'{}' is not true or false", key));
+        target = *value;
+    }
+    void read(const toml::node& node, const std::string& key, double& target) const {
+        const std::optional<double> value = node.is_boolean() ? std::nullopt : node.value<double>();
+        if (!value) fail(node, fmt::format("'{}' is not a number", key));
+        target = *value;
+    }
+    template <class Whole>
+    requires std::same_as<Whole, int> || std::same_as<Whole, std::size_t>
+    void read(const toml::node& node, const std::string& key, Whole& target) const {
+        const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
+        if (!value || *value < 0 || *value > 1'000'000'000) fail(node, fmt::format("'{}' is not a count", key));
+        target = static_cast<Whole>(*value);
+    }
+    template <class T>
+    void read(const toml::node& node, const std::string& key, std::vector<T>& target) const {
+        const toml::array* array = node.as_array();
+        if (!array) fail(node, fmt::format("'{}' is not a list", key));
+        target.clear();
+        for (const toml::node& entry : *array) read(entry, key, target.emplace_back());
+    }
+    void read(const toml::node& node, const std::string& key, RowFilter& target) const {
+        const toml::table* table = node.as_table();
+        if (!table) fail(node, fmt::format("'{}' is not of the form {{ column = \"text\" }}", key));
+        for (const auto& [column, entry] : *table) {
+            std::vector<std::string>& texts = target[std::string(column.str())];
+            if (entry.is_array())
+                read(entry, key, texts);
+            else
+                read(entry, key, texts.emplace_back());
+        }
+    }
+    void read(const toml::node& node, const std::string& key, std::map<std::string, std::string>& target) const {
+        const toml::table* table = node.as_table();
+        if (!table) fail(node, fmt::format("'{}' is not of the form {{ name = \"text\" }}", key));
+        for (const auto& [name, entry] : *table) read(entry, key, target[std::string(name.str())]);
+    }
+
+    const toml::table& table_;
+    std::string file_;
+    std::set<std::string> known_;
+};
+
+/// What `[[key]]` lists, each read by a function.
+template <class T, class Read>
+void take_list(Keys& keys, const std::string& key, std::vector<T>& target, const Read& read) {
+    const toml::node* node = keys.find(key);
+    if (!node) return;
+    const toml::array* array = node->as_array();
+    if (!array) keys.fail(*node, fmt::format("'{}' is not a list of tables: [[{}]]", key, key));
+    for (const toml::node& entry : *array) {
+        const toml::table* table = entry.as_table();
+        if (!table) keys.fail(entry, fmt::format("'{}' is not a list of tables: [[{}]]", key, key));
+        Keys inner(*table, keys.file());
+        read(inner, target.emplace_back());
+        inner.finish();
+    }
+}
+
+void read_scene(Keys& keys, StudyScene& scene) {
+    keys.need("name", scene.name);
+    keys.take("generate", scene.generate);
+    keys.take("file", scene.file);
+    keys.take("values", scene.values);
+    scene.quick_values = scene.values;
+    keys.take("quick", scene.quick_values);
+    if (scene.generate.empty() == scene.file.empty())
+        keys.fail(keys.table(), "a scene has either 'generate' or 'file'");
+    if (scene.name.find_first_of("/\\ ") != std::string::npos)
+        keys.fail(keys.table(), fmt::format("'{}' has blanks or slashes: files are named after scenes", scene.name));
+    if (scene.values.empty()) scene.values = scene.quick_values = {0};
+}
+
+void read_row(Keys& keys, StudyRow& row) {
+    keys.need("label", row.label);
+    keys.need("options", row.options);
+    keys.take("peer", row.peer);
+    if (!row.peer.empty() && find_peer(row.peer) == nullptr)
+        keys.fail(*keys.find("peer"), fmt::format("'{}' is not one of {}", row.peer, fmt::join(peer_names(), ", ")));
+    keys.take("settings", row.settings);
+    row.quick_settings = row.settings;
+    keys.take("quick_settings", row.quick_settings);
+    keys.take("quick", row.quick);
+    keys.take("equal_time", row.equal_time);
+    keys.take("most", row.most);
+    keys.take("scenes", row.scenes);
+}
+
+void read_plot(Keys& keys, StudyPlot& plot) {
+    keys.need("name", plot.name);
+    keys.need("x", plot.x);
+    keys.need("y", plot.y);
+    plot.title = plot.name, plot.x_label = plot.x, plot.y_label = plot.y;
+    keys.take("title", plot.title);
+    keys.take("table", plot.table);
+    keys.take("series", plot.series);
+    keys.take("panel", plot.panel);
+    keys.take("x_label", plot.x_label);
+    keys.take("y_label", plot.y_label);
+    keys.take("log", plot.log);
+    keys.take("labels", plot.labels);
+    keys.take("fit", plot.fit);
+    if (!plot.fit.empty() && plot.fit != "power" && plot.fit != "quadratic")
+        keys.fail(*keys.find("fit"), fmt::format("'{}' is not power or quadratic", plot.fit));
+    keys.take("where", plot.where);
+    keys.take("checkpoints", plot.checkpoints);
+    if (plot.name.find_first_of("/\\ ") != std::string::npos)
+        keys.fail(keys.table(), fmt::format("'{}' has blanks or slashes: files are named after plots", plot.name));
+}
+
+void read_chosen(Keys& keys, ChosenSolution& of) {
+    keys.need("row", of.row);
+    keys.take("scene", of.scene);
+    keys.take("setting", of.setting);
+    keys.take("value", of.value);
+}
+
+void read_line(Keys& keys, StudyLine& line) {
+    read_chosen(keys, line.of);
+    keys.need("name", line.name);
+    keys.take("points", line.points);
+    for (const auto& [key, target] :
+         {std::pair("from", &line.from), std::pair("to", &line.to), std::pair("normal", &line.normal)}) {
+        std::vector<double> numbers;
+        keys.need(key, numbers);
+        if (numbers.size() != 3) keys.fail(*keys.find(key), fmt::format("'{}' is not [x, y, z]", key));
+        std::copy(numbers.begin(), numbers.end(), target->begin());
+    }
+    const auto& n = line.normal;
+    if (!(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0)) keys.fail(keys.table(), "the normal has no length");
+    if (line.points < 2) keys.fail(keys.table(), "a line has two points at least");
+}
+
+void read_picture(Keys& keys, StudyPicture& picture) {
+    read_chosen(keys, picture.of);
+    keys.take("caption", picture.caption);
+    keys.take("options", picture.options);
+    keys.take("at", picture.of.at);
+    std::string shows = "light";
+    keys.take("shows", shows);
+    if (shows != "light" && shows != "mesh" && shows != "halves")
+        keys.fail(*keys.find("shows"), fmt::format("'{}' is not light, mesh or halves", shows));
+    picture.shows = shows == "light"  ? StudyPicture::Shows::light
+                    : shows == "mesh" ? StudyPicture::Shows::mesh
+                                      : StudyPicture::Shows::halves;
+}
+
+void read_conclusion(Keys& keys, StudyConclusion& conclusion) {
+    keys.need("says", conclusion.says);
+    keys.need("y", conclusion.y);
+    keys.take("x", conclusion.x);
+    keys.take("paper", conclusion.paper);
+    keys.take("plot", conclusion.plot);
+    keys.take("table", conclusion.table);
+    keys.take("where", conclusion.where);
+    keys.take("against", conclusion.against);
+    keys.take("least", conclusion.least);
+    keys.take("most", conclusion.most);
+    std::string measure = "value";
+    keys.take("measure", measure);
+    const auto known = std::find_if(measure_names.begin(), measure_names.end(),
+                                    [&](const auto& entry) { return entry.second == measure; });
+    if (known == measure_names.end()) {
+        std::vector<std::string_view> names;
+        for (const auto& [value, name] : measure_names) names.push_back(name);
+        keys.fail(*keys.find("measure"), fmt::format("'{}' is not one of {}", measure, fmt::join(names, ", ")));
+    }
+    conclusion.measure = known->first;
+    const bool along =
+        known->first != Measure::value && known->first != Measure::largest && known->first != Measure::ratio;
+    if (along && conclusion.x.empty()) keys.fail(keys.table(), fmt::format("'{}' wants an 'x'", measure));
+}
+
+void read_reference(Keys& keys, StudyReference& reference) {
+    keys.take("file", reference.file);
+    keys.take("options", reference.options);
+    reference.quick_options = reference.options;
+    keys.take("quick_options", reference.quick_options);
+    keys.take("points", reference.points);
+    keys.take("paths", reference.paths);
+    reference.quick_points = reference.points, reference.quick_paths = reference.paths;
+    keys.take("quick_points", reference.quick_points);
+    keys.take("quick_paths", reference.quick_paths);
+    keys.finish();
+    if (reference.file.empty() && (reference.points == 0 || reference.paths == 0))
+        keys.fail(keys.table(), "a reference has 'points' and 'paths', or a 'file'");
+}
+
+Study read_study(const toml::table& table, const std::string& file) {
+    Study study;
+    Keys keys(table, file);
+    keys.need("title", study.title);
+    keys.take("about", study.about);
+    keys.take("parameter", study.parameter);
+    keys.take("unit", study.unit);
+    keys.take("table", study.table);
+    keys.take("arguments", study.arguments);
+    keys.take("threads", study.threads);
+    keys.take("time_limit", study.time_limit);
+    study.quick_time_limit = std::min(study.quick_time_limit, study.time_limit);
+    keys.take("quick_time_limit", study.quick_time_limit);
+    keys.take("memory_limit", study.memory_limit);
+    keys.take("ascending", study.ascending);
+    keys.take("equal_time", study.equal_time);
+    take_list(keys, "scene", study.scenes, read_scene);
+    take_list(keys, "row", study.rows, read_row);
+    take_list(keys, "plot", study.plots, read_plot);
+    take_list(keys, "picture", study.pictures, read_picture);
+    take_list(keys, "line", study.lines, read_line);
+    take_list(keys, "conclusion", study.conclusions, read_conclusion);
+    if (const toml::node* reference = keys.find("reference")) {
+        if (!reference->is_table()) keys.fail(*reference, "'reference' is not a table: [reference]");
+        Keys inner(*reference->as_table(), file);
+        read_reference(inner, study.reference);
+    }
+    keys.finish();
+    if (study.table.empty() && (study.scenes.empty() || study.rows.empty()))
+        keys.fail(table, "a study has a [[scene]] and a [[row]] at least, or a 'table'");
+    std::set<std::string> labels;
+    for (const StudyRow& row : study.rows)
+        if (!labels.insert(row.label).second) keys.fail(table, fmt::format("two rows are called '{}'", row.label));
+    return study;
+}
+
+}  // namespace
+
+Result<Study> parse_study(const std::string& text, const std::string& name, const std::string& file) {
+    try {
+        const toml::table table = toml::parse(text, file);
+        Study study = read_study(table, file);
+        study.name = name, study.text = text;
+        study.folder = std::filesystem::path(file).parent_path().string();
+        return study;
+    } catch (const Wrong& wrong) {
+        return wrong.error;
+    } catch (const toml::parse_error& error) {
+        return Error{ErrorCode::bad_input, std::string(error.description()),
+                     fmt::format("{}:{}", file, error.source().begin.line), "studies are written in TOML"};
+    }
+}
+
+Result<Study> load_study(const std::string& path) {
+    const Result<std::string> text = read_whole_file(path);
+    if (!text) return text.error();
+    return parse_study(*text, std::filesystem::path(path).stem().string(), path);
+}
+
+}  // namespace exitance

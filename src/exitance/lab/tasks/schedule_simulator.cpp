@@ -1,0 +1,171 @@
+#include "exitance/lab/tasks/schedule_simulator.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <queue>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace exitance {
+namespace {
+
+/// One iteration, whose tasks stand at [first, first + count) of the graph.
+class Replay {
+  public:
+    Replay(const TaskGraph& graph, const TaskGraph::Iteration& iteration, Schedule schedule, std::size_t processors,
+           const MachineModel& machine, SimulatedRun& run)
+        : graph_(graph),
+          first_(iteration.first_task),
+          children_(iteration.task_count),
+          schedule_(schedule),
+          processors_(processors),
+          machine_(machine),
+          run_(run),
+          queues_(schedule == Schedule::dynamic ? 1 : processors),
+          free_at_(queues_.size(), 0),
+          running_(processors, none) {
+        for (std::size_t t = first_; t < first_ + iteration.task_count; ++t) {
+            const TaskGraph::Task& task = graph.tasks[t];
+            if (task.maker == TaskGraph::none)
+                add_last(task.polygon % queues_.size(), t);
+            else
+                children_[task.maker - first_].push_back(t);
+        }
+    }
+
+    /// When the last task has ended, from 0.
+    double run() {
+        for (std::size_t p = 0; p < processors_; ++p) events_.push({0, p});
+        double end = 0;
+        while (!events_.empty()) {
+            const auto [now, p] = events_.top();
+            events_.pop();
+            if (running_[p] != none) end = std::max(end, push_made(now, p));
+            take_next(std::max(now, push_done_), p);
+            push_done_ = 0;
+        }
+        return end;
+    }
+
+  private:
+    static constexpr std::size_t none = ~std::size_t(0);
+    using Event = std::pair<double, std::size_t>;  ///< When, and which processor becomes free.
+
+    void add_last(std::size_t queue, std::size_t task) {
+        if (queues_[queue].empty()) filled_.insert(queue);
+        queues_[queue].push_back(task);
+    }
+    void add_first(std::size_t queue, std::size_t task) {
+        if (queues_[queue].empty()) filled_.insert(queue);
+        queues_[queue].push_front(task);
+    }
+    std::size_t take(std::size_t queue, bool head) {
+        std::deque<std::size_t>& tasks = queues_[queue];
+        const std::size_t task = head ? tasks.front() : tasks.back();
+        head ? tasks.pop_front() : tasks.pop_back();
+        if (tasks.empty()) filled_.erase(queue);
+        return task;
+    }
+    /// A queue's lock is got one after the other. Returns when this processor is done with it.
+    double at_queue(std::size_t queue, double now) {
+        const double begin = std::max(now, free_at_[queue]);
+        free_at_[queue] = begin + machine_.queue;
+        run_.queue += free_at_[queue] - now;
+        return free_at_[queue];
+    }
+
+    /// What the task that has ended has made comes to a queue, and whoever waits for it is woken. Returns when.
+    double push_made(double now, std::size_t p) {
+        const std::vector<std::size_t>& made = children_[std::exchange(running_[p], none) - first_];
+        if (made.empty()) return push_done_ = now;
+        const std::size_t queue = schedule_ == Schedule::dynamic ? 0 : p;
+        push_done_ = at_queue(queue, now);
+        if (schedule_ == Schedule::stealing)
+            for (std::size_t i = made.size(); i-- > 0;) add_first(queue, made[i]);
+        else
+            for (std::size_t t : made) add_last(queue, t);
+        // Those that wait look again; as many as there are tasks.
+        if (schedule_ != Schedule::fixed)
+            for (std::size_t i = 0; i < made.size() && !waiting_.empty(); ++i) {
+                const auto [since, waiter] = waiting_.front();
+                waiting_.pop_front();
+                events_.push({std::max(since, push_done_), waiter});
+            }
+        return push_done_;
+    }
+
+    void take_next(double now, std::size_t p) {
+        const std::size_t own = schedule_ == Schedule::dynamic ? 0 : p;
+        if (!queues_[own].empty()) return start(take(own, true), at_queue(own, now), p, false);
+        if (schedule_ == Schedule::stealing && !filled_.empty()) {
+            auto victim = filled_.upper_bound(p);
+            if (victim == filled_.end()) victim = filled_.begin();
+            const std::size_t queue = *victim, probes = (queue + processors_ - p) % processors_;
+            const double search = static_cast<double>(probes) * machine_.probe + machine_.steal;
+            run_.queue += search;
+            ++run_.stolen;
+            return start(take(queue, false), at_queue(queue, now + search), p, true);
+        }
+        waiting_.push_back({now, p});
+    }
+
+    void start(std::size_t t, double now, std::size_t p, bool is_stolen) {
+        const TaskGraph::Task& task = graph_.tasks[t];
+        const double P = static_cast<double>(processors_), cost = machine_.slowness * task.cost();
+        const double outside = processors_ > machine_.ring ? 1 - static_cast<double>(machine_.ring) / P : 0;
+        const double line = (1 - outside) * machine_.near + outside * machine_.far;
+        const double remote = (1 - 1 / P + (is_stolen ? 1 : 0)) * task.interactions * line;
+        run_.tasks += cost;
+        run_.remote += remote;
+        running_[p] = t;
+        events_.push({now + cost + remote, p});
+    }
+
+    const TaskGraph& graph_;
+    std::size_t first_;
+    std::vector<std::vector<std::size_t>> children_;
+    Schedule schedule_;
+    std::size_t processors_;
+    const MachineModel& machine_;
+    SimulatedRun& run_;
+    std::vector<std::deque<std::size_t>> queues_;
+    std::set<std::size_t> filled_;  ///< Queues that are not empty.
+    std::vector<double> free_at_;   ///< When each queue's lock is to be had.
+    std::vector<std::size_t> running_;
+    std::deque<Event> waiting_;
+    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+    double push_done_ = 0;
+};
+
+}  // namespace
+
+SimulatedRun simulate_schedule(const TaskGraph& graph, Schedule schedule, std::size_t processors,
+                               const MachineModel& machine) {
+    SimulatedRun run;
+    for (const TaskGraph::Iteration& iteration : graph.iterations) {
+        run.seconds += Replay(graph, iteration, schedule, processors, machine, run).run();
+        run.serial += machine.slowness * iteration.serial;
+        run.seconds += machine.slowness * iteration.serial;
+    }
+    const double all = run.seconds * static_cast<double>(processors);
+    run.idle = all - run.tasks - run.queue - run.remote - run.serial;
+    return run;
+}
+
+double critical_path(const TaskGraph& graph) {
+    double sum = 0;
+    std::vector<double> reached(graph.tasks.size(), 0);
+    for (const TaskGraph::Iteration& iteration : graph.iterations) {
+        double longest = 0;
+        for (std::size_t t = iteration.first_task; t < iteration.first_task + iteration.task_count; ++t) {
+            const TaskGraph::Task& task = graph.tasks[t];
+            reached[t] = task.cost() + (task.maker == TaskGraph::none ? 0 : reached[task.maker]);
+            longest = std::max(longest, reached[t]);
+        }
+        sum += longest + iteration.serial;
+    }
+    return sum;
+}
+
+}  // namespace exitance

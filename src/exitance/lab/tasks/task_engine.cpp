@@ -1,0 +1,140 @@
+#include "exitance/lab/tasks/task_engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+#include <tuple>
+#include <unordered_map>
+
+namespace exitance {
+namespace {
+
+/// A worker's part of an iteration: until no task is left that may make others.
+void work(GrowingQueues& queues, TaskWorker& worker, std::size_t number, const IterationState& iteration) {
+    while (!queues.are_done()) {
+        const std::optional<PatchTask> task = queues.next(number);
+        if (!task) {
+            std::this_thread::yield();
+            continue;
+        }
+        worker.process(*task, iteration);
+        queues.push(number, worker.made());
+        queues.finish();
+    }
+}
+
+}  // namespace
+
+TaskEngine::TaskEngine(const Stage& stage, const TaskOptions& options)
+    : stage_(stage), options_(options), patches_(stage, options.seed) {
+    options_.threads = std::max<std::size_t>(1, options.threads);
+    for (std::size_t w = 0; w < options_.threads; ++w)
+        workers_.emplace_back(stage_, options_, patches_, static_cast<std::uint32_t>(w));
+    graph_.workers = options_.threads;
+}
+
+TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double origin) {
+    const Stopwatch clock;
+    double total = total_radiosity();
+    while (report_.iterations < options_.max_iterations && !report_.converged && !stop.requested()) {
+        ++iteration_;
+        TaskGraph::Iteration iteration{.begin = origin + clock.seconds()};
+        const IterationState state{iteration_, patches_.size(), stop, clock, origin};
+        GrowingQueues queues(options_.schedule, options_.threads);
+        for (std::uint32_t root = 0; root < patches_.root_count(); ++root) queues.deal(root, {root, TaskPatch::none});
+        {
+            std::vector<std::jthread> threads;
+            for (std::size_t w = 1; w < options_.threads; ++w)
+                threads.emplace_back([&, w] { work(queues, workers_[w], w, state); });
+            work(queues, workers_[0], 0, state);
+        }
+        const double barrier = clock.seconds();
+        settle_new_patches(state.old_size);
+        if (iteration_ == 1) collect_pairs();
+        ++report_.iterations;
+        report_.stolen += queues.stolen();
+        const double before = std::exchange(total, total_radiosity());
+        report_.change = total > 0 ? std::abs(total - before) / total : 0;
+        report_.converged = report_.change <= options_.change;
+        iteration.total_radiosity = total;
+        iteration.end = origin + clock.seconds();
+        iteration.serial = clock.seconds() - barrier;
+        report_.serial += iteration.serial;
+        if (options_.record) record(iteration);
+        progress.advance(report_.converged ? 1 : std::min(0.9, options_.change / report_.change),
+                         fmt::format("iteration {}, total radiosity {:.6g}", report_.iterations, total));
+    }
+    report_.wall = clock.seconds();
+    count();
+    return report_;
+}
+
+void TaskEngine::count() {
+    report_.initial_interactions = visible_pairs_.size();
+    for (std::uint32_t id = 0; id < patches_.size(); ++id) report_.interactions += patches_[id].list.size();
+    for (const TaskWorker& worker : workers_) {
+        report_.rays += worker.rays;
+        report_.form_factors += worker.form_factors;
+        report_.tasks += worker.tasks;
+        for (std::size_t k = 0; k < worker.seconds.size(); ++k) report_.seconds[k] += worker.seconds[k];
+    }
+}
+
+/// Patches that were cut for others' sake in this iteration have their parent's light: tasks came to all older ones. A
+/// child's id is larger than its parent's.
+void TaskEngine::settle_new_patches(std::uint32_t old_size) {
+    for (std::uint32_t id = old_size; id < patches_.size(); ++id) {
+        TaskPatch& patch = patches_[id];
+        if (patch.reached == iteration_) continue;
+        const TaskPatch& parent = patches_[patch.parent];
+        patch.irradiance = parent.irradiance;
+        patch.radiosity[iteration_ % 2] = parent.radiosity[iteration_ % 2];
+    }
+}
+
+double TaskEngine::total_radiosity() const {
+    double sum = 0;
+    for (std::uint32_t root = 0; root < patches_.root_count(); ++root)
+        sum += patches_[root].area * mean(radiosity(root));
+    return sum;
+}
+
+void TaskEngine::collect_pairs() {
+    for (TaskWorker& worker : workers_)
+        visible_pairs_.insert(visible_pairs_.end(), worker.visible_pairs.begin(), worker.visible_pairs.end());
+    std::sort(visible_pairs_.begin(), visible_pairs_.end(), [](const PiecePair& a, const PiecePair& b) {
+        return std::pair(a.receiver, a.source) < std::pair(b.receiver, b.source);
+    });
+}
+
+/// What workers have recorded, in an order that does not depend on them: by piece, parents before children.
+void TaskEngine::record(TaskGraph::Iteration iteration) {
+    std::vector<TaskWorker::Record> all;
+    for (TaskWorker& worker : workers_) {
+        all.insert(all.end(), worker.records.begin(), worker.records.end());
+        worker.records.clear();
+    }
+    const auto name = [&](const TaskWorker::Record& r) {
+        const TaskPatch& patch = patches_[r.patch];
+        return std::tuple(patch.polygon, patch.path, patch.level);
+    };
+    std::sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return name(a) < name(b); });
+    iteration.first_task = graph_.tasks.size();
+    iteration.task_count = all.size();
+    std::unordered_map<std::uint32_t, std::uint32_t> index;
+    for (TaskWorker::Record& r : all) {
+        index[r.patch] = static_cast<std::uint32_t>(graph_.tasks.size());
+        r.task.maker = r.maker == TaskPatch::none ? TaskGraph::none : index.at(r.maker);
+        graph_.tasks.push_back(r.task);
+    }
+    graph_.iterations.push_back(iteration);
+}
+
+std::size_t TaskEngine::memory_bytes() const {
+    std::size_t bytes = patches_.memory_bytes();
+    for (std::uint32_t id = 0; id < patches_.size(); ++id) bytes += patches_[id].list.capacity() * sizeof(Interaction);
+    return bytes;
+}
+
+}  // namespace exitance

@@ -1,0 +1,64 @@
+#include "exitance/measure/pictures/camera.hpp"
+
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+constexpr double degree = pi / 180;
+
+double pixel_width(const Camera& camera, PictureSize size) {
+    switch (camera.projection) {
+        case Projection::perspective:
+            return 2 * std::tan(0.5 * camera.fov * degree) / size.width;
+        case Projection::orthographic:
+            return camera.fov / size.width;
+        case Projection::fisheye:
+            return camera.fov * degree / std::min(size.width, size.height);
+        case Projection::panorama:
+            break;
+    }
+    return 2 * pi / size.width;
+}
+
+}  // namespace
+
+CameraRays::CameraRays(const Camera& camera, PictureSize size)
+    : projection_(camera.projection), size_(size), eye_(camera.eye), pixel_(pixel_width(camera, size)) {
+    ahead_ = normalized(camera.target - camera.eye);
+    Vec3 up = normalized(camera.up);
+    if (projection_ == Projection::panorama) {  // its middle row is the horizon
+        const Vec3 level = ahead_ - dot(ahead_, up) * up;
+        ahead_ = norm(level) > 1e-6 ? normalized(level) : Frame(up).u;
+    }
+    if (std::abs(dot(ahead_, up)) >= 0.9999) up = std::abs(ahead_.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+    right_ = normalized(cross(ahead_, up)), down_ = cross(ahead_, right_);
+}
+
+bool CameraRays::ray(double x, double y, Point& origin, Vec3& direction) const {
+    const double s = pixel_ * (x - 0.5 * size_.width), t = pixel_ * (y - 0.5 * size_.height);
+    origin = eye_;
+    switch (projection_) {
+        case Projection::perspective:
+            direction = ahead_ + s * right_ + t * down_;
+            return true;
+        case Projection::orthographic:
+            origin = eye_ + s * right_ + t * down_;
+            direction = ahead_;
+            return true;
+        case Projection::fisheye: {
+            const double angle = std::hypot(s, t), disc = 0.5 * pixel_ * std::min(size_.width, size_.height);
+            const double across = angle > 0 ? std::sin(angle) / angle : 1;
+            direction = std::cos(angle) * ahead_ + across * (s * right_ + t * down_);
+            return angle <= disc;
+        }
+        case Projection::panorama: {
+            const double below = pi * (y / size_.height - 0.5);  // the horizon; the pixels need not be square
+            direction = std::cos(below) * (std::cos(s) * ahead_ + std::sin(s) * right_) + std::sin(below) * down_;
+            return std::abs(below) <= 0.5 * pi;
+        }
+    }
+    return false;
+}
+
+}  // namespace exitance

@@ -1,0 +1,270 @@
+#include "exitance/measure/pictures/tile_light.hpp"
+
+#include <algorithm>
+#include <ranges>
+#include <tuple>
+
+#include "exitance/base/polygon.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+/// The tightest octagon around points of a plane, its sides along a frame of the plane and half-way between: its
+/// corners counter-clockwise about n. Fewer than three where the points leave no area.
+class Octagon {
+  public:
+    explicit Octagon(const Normal& n) : frame_(n) {}
+
+    void add(const Point& p) {
+        const double u = dot(frame_.u, p), v = dot(frame_.v, p);
+        if (!begun_) height_ = dot(frame_.n, p), begun_ = true;
+        u_.add(u), v_.add(v), sum_.add(u + v), difference_.add(u - v);
+    }
+
+    void corners(std::vector<Point>& out) const {
+        out.clear();
+        const Vec2 at[8] = {
+            {std::max(u_.lo, sum_.lo - v_.lo), v_.lo},        {std::min(u_.hi, difference_.hi + v_.lo), v_.lo},
+            {u_.hi, std::max(v_.lo, u_.hi - difference_.hi)}, {u_.hi, std::min(v_.hi, sum_.hi - u_.hi)},
+            {std::min(u_.hi, sum_.hi - v_.hi), v_.hi},        {std::max(u_.lo, difference_.lo + v_.hi), v_.hi},
+            {u_.lo, std::min(v_.hi, u_.lo - difference_.lo)}, {u_.lo, std::max(v_.lo, sum_.lo - u_.lo)}};
+        const double size = std::max(u_.hi - u_.lo, v_.hi - v_.lo);
+        for (const Vec2& a : at) {
+            const Point p = frame_.to_world(a.x, a.y, height_);
+            if (out.empty() || norm(p - out.back()) > 1e-6 * size) out.push_back(p);
+        }
+        while (out.size() > 1 && norm(out.front() - out.back()) <= 1e-6 * size) out.pop_back();
+        if (out.size() < 3 || !(norm(area_vector(out)) > 1e-6 * size * size)) out.clear();
+    }
+
+  private:
+    struct Range {
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        void add(double x) { lo = std::min(lo, x), hi = std::max(hi, x); }
+    };
+    Frame frame_;
+    double height_ = 0;
+    bool begun_ = false;
+    Range u_, v_, sum_, difference_;
+};
+
+constexpr std::uint32_t probing = 4;  ///< Points of a spot that tell whether the others are wanted.
+
+bool agree(const Spectrum& a, const Spectrum& b) {
+    return std::abs(mean(a) - mean(b)) <= TileLight::alike * std::max(mean(a), mean(b));
+}
+
+/// The mean of value(i) over [0, count): of the first few if these differ little beside `rest` and themselves.
+template <class Value>
+Spectrum probed_mean(std::uint32_t count, const Spectrum& rest, const Value& value) {
+    Spectrum values[probing], sum;
+    const std::uint32_t few = std::min(count, probing);
+    bool all_agree = true;
+    for (std::uint32_t i = 0; i < few; ++i) {
+        sum += values[i] = value(i);
+        for (std::uint32_t k = 0; k < i; ++k) all_agree &= agree(rest + values[i], rest + values[k]);
+    }
+    if (few == count || all_agree) return sum / few;
+    for (std::uint32_t i = few; i < count; ++i) sum += value(i);
+    return sum / count;
+}
+
+}  // namespace
+
+TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed,
+                     SpotPoints kind, double brightness)
+    : light_(light),
+      samples_(samples),
+      gather_(gather),
+      seed_(seed),
+      kind_(kind),
+      brightness_(brightness),
+      direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()),
+      shared_(light.stage().direct, light.stage().tracer) {
+    spot_at_.fill(0), is_found_.fill(0);
+}
+
+/// What is known of the emitters from everywhere on these spots of one region; false where they are too slender to ask.
+bool TileLight::prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out) {
+    if (is_stopped()) return false;
+    const Stage& stage = light_.stage();
+    const RegionId region = spots.front().region;
+    const Normal& n = stage.scene.regions()[region].plane.n;
+    Octagon octagon(n);
+    for (const Spot& spot : spots)
+        for (std::uint32_t i = 0; i < spot.count; ++i) octagon.add(points_[spot.first + i]);
+    octagon.corners(outline_);
+    if (outline_.empty()) return false;
+    if (whole)
+        stage.direct.prepare(outline_, *whole, out, visibility_);
+    else
+        stage.direct.prepare(outline_, n, region, out, visibility_);
+    return true;
+}
+
+const ReceiverLight* TileLight::look_at_block(std::span<const Spot> spots, const ReceiverLight* whole,
+                                              ReceiverLight& room) {
+    const bool worth = whole && !whole->is_dark() && !whole->is_unshadowed();
+    return worth && prepare(spots, whole, room) ? &room : whole;
+}
+
+/// Is a spot so small beside its distance from every emitter that direct light is linear over it? E ~ 1 / d^2 over
+/// r = d / 30 departs from its tangent by at most (r / d)^2 times a few: less than 1%, and its mean by a fraction.
+bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const {
+    constexpr double small = 1.0 / 30, part_of_step = 1.0 / 8;
+    if (!known.behind.empty()) return false;  // a pane may stand close to a lamp behind it
+    double radius_squared = 0;
+    for (std::uint32_t i = 0; i < spot.count; ++i)
+        radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));
+    for (const Beam& beam : known.beams) {
+        const PunctualLight& lamp = light_.solution().scene.lights()[beam.light];
+        const double distance = small * norm(lamp.position - middle);
+        if (lamp.kind == PunctualLight::Kind::spot) return false;  // its cone may have a sharp edge
+        if (!lamp.is_directional() && radius_squared > distance * distance) return false;
+    }
+    for (const ReceiverLight::Source& source : known.sources) {
+        const DirectLight::Emitter& emitter = light_.stage().direct.emitters()[source.emitter];
+        // Beams are as sharp as the steps of their tables.
+        const double angle =
+            emitter.radiance.is_directed() ? std::min(small, part_of_step * emitter.radiance.smooth_width()) : small;
+        const double distance = angle * (norm(emitter.centre - middle) - emitter.radius);
+        if (distance <= 0 || radius_squared > distance * distance) return false;
+    }
+    return true;
+}
+
+/// What is not exact direct light, mean over a spot.
+Spectrum TileLight::elements(const Spot& spot) {
+    if (is_stopped()) return {};
+    if (gather_ == 0)
+        return probed_mean(spot.count, Spectrum(),
+                           [&](std::uint32_t i) { return light_.elements(spot.region, points_[spot.first + i]); });
+    const Normal& n = light_.stage().scene.regions()[spot.region].plane.n;
+    Spectrum sum;  // every gather has noise of its own
+    for (std::uint32_t i = 0; i < spot.count; ++i) {
+        const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), spot.pixel, i);
+        sum += light_.gathered({points_[spot.first + i], n}, spot.region, gather_, key, gathering_);
+    }
+    return sum / spot.count;
+}
+
+/// Direct light, less what the mesh has there where that is integrated.
+Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const Point& x) {
+    if (is_stopped()) return {};
+    const Stage& stage = light_.stage();
+    const Spectrum meshed = spot.meshed ? mesh_->at(spot.region, x) : Spectrum();
+    if (known) return direct_share_ * stage.direct.irradiance(*known, x, visibility_) - meshed;
+    const Normal& n = stage.scene.regions()[spot.region].plane.n;
+    return direct_share_ * stage.direct.irradiance(x, n, spot.region, visibility_) - meshed;
+}
+
+/// Direct light at one place of a spot; true if that is certainly the mean over all of it, which then needs no mesh.
+bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& light) {
+    if (squared(direct_share_) == 0 || (known && known->is_dark())) {
+        spot.meshed.reset();
+        return true;
+    }
+    Point middle;
+    for (std::uint32_t i = 0; i < spot.count; ++i) middle += points_[spot.first + i] / spot.count;
+    const bool smooth = known && known->is_unshadowed() && looks_small(spot, *known, middle);
+    if (smooth || spot.count == 1) spot.meshed.reset();
+    // The middle of what shows beside something else may be hidden behind that, and lie in another light.
+    light = direct(spot, known, smooth || spot.count == samples_ ? middle : points_[spot.first]);
+    return smooth || spot.count == 1;
+}
+
+bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const {
+    int neighbours = 0;
+    const auto [x, y] = std::pair(spots[i].x, spots[i].y);
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, tile_side - 1); ++v)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, tile_side - 1); ++u) {
+            const std::uint32_t found = spot_at_[static_cast<std::size_t>(v * tile_side + u)];
+            if (found == 0 || found == i + 1) continue;
+            ++neighbours;
+            if (!agree(spots[found - 1].irradiance, spots[i].irradiance)) return true;
+        }
+    return neighbours < 3;  // too few to be told by
+}
+
+/// Is light at a square other than half-way between its neighbours, to the left and right or above and below? Where one
+/// of them is missing: does it differ from one that there is?
+bool TileLight::bends_between_neighbours(std::span<const Spot> spots, std::size_t i) const {
+    const auto [x, y] = std::pair(spots[i].x, spots[i].y);
+    const auto light_at = [&](int u, int v) -> const Spectrum* {
+        if (std::min(u, v) < 0 || std::max(u, v) >= tile_side) return nullptr;
+        const std::uint32_t found = spot_at_[static_cast<std::size_t>(v * tile_side + u)];
+        return found == 0 ? nullptr : &spots[found - 1].irradiance;
+    };
+    for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(0, 1)}) {
+        const Spectrum *before = light_at(x - dx, y - dy), *after = light_at(x + dx, y + dy);
+        if (!before || !after) return differs_from_neighbours(spots, i);
+        if (!agree(0.5 * (*before + *after), spots[i].irradiance)) return true;
+    }
+    return false;
+}
+
+/// Mean of direct light over a whole square, of which the middle is known: of five points where these tell that light
+/// is linear.
+Spectrum TileLight::mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known) {
+    const Spectrum middle = spot.irradiance - rest;
+    Spectrum pair[2], sum;
+    for (std::uint32_t i = 0; i < 4; ++i) pair[i / 2] += 0.5 * direct(spot, known, points_[spot.first + i]);
+    if (agree(rest + pair[0], spot.irradiance) && agree(rest + pair[1], spot.irradiance))
+        return 0.2 * middle + 0.4 * (pair[0] + pair[1]);
+    sum = 2 * (pair[0] + pair[1]);
+    for (std::uint32_t i = 4; i < spot.count; ++i) sum += direct(spot, known, points_[spot.first + i]);
+    return sum / spot.count;
+}
+
+/// All spots of one region, block by block.
+void TileLight::evaluate_region(std::span<Spot> spots) {
+    by_rays_.fill(false);
+    if (suits_clusters(spots)) return evaluate_by_clusters(spots);
+    const ReceiverLight* whole = prepare(spots, nullptr, whole_) ? &whole_ : nullptr;
+    settled_.assign(spots.size(), 0), rest_.resize(spots.size());
+    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        known_[block] = look_at_block(spots.subspan(begin, end - begin), whole, parts_[block]);
+    });
+    if (share_rays(spots, whole)) evaluate_by_shared_rays(spots);
+    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
+            settled_[i] = by_rays_[block];
+            if (settled_[i]) continue;
+            Spectrum light;
+            settled_[i] = first_guess(spots[i], known_[block], light);
+            rest_[i] = elements(spots[i]) + spots[i].meshed.value_or(Spectrum());
+            spots[i].irradiance = rest_[i] + light;
+        }
+    });
+    const bool squares = kind_ == SpotPoints::mirrored;
+    for (std::size_t i = 0; i < spots.size(); ++i)
+        settled_[i] |= !(squares && spots[i].count == samples_ ? bends_between_neighbours(spots, i)
+                                                               : differs_from_neighbours(spots, i));
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+        Spot& spot = spots[i];
+        spot_at_[pixel_of(spot)] = 0;
+        if (settled_[i]) continue;
+        const ReceiverLight* known = known_[static_cast<std::size_t>(block_of(spot))];
+        if (squares && spot.count == samples_) {
+            spot.irradiance = rest_[i] + mirrored_mean(spot, rest_[i], known);
+            continue;
+        }
+        const auto direct_at = [&](std::uint32_t k) { return direct(spot, known, points_[spot.first + k]); };
+        spot.irradiance = rest_[i] + probed_mean(spot.count, rest_[i], direct_at);
+    }
+}
+
+void TileLight::evaluate(std::span<const Point> points, std::vector<Spot>& spots) {
+    points_ = points;
+    const auto key = [](const Spot& s) { return std::tuple(s.region, block_of(s), s.pixel); };
+    std::sort(spots.begin(), spots.end(), [&](const Spot& a, const Spot& b) { return key(a) < key(b); });
+    for (std::size_t first = 0, last = 0; first < spots.size(); first = last) {
+        while (last < spots.size() && spots[last].region == spots[first].region) ++last;
+        if (is_stopped()) return;
+        evaluate_region(std::span(spots).subspan(first, last - first));
+    }
+}
+
+}  // namespace exitance

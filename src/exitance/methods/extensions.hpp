@@ -1,0 +1,50 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "exitance/base/result.hpp"
+#include "exitance/discontinuity/discontinuity_mesh.hpp"
+#include "exitance/methods/method_entry.hpp"
+
+namespace exitance {
+
+/// A solve that does not consist of the engine's steps, and the options that select it.
+struct WholeSolve {
+    bool (*is_selected)(const SolveOptions& options);
+    Result<Solution> (*solve)(const Scene& scene, const SolveOptions& options, Progress& progress,
+                              const StopRequest& stop);
+};
+
+/// Direct light as the sum of one mesh per source.
+struct LayeredLight {
+    LightFormPointer form;
+    double error = 0;  ///< Of the sum, relative, like DiscontinuityReport::error.
+    bool interrupted = false;
+    std::map<std::string, double> figures = {};  ///< Sizes, by the names of their JSON keys.
+};
+
+/// Ways of discontinuity meshing beyond the engine's own.
+struct DiscontinuityExtension {
+    /// Sets the cutter and the blocker search that the options select.
+    void (*choose)(const DiscontinuityChoice& choice, DiscontinuityOptions& options);
+    LayeredLight (*make_layers)(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop);
+    /// Sizes of the same light as a single mesh, likewise.
+    std::map<std::string, double> (*figures)(const SixNodeMesh& mesh);
+};
+
+/// What a program adds to the engine. The engine includes none of it; the program, which links both, fills it in.
+struct Extensions {
+    std::vector<MethodEntry> methods;
+    std::vector<WholeSolve> solves;
+    const DiscontinuityExtension* discontinuity = nullptr;
+};
+
+/// The extensions of this program. To be filled in before the first solve.
+Extensions& extensions();
+
+/// An Error of usage where options select something that neither the engine nor the extensions have.
+Result<void> check_extensions(const SolveOptions& options);
+
+}  // namespace exitance

@@ -1,0 +1,400 @@
+#include "exitance/processes/distributed.hpp"
+
+#define OMPI_SKIP_MPICXX 1
+#include <fcntl.h>
+#include <mpi.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include "exitance/base/memory.hpp"
+
+namespace exitance {
+namespace {
+
+/// What this process knows of the others.
+struct Team {
+    std::size_t size = 1, own = 0;
+    bool joined = false;
+    const StopRequest* asked = nullptr;
+    StopRequest* agreed = nullptr;
+    std::uint64_t meetings = 0;
+    MPI_Comm node = MPI_COMM_NULL;  ///< Those that have memory in common with this one.
+    int node_size = 1;
+    std::size_t shared_bytes = 0;
+    int common_file = -1;  ///< Of what is open in common.
+    std::map<std::string, Traffic> traffic;
+    ExchangeTime time;
+    std::map<std::string, DealtTime> dealt;
+    double dealt_before = 0, taken_before = 0;  ///< Seconds of what was dealt to this process, and of all, by then.
+};
+Team team;
+
+/// Launchers tell their processes what they belong to.
+bool was_launched() {
+    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"})
+        if (const char* value = std::getenv(name); value && *value)
+            return std::string(name).ends_with("_SIZE") ? std::atol(value) > 1 : true;
+    return false;
+}
+
+/// MPI's own calls end the job where they fail, which is its default. This is for what we find out.
+[[noreturn]] void end_job(const char* why) {
+    std::fprintf(stderr, "error: process %zu of %zu: %s\n", team.own, team.size, why);
+    MPI_Abort(MPI_COMM_WORLD, 1);
+    std::abort();
+}
+
+void count(const char* what, std::size_t bytes) {
+    Traffic& t = team.traffic[*what ? what : "other"];
+    ++t.exchanges, t.messages += team.size - 1, t.bytes += bytes * (team.size - 1);
+}
+
+/// Until it is done, without taking the processor from others: MPI itself would look again and again. Looks follow one
+/// another at first; then the time between them is a share of what has been waited, so that little is lost by it.
+void wait_for(MPI_Request& request) {
+    constexpr int eager = 200;
+    constexpr double share = 0.05, longest = 5000;  // microseconds
+    const Stopwatch watch;
+    int done = 0;
+    for (int looks = 0; !done; ++looks) {
+        if (looks >= eager)
+            usleep(static_cast<useconds_t>(std::clamp(share * 1e6 * watch.seconds(), 20.0, longest)));
+        else if (looks > 0)
+            sched_yield();
+        MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    }
+}
+
+/// The same operation on the values of all processes of a group.
+template <class T>
+void reduce(const T* own, T* all, int count, MPI_Datatype type, MPI_Op operation, MPI_Comm group) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(own, all, count, type, operation, group, &request);
+    wait_for(request);
+}
+
+void exchange_results(std::span<std::string* const> blocks, const char* what) {
+    std::vector<std::uint64_t> sizes(blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b) sizes[b] = blocks[b] ? blocks[b]->size() : 0;
+    exchange_values(
+        blocks.size(), 1, [&](std::size_t b) { return std::span(&sizes[b], blocks[b] ? 1 : 0); }, what);
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+        if (blocks[b]) blocks[b]->resize(sizes[b]);
+    exchange_values(
+        blocks.size(), 1, [&](std::size_t b) { return blocks[b] ? std::span<char>(*blocks[b]) : std::span<char>(); },
+        what);
+}
+
+}  // namespace
+
+Result<void> join_processes() {
+    if (team.joined || !was_launched()) return {};
+    int provided = 0, size = 1, rank = 0;
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS ||
+        provided < MPI_THREAD_FUNNELED)
+        return Error{ErrorCode::failure, "MPI does not let programs with threads begin", "", ""};
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    team.joined = true;
+    team.size = static_cast<std::size_t>(size), team.own = static_cast<std::size_t>(rank);
+    if (size > 1) result_sharing() = {team.size, team.own, exchange_results, detail::share_pages};
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &team.node);
+    MPI_Comm_size(team.node, &team.node_size);
+    return {};
+}
+
+void leave_processes() {
+    if (team.joined) MPI_Comm_free(&team.node), MPI_Finalize();
+    team.joined = false;
+}
+
+std::size_t processes() {
+    return team.size;
+}
+
+std::size_t own_process() {
+    return team.own;
+}
+
+StopTogether::StopTogether(const StopRequest& asked, StopRequest& agreed) {
+    team.asked = &asked, team.agreed = &agreed;
+}
+
+StopTogether::~StopTogether() {
+    team.asked = nullptr, team.agreed = nullptr;
+}
+
+double seconds_left(const StopRequest& agreed) {
+    return as_first((team.asked ? *team.asked : agreed).seconds_left());
+}
+
+const std::map<std::string, Traffic>& traffic() {
+    return team.traffic;
+}
+
+ExchangeTime exchange_time() {
+    return team.time;
+}
+
+const std::map<std::string, DealtTime>& dealt_time() {
+    return team.dealt;
+}
+
+std::size_t shared_memory_bytes() {
+    return team.shared_bytes;
+}
+
+std::string as_first(std::string bytes, const char* what) {
+    if (team.size == 1) return bytes;
+    bytes.resize(as_first(bytes.size()));
+    detail::send_from_first(bytes.data(), bytes.size(), what);
+    return bytes;
+}
+
+Result<void> by_first(const std::function<Result<void>()>& work) {
+    const ResultSharing sharing = std::exchange(result_sharing(), ResultSharing());  // the others do nothing
+    const int own_threads = threads();
+    // Those on its node sleep, and leave it their processors, as far as it may run on these.
+    if (is_first_process() && team.node_size > 1) set_threads(own_threads * team.node_size);
+    const Result<void> done = is_first_process() ? work() : Result<void>();
+    if (is_first_process() && team.node_size > 1) set_threads(own_threads);
+    result_sharing() = sharing;
+    if (team.size == 1 || as_first(static_cast<bool>(done))) return done;
+    const Error none, &own = done ? none : done.error();
+    Error error{as_first(own.code), {}, {}, {}};
+    error.message = as_first(own.message, "agreement");
+    error.where = as_first(own.where, "agreement");
+    error.hint = as_first(own.hint, "agreement");
+    return error;
+}
+
+std::size_t processes_on_node() {
+    return static_cast<std::size_t>(team.node_size);
+}
+
+double sum_on_node(double value) {
+    if (team.node_size == 1) return value;
+    double out = value;
+    reduce(&value, &out, 1, MPI_DOUBLE, MPI_SUM, team.node);
+    return out;
+}
+
+double largest_of_all(double value) {
+    if (team.size == 1) return value;
+    double out = value;
+    reduce(&value, &out, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    count("agreement", sizeof value);
+    return out;
+}
+
+double sum_of_all(double value) {
+    if (team.size == 1) return value;
+    std::vector<double> all(team.size);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallgather(&value, 1, MPI_DOUBLE, all.data(), 1, MPI_DOUBLE, MPI_COMM_WORLD, &request);
+    wait_for(request);
+    count("agreement", sizeof value);
+    double sum = 0;
+    for (double v : all) sum += v;
+    return sum;
+}
+
+void parallel_own_ranges(std::size_t count, std::size_t grain,
+                         const std::function<void(std::size_t, std::size_t)>& body, const Work& work) {
+    if (team.size == 1) return parallel_ranges(count, grain, body, work);
+    const std::size_t blocks = (count + grain - 1) / grain;
+    const std::size_t own = blocks > team.own ? (blocks - team.own + team.size - 1) / team.size : 0;
+    const double before = processor_seconds();
+    const auto first_of = [&](std::size_t k) { return (k * team.size + team.own) * grain; };
+    Work of_own{work.name, {}, work.by_polygon};
+    if (work.polygon_of) of_own.polygon_of = [&](std::size_t k) { return work.polygon_of(first_of(k)); };
+    parallel_ranges(
+        own, 1,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                if (team.asked && team.asked->requested()) team.agreed->interrupt();
+                body(first_of(k), std::min(count, first_of(k) + grain));
+            }
+        },
+        of_own);
+    result_sharing().dealt_seconds += processor_seconds() - before;
+}
+
+namespace {
+
+/// Writes bytes to a place of a file; false where the system does not let it.
+bool write_to(int file, std::size_t place, std::span<const char> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (written <= 0) return false;
+        place += static_cast<std::size_t>(written), bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
+/// Is it so in all processes of the node?
+bool all_on_node(bool own) {
+    int value = own ? 1 : 0, all = 0;
+    reduce(&value, &all, 1, MPI_INT, MPI_MIN, team.node);
+    return all == 1;
+}
+
+/// What all processes of the node give alike, for what stands at one place of a page in all of them.
+bool is_alike_on_node(std::size_t a, std::size_t b) {
+    std::array<std::uint64_t, 4> own{a, ~std::uint64_t{a}, b, ~std::uint64_t{b}}, all{};
+    reduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, team.node);
+    return all == own;
+}
+
+}  // namespace
+
+namespace detail {
+namespace {
+
+/// The whole pages of an array, where they are as many as `least` bytes make, and stand alike in all processes of the
+/// node; else empty.
+std::span<char> whole_pages(std::span<char> array, std::size_t least) {
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const std::size_t skipped = (page - reinterpret_cast<std::uintptr_t>(array.data()) % page) % page;
+    if (team.node_size == 1 || array.size() < least + page || !is_alike_on_node(skipped, array.size())) return {};
+    return array.subspan(skipped, (array.size() - skipped) / page * page);
+}
+
+/// A file in memory of so many bytes, which the first of the node makes and the others find by its name; -1 in all
+/// where one of them does not.
+int file_of_node(std::size_t size) {
+    int rank = 0;
+    MPI_Comm_rank(team.node, &rank);
+    int file = rank == 0 ? memfd_create("exitance", MFD_CLOEXEC) : -1;
+    if (file >= 0 && ftruncate(file, static_cast<off_t>(size)) != 0) close(std::exchange(file, -1));
+    std::array<std::int64_t, 2> place{getpid(), file};
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibcast(place.data(), 2, MPI_INT64_T, 0, team.node, &request);
+    wait_for(request);
+    if (rank != 0 && place[1] >= 0) {
+        const std::string path = "/proc/" + std::to_string(place[0]) + "/fd/" + std::to_string(place[1]);
+        file = open(path.c_str(), O_RDWR | O_CLOEXEC);
+    }
+    if (all_on_node(file >= 0)) return file;
+    if (file >= 0) close(file);
+    return -1;
+}
+
+/// `kind`: of mmap; private pages are those of whoever writes to them, and memory that is freed is nobody else's.
+void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
+    if (mmap(pages.data(), pages.size(), PROT_READ | PROT_WRITE, kind | MAP_FIXED, file, static_cast<off_t>(place)) ==
+        MAP_FAILED)
+        end_job("the system does not let processes have memory in common any more");
+    // All at once, where the system can: page by page costs several times as much.
+    madvise(pages.data(), pages.size(), kind == MAP_SHARED ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
+}
+
+/// Has the pages stand in the file, as the first of the node holds them. Part by part, so that little stands twice.
+void move_pages(std::span<char> pages, int file, int kind) {
+    constexpr std::size_t least = std::size_t(1) << 23, most_parts = 64;  // the system counts what is mapped, too
+    const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
+                      step = std::max(least, (pages.size() / most_parts / page + 1) * page);
+    int rank = 0;
+    MPI_Comm_rank(team.node, &rank);
+    for (std::size_t first = 0; first < pages.size(); first += step) {
+        const std::span<char> part = pages.subspan(first, std::min(step, pages.size() - first));
+        if (!all_on_node(rank != 0 || write_to(file, first, part))) end_job("no memory is left for processes to share");
+        map_pages(part, file, first, kind);
+    }
+}
+
+}  // namespace
+
+void share_pages(char* begin, std::size_t size) {
+    constexpr std::size_t least = std::size_t(1) << 20;  // smaller ones stand among others (keep_large_arrays_apart)
+    const std::span<char> pages = whole_pages({begin, size}, least);
+    const int file = pages.empty() ? -1 : file_of_node(pages.size());
+    if (file < 0) return;
+    move_pages(pages, file, MAP_PRIVATE);
+    team.shared_bytes += pages.size();
+    close(file);
+}
+
+std::span<char> open_in_common(std::span<char> array) {
+    constexpr std::size_t least = std::size_t(1) << 17;
+    if (team.node_size != static_cast<int>(team.size)) return {};
+    const std::span<char> pages = whole_pages(array, least);
+    team.common_file = pages.empty() ? -1 : file_of_node(pages.size());
+    if (team.common_file < 0) return {};
+    move_pages(pages, team.common_file, MAP_SHARED);
+    return pages;
+}
+
+void close_in_common(std::span<char> pages) {
+    map_pages(pages, team.common_file, 0, MAP_PRIVATE);
+    team.shared_bytes += pages.size();
+    close(std::exchange(team.common_file, -1));
+}
+
+void count_as_sent(std::size_t bytes, const char* what) {
+    team.traffic[what].bytes += bytes * (team.size - 1);
+}
+
+void count_fetched(const Fetched& fetched, std::size_t bytes_each) {
+    Traffic& t = team.traffic["fetch"];
+    ++t.exchanges;
+    t.messages += fetched.messages, t.bytes += bytes_each * fetched.values;
+    t.messages_of_twice += fetched.messages_of_twice, t.bytes_of_twice += bytes_each * fetched.values_of_twice;
+}
+
+void send_from_first(void* data, std::size_t size, const char* what) {
+    constexpr std::size_t most = std::size_t(1) << 28;  // MPI counts by int
+    for (std::size_t done = 0; done < size; done += most) {
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Ibcast(static_cast<char*>(data) + done, static_cast<int>(std::min(most, size - done)), MPI_BYTE, 0,
+                   MPI_COMM_WORLD, &request);
+        wait_for(request);
+    }
+    Traffic& t = team.traffic[what];
+    ++t.exchanges;
+    if (is_first_process()) t.messages += team.size - 1, t.bytes += size * (team.size - 1);
+}
+
+void meet(std::size_t things, const char* what) {
+    const bool stops = team.agreed && ((team.asked && team.asked->requested()) || team.agreed->requested());
+    const std::uint64_t place = ++team.meetings << 40 ^ things;
+    constexpr double ticks = 1e9;  // a second
+    const double dealt = result_sharing().dealt_seconds, since = dealt - std::exchange(team.dealt_before, dealt),
+                 taken = processor_seconds(), all_since = taken - std::exchange(team.taken_before, taken);
+    std::array<std::uint64_t, 4> own{place, ~place, stops, static_cast<std::uint64_t>(ticks * since)}, all{};
+    const Stopwatch watch;
+    reduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    DealtTime& of_step = team.dealt[what];
+    of_step.own += since, of_step.longest += static_cast<double>(all[3]) / ticks, of_step.repeated += all_since - since;
+    team.time.waiting += watch.seconds();
+    count("agreement", sizeof own);
+    if (all[0] != place || all[1] != ~place)
+        end_job((std::string("the processes have come to different places, here at: ") + what).c_str());
+    if (all[2] != 0 && team.agreed) team.agreed->interrupt();
+}
+
+void exchange(std::span<char> all, std::span<const std::size_t> first, const char* what) {
+    const Stopwatch watch;
+    std::vector<int> sizes, places;
+    for (std::size_t p = 0; p < team.size; ++p) {
+        sizes.push_back(static_cast<int>(first[p + 1] - first[p]));
+        places.push_back(static_cast<int>(first[p]));
+    }
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), sizes.data(), places.data(), MPI_BYTE,
+                    MPI_COMM_WORLD, &request);
+    wait_for(request);
+    team.time.sending += watch.seconds();
+    count(what, first[team.own + 1] - first[team.own]);
+}
+
+}  // namespace detail
+
+}  // namespace exitance

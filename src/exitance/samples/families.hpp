@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "exitance/samples/polygon_kit.hpp"
+
+namespace exitance {
+
+/// Values of a family's parameters, checked and complete.
+using FamilyValues = std::map<std::string, double>;
+
+// Analytic scenes and rooms.
+PolygonKit make_blocker(const FamilyValues& values);
+PolygonKit make_tube(const FamilyValues& values);
+PolygonKit make_furnace(const FamilyValues& values);
+PolygonKit make_complex(const FamilyValues& values);
+PolygonKit make_cornell(const FamilyValues& values);
+PolygonKit make_gcr1(const FamilyValues& values);
+PolygonKit make_gcr2(const FamilyValues& values);
+PolygonKit make_office(const FamilyValues& values);
+PolygonKit make_carpet(const FamilyValues& values);
+
+// Open scenes under one to four lights of the same power.
+PolygonKit make_flat(const FamilyValues& values);
+PolygonKit make_boxes(const FamilyValues& values);
+PolygonKit make_table(const FamilyValues& values);
+PolygonKit make_chair(const FamilyValues& values);
+PolygonKit make_float(const FamilyValues& values);
+PolygonKit make_spiral(const FamilyValues& values);
+
+// Closed rooms whose light is hard to find.
+PolygonKit make_cove(const FamilyValues& values);
+PolygonKit make_blinds(const FamilyValues& values);
+PolygonKit make_clutter(const FamilyValues& values);
+PolygonKit make_gaps(const FamilyValues& values);
+PolygonKit make_door(const FamilyValues& values);
+PolygonKit make_keyhole(const FamilyValues& values);
+PolygonKit make_bright(const FamilyValues& values);
+PolygonKit make_tree(const FamilyValues& values);
+PolygonKit make_lightwell(const FamilyValues& values);
+
+/// A value as a file name carries it: 0.7 is 0p7.
+std::string in_a_name(double value);
+
+}  // namespace exitance

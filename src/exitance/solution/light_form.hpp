@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+/// A triangle on a surface with irradiance as one quadratic polynomial.
+struct QuadraticTriangle {
+    RegionId region;
+    std::array<Point, 3> corners;    ///< metres
+    std::array<Spectrum, 6> values;  ///< At corners 0, 1, 2 and the middles of edges 01, 12, 20, W/m^2.
+};
+
+/// Irradiance in a representation that a method brings with it, beside the elements of a Solution: the cells of a
+/// network, or one mesh per source. The engine evaluates it, bakes it and keeps it in checkpoints; only the method
+/// knows what it consists of.
+class LightForm {
+  public:
+    virtual ~LightForm() = default;
+
+    /// The name under which `add_light_form` made it known.
+    virtual std::string_view kind() const = 0;
+    /// Irradiance at a point of a region, W/m^2.
+    virtual Spectrum at(const Scene& scene, RegionId region, const Point& x) const = 0;
+
+    /// Number of triangles that it consists of; 0 where it is not piecewise quadratic.
+    virtual std::size_t triangle_count() const { return 0; }
+    /// Triangle `i` with its values multiplied by `weight`.
+    virtual QuadraticTriangle triangle(const Scene& scene, std::size_t i, const Spectrum& weight) const;
+
+    /// All of it as bytes, which the `unpack` of its kind reads on the same machine.
+    virtual std::string packed() const = 0;
+};
+
+/// Solutions are copied; forms are large and never change once they are made.
+using LightFormPointer = std::shared_ptr<const LightForm>;
+
+/// A representation that checkpoints can hold.
+struct LightFormKind {
+    std::string_view name;
+    LightFormPointer (*unpack)(std::string_view bytes);
+};
+
+/// Makes a kind known. Not while other threads solve or load.
+void add_light_form(const LightFormKind& kind);
+
+/// The form of the kind `name` in `bytes`; null for an empty name. Aborts for a kind that was not made known.
+LightFormPointer unpack_light_form(std::string_view name, std::string_view bytes);
+
+}  // namespace exitance

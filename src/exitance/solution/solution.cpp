@@ -1,0 +1,24 @@
+#include "exitance/solution/solution.hpp"
+
+namespace exitance {
+
+void ElementFunction::add_value(const Spectrum& value) {
+    std::array<float, bands> v;
+    for (std::size_t b = 0; b < bands; ++b) v[b] = static_cast<float>(value[b]);
+    values.push_back(v);
+}
+
+Spectrum ElementFunction::at(ElementTree::Place place) const {
+    if (place.element.is_none()) return Spectrum();
+    const auto [u, v] = place.uv;
+    const bool triangle = place.element >= tree.first_of_fans() || tree.patch(place.element).is_triangle();
+    const double weight[4] = {triangle ? 1 - u - v : (1 - u) * (1 - v), triangle ? u : u * (1 - v),
+                              triangle ? v : u * v, triangle ? 0 : (1 - u) * v};
+    const std::size_t first = first_value[place.element];
+    Spectrum sum;
+    for (std::size_t i = 0; i < (triangle ? 3u : 4u); ++i)
+        for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[i] * static_cast<double>(values[first + i][b]);
+    return sum;
+}
+
+}  // namespace exitance

@@ -1,0 +1,103 @@
+#include "exitance/what_if/daylight/daylight_provision.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/what_if/daylight/view_out.hpp"
+#include "support/built_scene.hpp"
+
+namespace exitance {
+namespace {
+
+/// Eight hours, of which the four with diffuse light are daylight.
+std::vector<DaylightHour> hours() {
+    std::vector<DaylightHour> out(8);
+    for (std::size_t h = 0; h < 4; ++h) out[2 + h].diffuse_horizontal = 100 + 10 * static_cast<double>(h);
+    return out;
+}
+
+TEST(DaylightProvision, LevelsAreThoseOfTheStandard) {
+    // Twenty sensors: half of the daylight hours bring 400 lx to eleven, 120 lx to eight and 90 lx to one of them.
+    DaylightYear year;
+    year.sensors = 20;
+    year.illuminance.assign(8 * 20, 0), year.sun = year.illuminance;
+    for (std::size_t i = 0; i < 20; ++i) {
+        const float lux = i < 11 ? 400 : i < 19 ? 120 : 90;
+        year.illuminance[3 * 20 + i] = lux, year.illuminance[5 * 20 + i] = 2 * lux;  // two of four
+        year.illuminance[0 * 20 + i] = 9999;                                         // at night
+    }
+    std::vector<DaylightMetrics> metrics(20);
+    for (DaylightMetrics& m : metrics) m.daylight_factor = 5;
+    const DaylightProvision p = daylight_provision(year, metrics, hours(), {});
+    EXPECT_EQ(p.hours, 4u);
+    EXPECT_EQ(p.reached[0], 400);
+    EXPECT_EQ(p.reached[19], 90);
+    EXPECT_NEAR(p.by_illuminance.at_target[0], 0.55, 1e-12);
+    EXPECT_NEAR(p.by_illuminance.at_minimum[0], 0.95, 1e-12);
+    EXPECT_EQ(p.by_illuminance.level(), 1);
+    // 5% of the 120 W/m^2 x 120 lm/W that half of the hours reach: 720 lx.
+    EXPECT_NEAR(p.median_diffuse, 120 * 120, 1e-9);
+    EXPECT_NEAR(p.by_factor.at_target[1], 1, 1e-12);
+    EXPECT_EQ(p.by_factor.level(), 2);
+}
+
+/// A floor under a canopy at 3 m that leaves the south open, and a house 10 m away with a window in between or not.
+Scene porch(bool pane) {
+    SceneDescription d;
+    d.groups = {"all"}, d.materials = {{"grey", Spectrum(0.5), Spectrum()}};
+    const auto face = [&](std::initializer_list<Point> corners) {
+        SceneDescription::Face f;
+        for (const Point& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        d.faces.push_back(f);
+    };
+    // A room of 4 x 4 x 3 m without its wall at y = 0, but for two pieces that leave 2 m open.
+    face({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
+    face({{0, 0, 3}, {0, 4, 3}, {4, 4, 3}, {4, 0, 3}});
+    face({{0, 4, 0}, {4, 4, 0}, {4, 4, 3}, {0, 4, 3}});
+    face({{0, 0, 0}, {0, 4, 0}, {0, 4, 3}, {0, 0, 3}});
+    face({{4, 0, 0}, {4, 0, 3}, {4, 4, 3}, {4, 4, 0}});
+    face({{0, 0, 0}, {0, 0, 3}, {1, 0, 3}, {1, 0, 0}});
+    face({{3, 0, 0}, {3, 0, 3}, {4, 0, 3}, {4, 0, 0}});
+    face({{-50, -10, 0}, {-50, -10, 2.5}, {50, -10, 2.5}, {50, -10, 0}});  // a wall along the street
+    if (pane) d.panes.push_back({{{1, 0, 0}, {3, 0, 0}, {3, 0, 3}, {1, 0, 3}}, {0, -1, 0}, Spectrum(0.9)});
+    CheckedScene made = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(made.scene));
+    return std::move(*made.scene);
+}
+
+TEST(ViewOut, AnglesDistancesAndLayersAreThoseOfTheWindow) {
+    const std::vector<Point> eyes{{2, 3, 1.2}, {2, 1, 1.2}};
+    const std::vector<ViewOut> views = views_out(porch(true), eyes);
+    // The window is 2 m wide: 2 atan(1/3) and 2 atan(1/1).
+    EXPECT_NEAR(views[0].sight_angle, 36.87, 0.26);
+    EXPECT_NEAR(views[1].sight_angle, 90, 0.26);
+    // 13 m straight on, and 1 / cos of the angle farther at the sides; the median is half-way to the edge.
+    EXPECT_NEAR(views[0].distance, 13 / std::cos(0.5 * std::atan(1.0 / 3)), 0.05);
+    EXPECT_TRUE(views[0].landscape);
+    EXPECT_TRUE(views[0].sky);
+    EXPECT_EQ(views[0].level(), 1);
+    EXPECT_EQ(ViewOut().level(), 0);
+    EXPECT_EQ((ViewOut{60, HUGE_VAL, true, true, true}.level()), 3);
+    // Without a pane nothing tells the street's wall from one of the room.
+    EXPECT_FALSE(views_out(porch(false), eyes)[0].landscape);
+}
+
+TEST(SunlightHours, AreThoseOfTheSunThroughAWindow) {
+    // The window looks south: in front of it the sun is seen all day, and the farther into
+    // the room the shorter.
+    const DaylightSite site{.place = {47.4, 8.5, 400}};
+    const std::vector<ProbePoint> sensors{{{2, -1, 1}, {0, 0, 1}}, {{2, 3.9, 0.1}, {0, 0, 1}}, {{2, 1, 0}, {0, 0, 1}}};
+    const std::vector<double> hours = sunlight_hours(porch(true), sensors, site, 1, {});
+    EXPECT_NEAR(hours[0], 12.15, 0.1);  // the whole day of the equinox
+    EXPECT_GT(hours[2], 1);
+    EXPECT_LT(hours[1], hours[2]);
+    const std::vector<double> high = sunlight_hours(porch(true), sensors, site, 1, {3, 21, 40});
+    // cos H = (sin 39.98 - sin 47.4 sin 0.43) / (cos 47.4 cos 0.43): H = 19.8 degrees on either side of noon; 0.43 is
+    // the declination, and refraction lifts by 0.02.
+    EXPECT_NEAR(high[0], 2 * 19.8 / 15, 0.05);
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/methods/solve_scene.hpp"
+#include "exitance/what_if/daylight/daylight_provision.hpp"
+#include "exitance/what_if/daylight/daylight_year.hpp"
+#include "support/solved.hpp"
+
+namespace exitance {
+namespace {
+
+/// Ground, or a room of 3 x 4 x 2.5 m whose wall at y = 0 is open from z = 1 to 2.
+Scene scene(bool room, const DistantLight& light = {}) {
+    SceneDescription d;
+    d.file = "day.obj";
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.groups = {"all"};
+    const auto add = [&](const std::vector<Point>& corners) {
+        d.faces.push_back({{}, 0, 0, 0});
+        for (const Point& p : corners) {
+            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+    };
+    add({{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {0, 4, 0}});
+    if (room) {
+        add({{0, 0, 2.5}, {0, 4, 2.5}, {3, 4, 2.5}, {3, 0, 2.5}});
+        add({{0, 4, 0}, {3, 4, 0}, {3, 4, 2.5}, {0, 4, 2.5}});
+        add({{0, 0, 0}, {0, 4, 0}, {0, 4, 2.5}, {0, 0, 2.5}});
+        add({{3, 0, 0}, {3, 0, 2.5}, {3, 4, 2.5}, {3, 4, 0}});
+        add({{0, 0, 0}, {0, 0, 1}, {3, 0, 1}, {3, 0, 0}});
+        add({{0, 0, 2}, {0, 0, 2.5}, {3, 0, 2.5}, {3, 0, 2}});
+    }
+    d.distant = light;
+    CheckedScene checked = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(checked.scene));
+    return std::move(*checked.scene);
+}
+
+std::vector<DaylightHour> day() {
+    std::vector<DaylightHour> out;
+    for (int hour = 1; hour <= 24; ++hour) {
+        const bool light = hour > 7 && hour <= 19;
+        out.push_back({{2021, 6, 21, hour - 0.5, 1}, hour, light ? 120.0 : 0, light ? 500.0 : 0});
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST(Daylight, InTheOpenItIsThatOfTheWeather) {
+    const Scene open = scene(false);
+    const SkyPatches patches(1);
+    const std::vector<ProbePoint> sensors{{{1, 1, 0}, {0, 0, 1}}, {{1, 1, 1}, {0, 0, 1}}};
+    Progress progress;
+    const DaylightMatrix matrix = make_daylight_matrix(
+        open, sensors, patches, {.elements = 50, .rays_an_element = 64, .rays_a_sensor = 64}, progress);
+    const std::vector<DaylightHour> hours = day();
+    const DaylightSite site{.place = {47.4, 8.5, 400}};
+    const DaylightYear year = daylight_year(open, sensors, patches, matrix, hours, site);
+    const auto metrics = daylight_metrics(year, patches, matrix, hours, site);
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        EXPECT_NEAR(metrics[i].daylight_factor, 100, 0.2);
+        EXPECT_EQ(metrics[i].autonomy, 1);
+        EXPECT_EQ(metrics[i].useful[3], 1);
+        const SunPosition sun = sun_position(hours[12].time, site.place);
+        EXPECT_NEAR(year.illuminance[12 * 2 + i], 120 * 120 + 500 * 100 * std::sin(sun.altitude * pi / 180), 50);
+        EXPECT_EQ(year.illuminance[3 * 2 + i], 0);
+    }
+    const DaylightSummary summary = summarize(metrics, hours);
+    EXPECT_EQ(summary.occupied_hours, 10u);
+    EXPECT_EQ(summary.spatial_autonomy, 1);
+    EXPECT_EQ(summary.sunlight_exposure, 0);  // a day has no 250 hours
+}
+
+TEST(Daylight, OfARoomItIsThatOfASolveUnderTheSameSky) {
+    SkyModel below = uniform_sky();
+    below.below = true;
+    const Scene lit = scene(true, {{{overcast_sky(), Spectrum(100.0)}, {below, Spectrum(20.0)}}, {}});
+    const Solution solution = solved(lit, {.error = 0.03});
+    const std::vector<ProbePoint> sensors{
+        {{1.5, 1, 0.8}, {0, 0, 1}}, {{1.5, 3, 0.8}, {0, 0, 1}}, {{0.7, 2, 0}, {0, 0, 1}}};
+    const std::vector<Light> light = RadiosityFunction(solution).at(sensors);
+    const SkyPatches patches(1);
+    Progress progress;
+    const DaylightMatrix matrix =
+        make_daylight_matrix(scene(true), sensors, patches, {.elements = 800, .rays_an_element = 128}, progress);
+    const DaylightSite site{.place = {}, .ground = 0.2};
+    const auto metrics = daylight_metrics({sensors.size(), {}, {}}, patches, matrix, {}, site);
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+        EXPECT_NEAR(metrics[i].daylight_factor, light[i].irradiance[0], 0.04 * light[i].irradiance[0]) << i;
+}
+
+TEST(Daylight, OfASensorOnTheLineOfAWallIsThatFromInside) {
+    // The limits from inside of the walls' lines, and in free space in the plane of a wall. Light changes by some
+    // tenths of a percent from there to the places beside them, and some of the rays of reflected light meet another
+    // element.
+    const Scene dark = scene(true);
+    const std::vector<ProbePoint> on{{{0, 2, 0}, {0, 0, 1}},
+                                     {{1.5, 4, 0}, {0, 0, 1}},
+                                     {{3, 4, 0}, {0, 0, 1}},
+                                     {{0, 2, 1}, {0, 0, 1}},
+                                     {{0, 2, 0}, {1, 0, 0}}};
+    std::vector<ProbePoint> beside = on;
+    constexpr double inside = 1e-3;  // metres
+    beside[0].x.x += inside, beside[1].x.y -= inside, beside[2].x.x -= inside, beside[2].x.y -= inside;
+    beside[3].x.x += inside, beside[4].x.z += inside;
+    const SkyPatches patches(1);
+    const DaylightSite site{.place = {47.4, 8.5, 400}};
+    Progress progress;
+    const auto factors = [&](const std::vector<ProbePoint>& sensors) {
+        const DaylightMatrix matrix = make_daylight_matrix(
+            dark, sensors, patches, {.elements = 300, .rays_an_element = 64, .rays_a_sensor = 1024}, progress);
+        return daylight_metrics({sensors.size(), {}, {}}, patches, matrix, {}, site);
+    };
+    const auto found = factors(on), expected = factors(beside);
+    const std::vector<double> hours = sunlight_hours(dark, on, site, 1, {}),
+                              hours_beside = sunlight_hours(dark, beside, site, 1, {});
+    for (std::size_t i = 0; i < on.size(); ++i) {
+        ASSERT_GT(expected[i].daylight_factor, 0.05);
+        EXPECT_NEAR(found[i].daylight_factor / expected[i].daylight_factor, 1, 0.02) << i;
+        EXPECT_NEAR(hours[i], hours_beside[i], 1.0 / 15) << i;  // two steps of two minutes
+    }
+}
+
+}  // namespace exitance

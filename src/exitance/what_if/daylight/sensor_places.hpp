@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/visibility/occluders.hpp"
+#include "exitance/visibility/visible_part.hpp"
+
+namespace exitance {
+
+/// Sensors as receivers of light, at the places that a PlaceFinder finds: those on a surface are moved into its plane.
+std::vector<Receiver> sensor_places(const Scene& scene, const Occluders& occluders,
+                                    std::span<const ProbePoint> sensors);
+
+}  // namespace exitance

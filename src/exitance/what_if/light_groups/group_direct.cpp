@@ -1,0 +1,154 @@
+#include "exitance/what_if/light_groups/group_direct.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/basis/element_fit.hpp"
+#include "exitance/direct/sampled_light.hpp"
+
+namespace exitance {
+namespace {
+
+/// Direct light of some emitters of a stage's scene.
+class PartOfLight {
+  public:
+    PartOfLight(const Scene& lit, const Stage& stage, const ElementTree& tree)
+        : stage_(stage),
+          tree_(tree),
+          direct_(lit, stage.occluders),
+          clustered_(direct_, stage.tracer),
+          crowded_(direct_, stage.tracer) {}
+
+    const DirectLight& direct() const { return direct_; }
+
+    /// All its emitters; `allowed`: mean square of w (E - polynomial) that noise may leave, (W/m^2)^2.
+    DirectFit fit(ElementId e, double allowed, DirectFitRoom& room) const {
+        const RegionId region = tree_.region(e);
+        const Normal& n = stage_.scene.regions()[region].plane.n;
+        const double off = std::sqrt(allowed) / weight(e);
+        const Point middle = tree_.patch(e).at(tree_.centre(e));
+        constexpr double of_its_own = 0.05;  // given by project_direct_light: no place has to be better
+        const LightAccuracy accuracy{of_its_own, 0.5 * off};
+        if (clustered_.is_possible() && clustered_.pays(middle, n, region, accuracy, room.clustered))
+            return fit_values(e, [&](const Point& x) {
+                return clustered_.by_clusters(x, n, region, accuracy, room.clustered).irradiance;
+            });
+        return fit_prepared(e, allowed, room);
+    }
+
+    /// Those that count there, and what the others bring by rays.
+    DirectFit fit_strong(ElementId e, double allowed, SampledLight& sampled, DirectFitRoom& room) const {
+        const RegionId region = tree_.region(e);
+        if (!stage_.scene.behind(region).is_none()) return fit(e, allowed, room);
+        constexpr unsigned rays = 16;
+        const Spectrum w = light_weight(stage_.scene.material(region));
+        const SampledLight::Estimate& of = sampled(tree_, e, w, allowed, rays);
+        DirectFit out = fit_prepared(e, allowed, room, &of.strong);
+        for (Spectrum& corner : out.corners) corner += of.weak;
+        out.mean += of.weak;
+        return out;
+    }
+
+    double weight(ElementId e) const { return mean(light_weight(stage_.scene.material(tree_.region(e)))); }
+
+  private:
+    /// `named`: the sources to look at; none: all.
+    DirectFit fit_prepared(ElementId e, double allowed, DirectFitRoom& room,
+                           const std::vector<DirectLight::SourceName>* named = nullptr) const {
+        const RegionId region = tree_.region(e);
+        DirectLight::Workspace& exact = room.clustered.exact;
+        const double variance = allowed / (weight(e) * weight(e));
+        const CrowdedLight::Crowd crowd = crowded_.prepare(tree_.outline(e), stage_.scene.regions()[region].plane.n,
+                                                           region, variance, room.light, exact, named);
+        if (room.light.is_dark() && crowd.empty()) return {};
+        std::vector<Point> places;
+        for (const WeightedPlace& place : element_rule(tree_, e, RuleOrder::fine))
+            places.push_back(tree_.patch(e).at(place.uv));
+        std::vector<CrowdedLight::Estimate> by_rays;
+        if (!crowd.empty()) by_rays = crowded_.at(room.light, crowd, places, exact);
+        std::size_t next = 0;
+        return fit_values(e, [&](const Point& x) {
+            const Spectrum E = direct_.irradiance(room.light, x, exact);
+            return crowd.empty() ? E : E + by_rays[next++].irradiance;
+        });
+    }
+
+    template <class Value>
+    DirectFit fit_values(ElementId e, const Value& value_at) const {
+        DirectFit out;
+        const std::vector<WeightedPlace> places = element_rule(tree_, e, RuleOrder::fine);
+        std::vector<Spectrum> values;
+        for (const WeightedPlace& place : places) {
+            values.push_back(value_at(tree_.patch(e).at(place.uv)));
+            out.mean += place.weight * values.back();
+        }
+        const ElementFit fit(tree_, e, places, values);
+        for (int i = 0; i < tree_.patch(e).corner_count(); ++i)
+            out.corners[static_cast<std::size_t>(i)] = fit.corner(i);
+        return out;
+    }
+
+    const Stage& stage_;
+    const ElementTree& tree_;
+    DirectLight direct_;
+    ClusteredLight clustered_;
+    CrowdedLight crowded_;
+};
+
+/// Mean of w E_dir over the elements, from some of them that all is good enough for.
+double estimated_mean(const PartOfLight& part, const ElementTree& tree, std::span<const ElementId> elements,
+                      const StopRequest& stop) {
+    constexpr std::size_t samples = 512;
+    constexpr double anything = 1e300;  // given by the range of doubles: its root is finite
+    const std::size_t step = std::max<std::size_t>(1, elements.size() / samples);
+    DirectFitRoom room;
+    double flux = 0, area = 0;
+    for (std::size_t i = step / 2; i < elements.size() && !stop.requested(); i += step) {
+        const ElementId e = elements[i];
+        flux += tree.area(e) * part.weight(e) * mean(part.fit(e, anything, room).mean);
+        area += tree.area(e);
+    }
+    return area > 0 ? flux / area : 0;
+}
+
+}  // namespace
+
+Scene alone(const Scene& scene, const EmitterGroup& group) {
+    Scene out = scene;
+    for (const MaterialId m : scene.materials().ids()) {
+        const bool own = std::find(group.materials.begin(), group.materials.end(), m) != group.materials.end();
+        if (!own && scene.materials()[m].emits()) out.relight(m, scene.materials()[m].reflectance, Spectrum());
+    }
+    std::vector<PunctualLight> lights;
+    for (const std::uint32_t i : group.lights) lights.push_back(scene.lights()[i]);
+    out.put_lights(std::move(lights));
+    if (!group.is_distant) out.put_under({});
+    return out;
+}
+
+std::vector<DirectFit> fit_direct_of(const Scene& lit, const Stage& stage, const ElementTree& tree,
+                                     std::span<const ElementId> elements, double tolerance, std::uint64_t seed,
+                                     const StopRequest& stop) {
+    const PartOfLight part(lit, stage, tree);
+    std::vector<DirectFit> out(elements.size());
+    // Sources that hardly count are many where emitters and elements are.
+    constexpr std::size_t few_elements = 2000, few_emitters = 8;
+    const bool many = elements.size() > few_elements && part.direct().emitters().size() > few_emitters &&
+                      !stage.scene.has_light_apart();
+    const bool is_noisy = many || !stage.occluders.has_nothing_inside();
+    const double allowed = is_noisy ? std::pow(tolerance * estimated_mean(part, tree, elements, stop), 2) : 0;
+    const double mean_area = stage.area / static_cast<double>(elements.size());
+    parallel_ranges(elements.size(), 8, [&](std::size_t begin, std::size_t end) {
+        DirectFitRoom room;
+        SampledLight sampled(part.direct(), stage.tracer, seed);
+        for (std::size_t i = begin; i < end && !stop.requested(); ++i) {
+            const ElementId e = elements[i];
+            const double share = allowed * mean_area / tree.area(e);
+            out[i] = many ? part.fit_strong(e, share, sampled, room) : part.fit(e, share, room);
+        }
+    });
+    return out;
+}
+
+}  // namespace exitance
