@@ -7,28 +7,28 @@
 
 namespace exitance {
 
-/// Direct light as one mesh for each source and surface, to be added up.
+/// Direct light as one mesh per source and surface; the light is their sum.
 struct LightLayers {
-    /// Of light whose colour is the same everywhere, one a source and region; else one a band.
+    /// One per source and region if the light has the same colour everywhere, otherwise one per band.
     struct Sheet {
         RegionId region;
-        std::uint32_t source = 0;  ///< Of `sources`.
-        Spectrum colour;           ///< What a value of the layer counts.
+        std::uint32_t source = 0;  ///< Index in `sources`.
+        Spectrum colour;           ///< Light per unit of the layer's value.
         LightLayer light;
     };
-    /// Regions that emit, each by itself; none, the last: what else shines, together.
+    /// The emitting regions, each a source of its own. The last entry, none, stands for all other emitters together.
     std::vector<RegionId> sources;
-    std::vector<Sheet> sheets;  ///< By region, then by source.
+    std::vector<Sheet> sheets;  ///< Sorted by region, then by source.
 
     bool empty() const { return sources.empty(); }
-    std::size_t size() const;          ///< Triangles that are stored.
-    std::size_t memory_bytes() const;  ///< Of the compressed layers.
+    std::size_t size() const;          ///< Number of stored triangles.
+    std::size_t memory_bytes() const;  ///< Memory of the compressed layers.
 };
 
-/// The sum of layers at a place.
+/// Evaluates the sum of the layers at a point.
 class LayerFunction {
   public:
-    /// `layers`, whose grids must be made, and `scene` must outlive it.
+    /// `layers` (with grids made) and `scene` must outlive the object.
     LayerFunction(const LightLayers& layers, const Scene& scene);
 
     /// Irradiance, W/m^2; 0 where no layer has light.
@@ -37,10 +37,10 @@ class LayerFunction {
   private:
     const LightLayers* layers_;
     const Scene* scene_;
-    std::vector<std::uint32_t> first_;  ///< By region, and one past the last.
+    std::vector<std::uint32_t> first_;  ///< Per region, and one past the last.
 };
 
-/// A place of a region in the coordinates of its layers.
+/// A point of a region in the coordinates of its layers.
 Vec2 layer_place(const Region& region, const Point& p);
 
 }  // namespace exitance
