@@ -12,8 +12,8 @@ std::vector<Vec2> gauss_points(Patch::Shape shape) {
     return out;
 }
 
-/// The polynomial that is one degree above the basis and 0 at its nodes is near its RMS value at these points (given by
-/// the rule).
+/// Points at which the polynomial that is one degree above the basis and zero at its nodes is close to its RMS value
+/// (given by the rule).
 std::vector<Vec2> points_between_nodes(Patch::Shape shape, int order) {
     if (shape == Patch::Shape::triangle) {
         // Given by the rule, like all below.
