@@ -195,7 +195,7 @@ class ClusterRefiner::Judge {
             if (!blocked[i]) open += share[i], ++pair.open;
         }
         pair.link.visible = all > 0 ? static_cast<float>(open / all) : 1;
-        // If few of the point pairs face each other, scale their count to the number of rays requested.
+        // If fewer point pairs than requested face each other, scale the number of open rays accordingly.
         if (!from.empty())
             pair.open = pair.open * wanted / static_cast<unsigned>(from.size());
         else

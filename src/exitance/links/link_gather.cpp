@@ -53,8 +53,8 @@ struct LaneMasks {
 };
 const LaneMasks lane_masks;
 
-/// The data of a source that links need, contiguous in memory: its centre in metres, and in single precision, in units
-/// of the scene's size, its nodes relative to the centre and what they emit.
+/// The data of a source that links need, contiguous in memory. Its centre is in metres. The rest is in single
+/// precision, in units of the scene's size: its nodes, relative to the centre, and the light that they emit.
 template <std::size_t n>
 struct alignas(64) SourceRecord {
     double centre[3];

@@ -293,7 +293,7 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
         if (!too_much[p]) return untouched;
         if (found.cuts_receiver) return handed_on;
         if (tolerance.oracle != LinkOracle::transport) return left;
-        // Of light that may be occluded, half may be missing in places.
+        // Half of the light that may be occluded may be missing in places.
         const double light = static_cast<double>(found.light) / tree_.area(p), hidden = found.open ? 0 : 0.5 * light;
         const double error = weight(p) * tree_.area(p) * (mean_square(found.departure) + hidden * hidden);
         return error < negligible * negligible ? left : handed_on;

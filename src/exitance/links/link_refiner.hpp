@@ -107,7 +107,7 @@ class LinkRefiner {
     LinkSites& sites_;
     Light light_below_;
     double weight(ElementId receiver) const { return importance_.empty() ? 1 : importance_[receiver]; }
-    Field<ElementId, double> roughness_;  ///< Of held elements.
+    Field<ElementId, double> roughness_;  ///< Per held element.
     Field<ElementId, double> importance_;
     std::vector<FoundLink> links_;
     std::vector<float> blocks_, shadows_;

@@ -19,9 +19,9 @@ LinkSites::LinkSites(const Stage& stage, const ElementTree& tree, const NodalBas
     }
 }
 
-/// The parallelogram with the domain's area, centroid and second moments. With C the matrix of second moments about the
-/// centroid and C = L L^T, its half sides are sqrt 3 times the columns of L (a square of half side h has the second
-/// moment h^2 / 3).
+/// The parallelogram with the domain's area, centroid and second moments. Let C be the matrix of second moments about
+/// the centroid, and C = L L^T. The half sides are sqrt 3 times the columns of L (a square of half side h has the
+/// second moment h^2 / 3).
 Patch LinkSites::inertia_parallelogram(ElementId e) const {
     const std::vector<Vec2> domain = tree_->domain(e);
     const Vec2 c = tree_->centre(e);

@@ -21,8 +21,8 @@ struct ElementPart {
 
 /// Places the nodes of a basis on the elements of a tree, and transfers functions between its levels.
 ///
-/// A cell (an element whose domain is smaller than its patch) is replaced by the parallelogram with the same area and
-/// the same first and second moments, so that one kind of rule suffices.
+/// A cell is an element whose domain is smaller than its patch. It is replaced by the parallelogram with the same area
+/// and the same first and second moments, so that one kind of rule suffices.
 ///
 /// Values are stored (held) for all elements, or only for those that links use: the roots, and the children of opened
 /// elements. Where the mesh for direct light is much finer than these, nothing is stored.

@@ -5,14 +5,14 @@
 
 namespace exitance {
 
-/// Makes the links of constant elements from rays. Every leaf is linked to the surfaces that its rays hit: each link
-/// leads to the largest element whose light is so uniform that its mean is accurate enough,
+/// Makes the links of constant elements from rays. Every leaf is linked to the surfaces that its rays hit. Each link
+/// leads to the largest element whose light is uniform enough to be replaced by its mean:
 ///
 ///     F_iq = share of the rays of leaf i that hit element q first,     F_iq rms_q(b - b_q) rho_i sqrt(A_i) <= allowed.
 ///
 /// F includes form factor and visibility. Pairs without transport are never evaluated. The light of a leaf's links
-/// differs from that of its rays by at most the allowed nonuniformity, and F sums to 1 over the links of a leaf whose
-/// rays all hit surfaces. Source: levels as in [Hanrahan91], form factors as in [Malley88]. O(rays log rays).
+/// differs from that of its rays by at most the allowed nonuniformity. F sums to 1 over the links of a leaf whose rays
+/// all hit surfaces. Source: levels as in [Hanrahan91], form factors as in [Malley88]. O(rays log rays).
 ///
 /// With several processes, each makes the links of its own rows (`RowsHeld::by_owner`), in blocks of leaves
 /// (`dealt_block`).

@@ -42,8 +42,8 @@ class PlaneNodes {
     struct Leaf {
         ElementId leaf;
         Fan fan;  ///< Empty border: the leaf stays whole.
-        std::vector<std::uint32_t>
-            node;  ///< Node numbers within the plane: of the apex, then of the border; or of the leaf's corners.
+        /// Node numbers within the plane: of the apex, then of the border; or of the leaf's corners.
+        std::vector<std::uint32_t> node;
     };
     std::vector<Leaf> leaves;
     std::uint32_t node_count = 0;
@@ -366,8 +366,8 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         std::size_t count = 0;
         for (; end < planes && count < group_size; ++end) count += leaves[end].size();
         std::vector<FoundLeaves> found(end - first);
-        std::vector<double>
-            work;  // planes differ greatly: a floor may have as many leaves as all objects on it together
+        // Planes differ greatly: a floor may have as many leaves as all objects on it together.
+        std::vector<double> work;
         for (std::size_t p = first; p < end; ++p) work.push_back(static_cast<double>(leaves[p].size()));
         find_together(
             found, 1, [&](std::size_t k) { return find(first + k); },
@@ -376,8 +376,8 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         for (std::size_t k = 0; k < found.size(); ++k)
             if (!leaves[first + k].empty() && found[k].leaf.empty()) return {};
         if (first == 0 && count > 0) {
-            constexpr double margin =
-                1.1;  // later planes may need more splits; reserved memory that is not used costs nothing
+            // Later planes may need more splits; reserved memory that is not used costs nothing.
+            constexpr double margin = 1.1;
             reserve(found, left > count ? margin * static_cast<double>(left) / static_cast<double>(count) : 1, tree,
                     out);
         }

@@ -23,8 +23,8 @@ class ContactLines {
     struct Line {
         Point a, b;
         double height;
-        double gap_depth =
-            0;  ///< For a line between strips of a gap: how far all strips together extend into the gap, metres.
+        /// For a line between strips of a gap: how far all strips together extend into the gap, metres.
+        double gap_depth = 0;
     };
     /// Lines that may cross an element's domain, caused by faces of other regions: edges in its plane; edges at a small
     /// height above it, each with one more line on either side; intersections with faces; and in gaps, where light

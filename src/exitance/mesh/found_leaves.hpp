@@ -14,8 +14,8 @@ struct FoundLeaves {
     std::vector<ElementId> leaf;
     std::vector<std::uint32_t> places, nodes;  ///< Per leaf: how many entries of `place` and of `node` belong to it.
     std::vector<Vec2> place;                   ///< Of a fan: apex, then border. Leaves that stay whole have none.
-    std::vector<std::uint32_t>
-        node;  ///< Of a fan: nodes of the apex, then of the border. Otherwise: nodes of the leaf's corners.
+    /// Of a fan: nodes of the apex, then of the border. Otherwise: nodes of the leaf's corners.
+    std::vector<std::uint32_t> node;
 
     /// Adds a leaf; it stays whole if the fan has no border.
     void add(ElementId e, const Fan& fan, std::span<const std::uint32_t> of_leaf) {

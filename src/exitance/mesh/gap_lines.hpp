@@ -16,9 +16,9 @@ struct GapLine {
 };
 
 /// Finds gaps, which open at the borders of regions that face each other at a small distance. Light that enters decays
-/// with the distance from the mouth, on the scale of the gap's height. Each strip is twice as wide as the one before
-/// (one height, two, four), until almost no light is left or the next strip would not fit before the middle of the gap,
-/// where light from the other side dominates.
+/// with the distance from the mouth, on the scale of the gap's height. Each strip is twice as wide as the one before:
+/// one height, two, and four. Strips end when almost no light is left, or when the next one would not fit before the
+/// middle of the gap, beyond which light enters from the other side, too.
 ///
 /// faces        a tree over the boxes of the scene's surfaces, by index
 /// touching     metres; smaller distances are contacts, not gaps

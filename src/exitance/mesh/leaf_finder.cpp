@@ -178,9 +178,8 @@ std::uint32_t LeafFinder::FanWalk::add_sectors(Builder& builder, std::size_t beg
 }
 
 LeafFinder::LeafFinder(const ElementTree& tree) {
-    constexpr std::size_t max_stored_triangles = std::size_t(1)
-                                                 << 17;  // above this, triangles of fans are not stored: with dependent
-                                                         // data they take 200 bytes each, 25 MB in all
+    // Above this, triangles of fans are not stored: with dependent data they take 200 bytes each, 25 MB in all.
+    constexpr std::size_t max_stored_triangles = std::size_t(1) << 17;
     const bool by_fans = tree.size() - tree.first_of_fans().value > max_stored_triangles;
     const std::size_t stored = by_fans ? tree.first_of_fans().value : tree.size();
     if (by_fans) tree_ = tree;

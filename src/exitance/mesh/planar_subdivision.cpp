@@ -200,8 +200,8 @@ class DelaunayRefinement {
             }
         given_ = count_;
         const double mean_edge = std::sqrt(2 * area_of(coarse) / static_cast<double>(coarse.corners.size()));
-        constexpr double min_distance_share =
-            0.25;  // smaller distances give more triangles than better shapes are worth
+        // Smaller distances give more triangles than better shapes are worth.
+        constexpr double min_distance_share = 0.25;
         nearest_ = min_distance_share * mean_edge;
     }
 

@@ -28,7 +28,7 @@ struct LabelledTriangles {
     static constexpr std::uint32_t none = 0xffffffffu;
     std::vector<Vec2> points;
     std::vector<std::array<std::uint32_t, 3>> corners;    ///< Counter-clockwise.
-    std::vector<std::array<std::uint8_t, 3>> labels;      ///< Of the edge from corner i to the next.
+    std::vector<std::array<std::uint8_t, 3>> labels;      ///< Label of the edge from corner i to the next.
     std::vector<std::array<std::uint32_t, 3>> neighbors;  ///< Index of the triangle across that edge, or none.
 };
 

@@ -206,8 +206,8 @@ double edge_for_elements(const std::vector<Piece>& pieces, std::size_t count) {
     double longest = 0;
     for (const auto& [region, patch] : pieces) longest = std::max({longest, norm(patch.a), norm(patch.b)});
     double edge = 1.0001 * longest;
-    while (predict_elements(pieces, edge) < count)
-        edge *= 0.84;  // each step makes about sqrt(2) times as many elements
+    // Each step makes about sqrt(2) times as many elements.
+    while (predict_elements(pieces, edge) < count) edge *= 0.84;
     return edge;
 }
 

@@ -247,8 +247,8 @@ bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, Conv
     if (!any_out) return part = body, true;
     if (body.faces.size() + 1 >= ConvexBlocker::most_faces) return false;
 
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>
-        numbers;  // key: a corner of the body (twice), or the ends of a cut edge
+    // Key: a corner of the body (twice), or the ends of a cut edge.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;
     const auto number = [&](std::uint32_t a, std::uint32_t b) {
         const auto [known, is_new] =
             numbers.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(part.points.size()));

@@ -46,10 +46,12 @@ struct SeenEdges {
     static constexpr std::uint32_t bit(std::size_t s) { return 1u << (s < 31 ? s : 31); }
 };
 
-/// Finds the critical lines that cross a convex receiver: lines on which a corner of the source appears on an edge of a
-/// blocker's silhouette or an edge of the source appears on a blocker's corner (the VE and EV events of discontinuity
-/// meshing), or a blocker's corner appears on another blocker's edge in front of the source, or a face of a blocker is
-/// seen edge-on (NEV events). Three-edge events are omitted.
+/// Finds the critical lines that cross a convex receiver:
+///  - VE: a corner of the source appears on an edge of a blocker's silhouette;
+///  - EV: an edge of the source appears on a blocker's corner;
+///  - NEV: a blocker's corner appears on an edge of another blocker in front of the source, or on an edge of its own
+///  body (a face of which is then seen edge-on).
+/// Three-edge events of discontinuity meshing are omitted.
 /// nearness  metres: lines closer to each other than this are merged
 /// most  limit on the number of lines; their order depends on the input only
 /// Blockers must be in front of the source's plane. O(corners^2) per blocker, counting visible edges only. Source:

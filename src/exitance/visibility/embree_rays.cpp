@@ -143,8 +143,8 @@ struct RayTracer::Content {
     Owned<RTCScene, rtcReleaseScene> rtc;
     std::vector<SurfaceId> surface_of;  ///< Per triangle.
     Field<SurfaceId, Face> faces;
-    Field<SurfaceId, SurfaceId>
-        other_side;        ///< The surface on the other side of a sheet; empty if there are no sheets.
+    /// The surface on the other side of a sheet; empty if there are no sheets.
+    Field<SurfaceId, SurfaceId> other_side;
     OpposedFaces opposed;  ///< For sheets whose two sides have different outlines.
     Glass glass;
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double coplanar_share = 1e-6;  ///< Share of the scene's size: planes closer than this count as one plane.
 
-/// Distance by which a piece is raised off its plane above the pieces beneath it, metres. All levels stay within half
-/// of the thickness, so that other code treats the stack as one plane.
+/// Distance by which a piece is raised off its plane above the pieces that it covers, metres. All levels stay within
+/// half of the thickness, so that other code treats the stack as one plane.
 double stack_height(std::uint8_t level, double thickness) {
     return level * thickness / (2 * most_stacked);
 }
@@ -150,7 +150,7 @@ void Occluders::add_piece(std::span<const Point> corners, RegionId region, Surfa
                       surface,
                       plane,
                       0};
-    // The tolerance shrinks with the piece, so that small objects stay distinct from the surface beneath them.
+    // The tolerance shrinks with the piece, so that small objects stay distinct from the surface that supports them.
     piece.thickness = std::max(rounding_, std::min(coplanar_share * scene_->size(), 1e-3 * box_of(corners).diagonal()));
     const Vec3 lifted = stack_height(scene_->regions()[region].level, piece.thickness) * plane.n;
     for (const Point& p : corners) corners_.push_back(p + lifted);

@@ -45,7 +45,7 @@ class Occluders {
     IdRange<PieceId> windows() const { return windows_; }
     bool is_window(PieceId p) const { return !windows_.empty() && p.value >= windows_.front().value; }
     const Enclosure& enclosure() const { return enclosure_; }
-    /// Viewpoint to subtract from the corners of a distant piece, whatever the receiver.
+    /// Viewpoint to subtract from the corners of a distant piece, instead of the receiver's position.
     const Point& middle() const { return middle_; }
     /// Distance by which a region's pieces are raised off its plane because the region is on top of others in that
     /// plane (Region::level), metres.

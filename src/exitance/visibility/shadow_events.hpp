@@ -18,10 +18,10 @@ namespace exitance {
 struct ShadowEvent {
     Vec2 a, b;
     bool is_kink = false;  ///< Discontinuity of the slope of irradiance (D1); otherwise of its curvature (D2).
-    bool by_edge_of_source = false;  ///< EV event: an edge of the source over a blocker's corner. Otherwise VE: a
-                                     ///< corner of the source over an edge.
-    bool by_blockers_alone =
-        false;               ///< NEV event: a corner of a blocker over another blocker's edge, in front of the source.
+    /// EV event: an edge of the source over a blocker's corner. Otherwise VE: a corner of the source over an edge.
+    bool by_edge_of_source = false;
+    /// NEV event: a corner of a blocker over another blocker's edge, in front of the source.
+    bool by_blockers_alone = false;
     double width = 0;        ///< Width of the penumbra that begins here, metres.
     double gain = HUGE_VAL;  ///< Upper bound of the source's contribution beyond the edge; see EventBounds::gains.
 };
@@ -29,8 +29,8 @@ struct ShadowEvent {
 /// Possible occluders between a receiver and a source, used instead of a search: the minimum candidate lists of the
 /// receiver (bsp/minimum_lists.hpp), front to back.
 struct WedgeLists {
-    std::vector<std::vector<PieceId>>
-        of_corner;  ///< Per corner of the source. An edge of the source uses the lists of both ends.
+    /// Per corner of the source. An edge of the source uses the lists of both ends.
+    std::vector<std::vector<PieceId>> of_corner;
     std::vector<PieceId> of_all;
 };
 
@@ -39,8 +39,8 @@ struct WedgeLists {
 struct EventBounds {
     std::span<const double> gains = {};  ///< Per edge, in the order of `among`; empty: unbounded.
     double least_bend = 0;               ///< Minimum gain of events that change only the curvature (D2),
-    /// Minimum gain of D2 events that are at most eight times as long as their penumbra is wide. Longer ones always
-    /// need only `least_bend`.
+    /// Minimum gain of D2 events more than eight times as long as their penumbra is wide, if below `least_bend`:
+    /// bisection would need more triangles for such events than cutting along the line.
     double least_narrow_bend = HUGE_VAL;
     const StopRequest* stop = nullptr;  ///< Once a stop is requested, the result is incomplete.
     const WedgeLists* lists = nullptr;  ///< Occluders that wedges are clipped by; null: those that the box tree finds.
@@ -113,7 +113,8 @@ class ShadowEventFinder {
         constexpr std::size_t wedges_a_look = 64;
         return bounds_.stop && ++asked_ % wedges_a_look == 0 && bounds_.stop->requested();
     }
-    /// Returns whether an event's gain is large enough. Weak D2 events need at least `least_narrow_bend`.
+    /// Returns whether an event's gain is large enough: D2 events need `least_bend`, or `least_narrow_bend` if they
+    /// turn out to be long enough (is_long_enough).
     bool counts(const ShadowEvent& event) {
         const bool weak = is_weak(event) && event.gain < bounds_.least_narrow_bend;
         too_weak += weak;

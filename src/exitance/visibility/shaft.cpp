@@ -19,7 +19,7 @@ double highest(std::span<const Point> points, const Plane& plane) {
 }
 
 /// The corners of a facet. If several surfaces share a plane, those of an upper one are raised (Occluders::lift): as
-/// seen from the plane itself, the surfaces beneath would hide everything.
+/// seen from the plane itself, the covered surfaces would hide everything.
 void take(const Occluders& occluders, const Facet& facet, std::vector<Point>& corners) {
     corners.assign(facet.corners.begin(), facet.corners.end());
     const double lift = facet.region.is_none() ? 0 : occluders.lift(facet.region);

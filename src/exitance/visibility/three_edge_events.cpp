@@ -109,9 +109,9 @@ bool ThreeEdgeEventFinder::is_hidden(const Sight& sight, const Point& end) const
 }
 
 /// Returns whether the event may bound an umbra. Seen along the line of sight, the three edges are lines through one
-/// point, each with a side on which the source is not cut off. If these three half-planes have only that point in
-/// common, a step to one side of the conic leaves a small triangle of the source visible, and a step to the other side
-/// nothing.
+/// point, each with a side on which the source is not cut off. Suppose these three half-planes have only that point in
+/// common. Then a step to one side of the conic leaves a small triangle of the source visible, and a step to the other
+/// side nothing.
 bool ThreeEdgeEventFinder::bounds_umbra(const Sight& sight, const Point& q0, const Point& q1,
                                         const BlockerEdges::Edge& e, const BlockerEdges::Edge& f) const {
     const Vec3 view = sight.r - sight.q + (sight.p - sight.q);

@@ -25,10 +25,10 @@ struct ThreeEdgeEvent {
 };
 
 /// Finds the events of one source edge and two blocker edges (EEE). From each point q of the source's edge one line
-/// passes through both blocker edges. Its position on each is a ratio of two functions linear in q, so the part of the
-/// source's edge for which it meets both edges, in front of the receiver, has a closed form. Other occluders on such a
-/// line of sight hide that part of the conic. O(source edges x pairs of edges) tests of a few operations each; the
-/// remaining pairs take O(log n) each. Source: [Heckbert92], [Drettakis94].
+/// passes through both blocker edges. Its position on each is a ratio of two functions linear in q. The part of the
+/// source's edge whose lines meet both edges, in front of the receiver, therefore has a closed form. Other occluders on
+/// such a line of sight hide that part of the conic. O(source edges x pairs of edges) tests of a few operations each;
+/// the remaining pairs take O(log n) each. Source: [Heckbert92], [Drettakis94].
 class ThreeEdgeEventFinder {
   public:
     /// Once `stop` is requested, the result is incomplete.

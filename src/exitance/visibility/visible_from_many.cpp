@@ -8,11 +8,11 @@
 namespace exitance {
 namespace {
 
-constexpr double rounding =
-    2e-15;  ///< Times an edge's length and the square of `reach_`: heights below this count as zero.
+/// Times an edge's length and the square of `reach_`: heights below this count as zero.
+constexpr double rounding = 2e-15;
 constexpr double one_line = 1e-12;  ///< Edges closer than this from everywhere count as one line.
-constexpr double coincident_from_point =
-    3e-8;  ///< From a point: below this, the intersection of two such edges is lost in rounding.
+/// From a point: below this, the intersection of two such edges is lost in rounding.
+constexpr double coincident_from_point = 3e-8;
 constexpr std::size_t max_turning_faces = 64;
 
 /// Returns whether the inner side of the line depends on the viewpoint.

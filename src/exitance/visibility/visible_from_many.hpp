@@ -83,8 +83,8 @@ class VisibleFromMany {
     std::vector<Vec3> points_;  ///< Corners of the current blocker, in the receiver's frame.
     enum class Facing : std::uint8_t { back, front, turning };
     std::vector<Facing> facing_;  ///< Per face of the blocker: its orientation to the whole receiver.
-    std::vector<std::uint32_t>
-        turning_;  ///< Per face that is front-facing from some points only: its index in the tables.
+    /// Per face that is front-facing from some points only: its index in the tables.
+    std::vector<std::uint32_t> turning_;
     EdgeTerms terms_;
     bool is_crowded_ = false;  ///< More blockers, lines or corners than the tables hold.
     bool single_is_set_ = false;

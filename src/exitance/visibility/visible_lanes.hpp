@@ -14,8 +14,8 @@ namespace exitance {
 /// that plane is z = 0 and its normal +z.
 ///
 /// As seen from x, a point p is on the inner side of an edge (a, b) if det(b - x, a - x, p - x) > 0. That is an affine
-/// function of x, so three coefficients suffice to test, from any point of the receiver, whether a corner of the source
-/// is inside the pyramid over a blocker's silhouette.
+/// function of x with three coefficients. These suffice to test, from any point of the receiver, whether a corner of
+/// the source is inside the pyramid over a blocker's silhouette.
 struct SightTables {
     static constexpr std::size_t most_corners = 12, most_lines = 12, lanes = 8;
     static constexpr std::size_t most_blockers = 4;
@@ -36,9 +36,10 @@ struct SightTables {
         double none = 0, tie = 0;  ///< m^3: heights below `none` count as zero; below `tie`, two edges may coincide.
         Outline outline = Outline::always;
         std::uint32_t left = 0, right = 0;  ///< Indices into `faces`.
-        std::uint32_t over = 0;  ///< First index into `heights`: of the source's corners over this line, then of a and
-                                 ///< of b over each edge of the source (two entries per edge).
-        std::uint32_t cuts = 0;  ///< Bit mask of corners of the source that may be outside.
+        /// First index into `heights`: of the source's corners over this line, then of a and of b over each edge of the
+        /// source (two entries per edge).
+        std::uint32_t over = 0;
+        std::uint32_t cuts = 0;    ///< Bit mask of corners of the source that may be outside.
         std::uint32_t cut_by = 0;  ///< Bit mask of edges of the source that may have part of the line outside.
         bool is_drawn = true;      ///< False if the edge never appears in front of the source.
     };

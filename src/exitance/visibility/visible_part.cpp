@@ -116,8 +116,8 @@ Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
     return everything ? Hides::everything : Hides::some;
 }
 
-/// Approximate solid angle of a polygon (relative to x), accurate if it is small. distance_of_plane: from x to its
-/// plane, times the length of the normal used, metres.
+/// Approximate solid angle of a polygon (relative to x), accurate if it is small. distance_of_plane: distance of x from
+/// the polygon's plane, metres, with either sign.
 double rough_solid_angle(std::span<const Vec3> polygon, double distance_of_plane) {
     Vec3 twice_area, sum;
     for (std::size_t i = 2; i < polygon.size(); ++i)
@@ -249,8 +249,8 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
                       const PartLight& light, Fragments* fragments = nullptr) {
     clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    const bool in_scene =
-        !at.own.is_none() && !occluders.is_distant(source);  // surfaces on the scene's hull never occlude
+    // Surfaces on the scene's hull never occlude.
+    const bool in_scene = !at.own.is_none() && !occluders.is_distant(source);
     if (in_scene && occluders.has_nothing_inside())
         return finish(occluders, source, at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);

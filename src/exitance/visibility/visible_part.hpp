@@ -16,7 +16,7 @@ namespace exitance {
 /// A point that receives light. Its own region neither shades it nor counts as an occluder.
 struct Receiver {
     Point x;       ///< Metres.
-    Normal n;      ///< Of length 1.
+    Normal n;      ///< Unit length.
     RegionId own;  ///< The region that contains it, or none (free space).
 };
 

@@ -11,10 +11,10 @@ namespace {
 constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as zero: scenes have many aligned edges.
 /// Share of the point's height over the source: blockers that reach higher are not projected but treated as unbounded.
 constexpr double max_projected_height = 1 - 1e-9;
-constexpr std::size_t max_shadows_in_turn =
-    8;  ///< Up to this many shadows are cut from the source in turn; more are subtracted one by one.
-constexpr double min_lit_share = 1e-6;  ///< Share of the source's form factor max_projected_height which the difference
-                                        ///< of two sums is too inaccurate.
+/// Up to this many shadows are cut from the source in turn; more are subtracted one by one.
+constexpr std::size_t max_shadows_in_turn = 8;
+/// Share of the source's form factor below which the difference of two sums is too inaccurate.
+constexpr double min_lit_share = 1e-6;
 
 }  // namespace
 
@@ -243,8 +243,8 @@ void VisibleSource::clip_source(const Pyramid& pyramid, Polygon& inside, bool& i
     }
 }
 
-/// Clips the source to each pyramid in reaching_, drops those that hide nothing, and shrinks each box to the pyramid's
-/// shadow on the source (blockers as high as the point had an unbounded box). Returns false if one pyramid hides
+/// Clips the source to each pyramid in reaching_ and drops those that hide nothing. Each box shrinks to the pyramid's
+/// shadow on the source; boxes of blockers as high as the point were unbounded. Returns false if one pyramid hides
 /// everything.
 bool VisibleSource::find_shadows() {
     if (shadows_.size() < pyramids_.size()) shadows_.resize(pyramids_.size());

@@ -100,8 +100,8 @@ class VisibleSource {
     PlaneFrame frame_{{}, {0, 0, 1}};  ///< Frame of the source.
     std::vector<Vec2> corners_;        ///< Corners of the source, in that frame.
     std::vector<Body> bodies_;
-    std::vector<Vec3>
-        points_;  ///< Corners of the bodies: two coordinates in the source's plane, and the height over it.
+    /// Corners of the bodies: two coordinates in the source's plane, and the height over it.
+    std::vector<Vec3> points_;
     std::vector<Plane> faces_;
     double size_ = 0;
     Vec3 x_;    ///< The current point.

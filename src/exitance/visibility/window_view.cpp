@@ -11,8 +11,8 @@ bool looks_out_on_faces(const Occluders& occluders, PieceId source) {
     const Box& box = occluders.scene().box();
     const Point farthest{plane.n.x > 0 ? box.lo.x : box.hi.x, plane.n.y > 0 ? box.lo.y : box.hi.y,
                          plane.n.z > 0 ? box.lo.z : box.hi.z};
-    constexpr double in_plane =
-        1e-6;  // share of the scene's size, the tolerance for panes being in one plane with their neighbours
+    // Share of the scene's size, the tolerance for panes being in one plane with their neighbours.
+    constexpr double in_plane = 1e-6;
     return plane.signed_distance(farthest) < -in_plane * occluders.scene().size();
 }
 

@@ -67,8 +67,8 @@ void LinkJudge::classify_view(LinkPair& pair, std::span<const PieceId> pool, boo
     }
 }
 
-/// Tries a constant link: a small contribution may be treated as uniform over the receiver and independent of where on
-/// the source it originates, whatever the basis. Returns nothing if that is too inaccurate.
+/// Tries a constant link: a small contribution may be treated as uniform over the receiver and as independent of where
+/// on the source it originates, for every basis. Returns nothing if that is too inaccurate.
 std::optional<LinkDecision> LinkJudge::judge_as_constant(LinkPair& pair, std::span<const PieceId> pool,
                                                          const SourceLight& source, double allowed) {
     const auto [p, q] = std::pair{pair.receiver, pair.source};

@@ -14,8 +14,8 @@ struct LinkTolerance {
     /// Limit for one link: root of the receiver's area times the RMS error of the radiosity that it causes there, W/m^2
     /// m.
     double error = 0;
-    double interpolation =
-        0;  ///< Limit for all links of a receiver together: root of its area times the RMS departure, W/m^2 m.
+    /// Limit for all links of a receiver together: root of its area times the RMS departure, W/m^2 m.
+    double interpolation = 0;
     /// Weight of errors that have one sign all over a receiver: they accumulate over links and reflections, whereas
     /// others cancel.
     double systematic = 1;

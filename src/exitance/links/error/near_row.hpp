@@ -11,7 +11,7 @@ namespace exitance {
 ///
 ///     K_l(x) = int over q of  cos cos / (pi |y - x|^2)  N_l(y) dA
 ///
-/// where N_l is the basis function of node l. A box of the element that appears small from x is integrated by Gauss
+/// where N_l is the function that is 1 at node l. A box of the element that appears small from x is integrated by Gauss
 /// points; a larger one is subdivided; the last ones use the exact form factor of the box. Finally the row is scaled to
 /// the exact form factor of the whole element, so that uniform light is transported exactly. O(log(size / distance))
 /// boxes, about 10 ns per point.

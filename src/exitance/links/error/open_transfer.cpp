@@ -79,8 +79,8 @@ double OpenTransferRule::set_rows(OpenTransfer& transfer, ElementId receiver, co
 /// or dim sources even if they are near.
 double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId receiver, const SourceLight& source) const {
     if (nodes_ == 1) return 0;
-    constexpr double least =
-        1e-3;  // share of their sizes: single precision loses nodes that are nearer (given by rounding)
+    // Share of their sizes: single precision loses nodes that are nearer (given by rounding)
+    constexpr double least = 1e-3;
     const double nearest = least * (sites_.radius(receiver) + sites_.radius(source.element));
     std::array<NodeRow, 9> kernel;
     double exact = 0, rule = 0;

@@ -23,15 +23,15 @@ class BisectionMesh {
     static constexpr std::uint32_t none = 0xffffffffu;
 
     struct Node {
-        Point at;         ///< Metres.
-        Point seen_from;  ///< Point at which light is evaluated: `at`, but moved slightly inwards on borders and lines
-                          ///< of discontinuity.
+        Point at;  ///< Metres.
+        /// Point at which light is evaluated: `at`, but moved slightly inwards on borders and lines of discontinuity.
+        Point seen_from;
         std::uint32_t face = 0;  ///< A face whose closure contains the node.
     };
     struct Triangle {
         std::array<std::uint32_t, 3> corner, middle, neighbor;
-        std::array<std::array<std::uint32_t, 2>, 3>
-            quarter;  ///< Quarter points of each edge, nearer to its first and to its second corner.
+        /// Quarter points of each edge, nearer to its first and to its second corner.
+        std::array<std::array<std::uint32_t, 2>, 3> quarter;
         std::uint32_t inner = none;
         std::array<CurveOrder, 3> order;
         std::uint32_t face = 0;
@@ -76,8 +76,8 @@ class BisectionMesh {
     double nudge_;
     std::vector<Node> nodes_;
     std::vector<bool> singular_;
-    std::vector<double>
-        widest_;  ///< For a border node: the largest size of the triangles that it was evaluated from, metres.
+    /// For a border node: the largest size of the triangles that it was evaluated from, metres.
+    std::vector<double> widest_;
     std::vector<Triangle> triangles_;
     std::vector<std::uint32_t> changed_, pending_;
     std::vector<bool> is_changed_;

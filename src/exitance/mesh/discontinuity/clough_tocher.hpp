@@ -16,8 +16,8 @@ struct CloughTocher {
     /// The data that define the function. Edge i leads from corner i to corner i + 1, opposite corner i + 2.
     struct Data {
         std::array<double, 3> value;  ///< Value at corner i.
-        std::array<std::array<double, 2>, 3>
-            to_next;                   ///< Gradient at corner i times the vector to corner i + 1, and to corner i + 2.
+        /// Gradient at corner i times the vector to corner i + 1, and to corner i + 2.
+        std::array<std::array<double, 2>, 3> to_next;
         std::array<double, 3> across;  ///< Gradient at the middle of edge i times the vector to the opposite corner.
     };
     explicit CloughTocher(const Data& data);

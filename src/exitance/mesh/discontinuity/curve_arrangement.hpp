@@ -13,8 +13,9 @@ struct FlatCurve {
     CurveOrder order = CurveOrder::d1;
     CurveCause cause = CurveCause::contact;
     RegionId source;
-    double gain = 0;  ///< Upper bound of the change of light across it, W/m^2. If there are too many curves, those with
-                      ///< the largest gain are kept.
+    /// Upper bound of the change of light across it, W/m^2. If there are too many curves, those with the largest gain
+    /// are kept.
+    double gain = 0;
 };
 
 /// Prepares curves for cutting. Lines nearer than `tolerance` become one. Of overlapping segments the strongest is

@@ -11,8 +11,8 @@
 namespace exitance {
 
 /// Binary trees of convex polygons, one tree per piece of a surface, whose cuts follow discontinuity lines. A node is
-/// cut along the line of the lowest order that crosses it (among equals, the one with the most even halves), or across
-/// its longer side if no line is left. Source: [Lischinski93].
+/// cut along the line of the lowest order that crosses it; among equals, along the one with the most even halves. If no
+/// line is left it is cut across its longer side. Source: [Lischinski93].
 class LineTree {
   public:
     static constexpr std::uint32_t none = 0xffffffffu;
@@ -22,8 +22,8 @@ class LineTree {
         std::uint32_t parent = none, first_child = none;  ///< The two children are consecutive.
         std::uint32_t root = 0;
         std::vector<Vec2> outline;  ///< Convex, counter-clockwise, in the region's plane coordinates, metres.
-        std::vector<FlatCurve>
-            curves;   ///< Curves that cross the interior. For inner nodes they have been passed on to the children.
+        /// Curves that cross the interior. For inner nodes they have been passed on to the children.
+        std::vector<FlatCurve> curves;
         Vec2 normal;  ///< Normal of the cut; the first child is where normal . p <= offset.
         double offset = 0;
         double area = 0;        ///< m^2

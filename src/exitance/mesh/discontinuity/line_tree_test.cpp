@@ -22,7 +22,7 @@ TEST(LineTree, CutsAlongTheStrongestLineThenTheMostEven) {
                                         curve({0, 0.4}, {1, 0.4}, CurveOrder::d1)};
     const std::uint32_t root = tree.add_root(RegionId(0), square, curves);
     ASSERT_TRUE(tree.split(root));
-    // Of the two lines of order 1, the cut at 0.4 is more even than that at 0.2; the even line of order 2 comes later.
+    // The cut at 0.4 is more even than the other one of order 1, at 0.2; the even line of order 2 comes later.
     EXPECT_NEAR(std::abs(tree.nodes()[root].offset), 0.4, 1e-12);
     const std::uint32_t child = tree.nodes()[root].first_child;
     EXPECT_NEAR(tree.nodes()[child].area + tree.nodes()[child + 1].area, 1, 1e-12);

@@ -49,15 +49,15 @@ struct SixNodeMesh {
     std::vector<std::array<float, bands>> values;     ///< Per node.
     std::vector<std::array<std::uint32_t, 6>> nodes;  ///< Per triangle; counter-clockwise seen from the front.
     std::vector<RegionId> region;                     ///< Per triangle.
-    std::vector<std::array<CurveOrder, 3>>
-        edge_order;                   ///< Per triangle; entry i is the edge from corner i to the next.
+    /// Per triangle; entry i is the edge from corner i to the next.
+    std::vector<std::array<CurveOrder, 3>> edge_order;
     std::vector<ShadowClass> shadow;  ///< Per triangle.
     std::vector<DiscontinuityCurve> curves;
     // For Clough-Tocher elements; otherwise empty.
     std::vector<std::array<Slope, 3>> gradients;            ///< Gradient along x, y, z, within the region's plane.
     std::vector<std::array<std::uint32_t, 3>> gradient_of;  ///< Per triangle: index of the gradient at each corner.
-    std::vector<std::array<Slope, 3>>
-        slopes;  ///< Per triangle: slope at the middle of edge i, perpendicular to it, inwards.
+    /// Per triangle: slope at the middle of edge i, perpendicular to it, inwards.
+    std::vector<std::array<Slope, 3>> slopes;
 
     bool is_clough_tocher() const { return !slopes.empty(); }
     CloughTocher element(std::uint32_t triangle, std::size_t band) const;

@@ -37,8 +37,8 @@ class EdgeNumbers {
 std::uint16_t to_half(double value) {
     const unsigned sign = std::signbit(value) ? 0x8000 : 0;
     const double size = std::abs(value);
-    if (size >= 65520)
-        return static_cast<std::uint16_t>(sign | 0x7c00);  // nearer to infinity than to the largest half float
+    // Nearer to infinity than to the largest half float.
+    if (size >= 65520) return static_cast<std::uint16_t>(sign | 0x7c00);
     const int exponent = size > 0 ? std::max(std::ilogb(size), -14) : -14;
     const int steps = static_cast<int>(std::nearbyint(std::ldexp(size, 10 - exponent)));
     return static_cast<std::uint16_t>(sign | static_cast<unsigned>(1024 * (exponent + 14) + steps));
@@ -64,8 +64,8 @@ Vec2 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
 }
 
 constexpr double max_uint16 = 65535;
-constexpr double rounding =
-    1 / max_uint16;  ///< Share of the box: one step of the 16-bit coordinates; corners move by at most half a step.
+/// Share of the box: one step of the 16-bit coordinates; corners move by at most half a step.
+constexpr double rounding = 1 / max_uint16;
 
 }  // namespace
 

@@ -16,7 +16,7 @@ struct LightLayers {
         Spectrum colour;           ///< Light per unit of the layer's value.
         LightLayer light;
     };
-    /// The emitting regions, each a source of its own. The last entry, none, stands for all other emitters together.
+    /// The emitting regions, each a source of its own. The last entry, none, represents all other emitters together.
     std::vector<RegionId> sources;
     std::vector<Sheet> sheets;  ///< Sorted by region, then by source.
 

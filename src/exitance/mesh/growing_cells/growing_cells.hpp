@@ -16,8 +16,8 @@ struct GrowingCellsOptions {
     std::size_t outputs = 0;    ///< Number of output values per unit; 0: none is learned.
     double winner_rate = 0.06;
     double neighbour_rate = 0.002;
-    double output_rate =
-        0.2;                  ///< Rate of the delta rule, divided by the activations' sum of squares if that exceeds 1.
+    /// Rate of the delta rule, divided by the activations' sum of squares if that exceeds 1.
+    double output_rate = 0.2;
     double decay = 0.05;      ///< Share of its resource that a unit loses between two insertions.
     double width_share = 1;   ///< Width of a unit's Gaussian as a share of the mean length of its edges.
     bool normalised = false;  ///< True if activations are divided by their sum.
@@ -79,10 +79,9 @@ class GrowingCells {
 
   private:
     struct Node {
-        std::uint32_t first = 0,
-                      count =
-                          0;  ///< Leaf: range in `items_`. Otherwise: count = 0, children at `first` and `first` + 1.
-        double reach = 0;     ///< Three times the largest width below.
+        /// Leaf: range in `items_`. Otherwise: count = 0, children at `first` and `first` + 1.
+        std::uint32_t first = 0, count = 0;
+        double reach = 0;  ///< Three times the largest width below.
     };
 
     double distance_squared(Unit u, std::span<const double> x) const {
@@ -124,11 +123,11 @@ class GrowingCells {
     GrowingCellsOptions options_;
     CellComplex complex_;
     std::vector<double> position_, output_, resource_, width_;
-    std::vector<std::uint32_t>
-        signals_;  ///< Samples won since the last remove_idle(); flag `young`: inserted after it.
+    /// Samples won since the last remove_idle(); flag `young`: inserted after it.
+    std::vector<std::uint32_t> signals_;
     static constexpr std::uint32_t young = 0x80000000u;
-    double increment_ =
-        1;  ///< Current value of one unit of resource: it grows so that stored resources need not decay.
+    /// Current value of one unit of resource: it grows so that stored resources need not decay.
+    double increment_ = 1;
 
     // The search index: boxes around the units where they were when it was built, valid up to the largest move since
     // (drift_). Units added later are in tail_.
