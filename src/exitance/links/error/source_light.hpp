@@ -26,7 +26,8 @@ struct SourceLight {
         for (std::size_t l = 0; l < nodes; ++l) sum += row[l] * light[l];
         return sum;
     }
-    /// Unoccluded transport to x from each node (irradiance for b = 1 there), by the basis's rule: w_l A cos cos / (pi r^2).
+    /// Unoccluded transport to x from each node (irradiance for b = 1 there), by the basis's rule: w_l A cos cos / (pi
+    /// r^2).
     NodeRow kernel_row(const Point& x, const Normal& n) const;
     /// Like kernel_row(), from a single point y of the source for its whole area.
     double kernel_from(const Point& y, const Point& x, const Normal& n) const;
