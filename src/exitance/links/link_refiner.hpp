@@ -112,7 +112,7 @@ class LinkRefiner {
     std::vector<FoundLink> links_;
     std::vector<float> blocks_, shadows_;
     NodalField judged_;         ///< The light by which links were last judged; unused after keep_light().
-    double interpolation_ = 0;  ///< Squared.
+    double interpolation_ = 0;  ///< Squared interpolation error.
     double link_error_ = 0, light_ = 0, open_light_ = 0;
     std::size_t rays_ = 0, form_factors_ = 0;
     bool begun_ = false, limited_ = false, light_stays_ = false;

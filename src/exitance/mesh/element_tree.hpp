@@ -187,10 +187,11 @@ class ElementTree {
         Field<ElementId, ElementId> parent;
         Field<ElementId, RegionId> region;
         Field<ElementId, double> area;
-        Field<ElementId, std::uint32_t>
-            cell;  ///< Index of a cell: its domain is [first_corner[cell], first_corner[cell + 1])
+        /// Index of a cell; `none` for other elements. Its domain is corners[first_corner[cell], first_corner[cell +
+        /// 1]).
+        Field<ElementId, std::uint32_t> cell;
         std::vector<std::uint32_t> first_corner = {0};
-        std::vector<Vec2> corners;  ///< in `corners`.
+        std::vector<Vec2> corners;
         std::vector<LineCut> lines;
         std::vector<ElementId> roots;
     };

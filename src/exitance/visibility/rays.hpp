@@ -13,7 +13,7 @@ namespace exitance {
 struct RayHit {
     SurfaceId surface;                                          ///< None if nothing is hit.
     RegionId region;                                            ///< The surface's region.
-    double distance = std::numeric_limits<double>::infinity();  ///< In lengths of the ray's direction.
+    double distance = std::numeric_limits<double>::infinity();  ///< In units of the length of the ray's direction.
     bool front = false;                                         ///< True if the front of the surface is hit.
     std::int32_t mirror = -1;  ///< Index of the pane that reflected the ray before the hit; negative if none.
 };
