@@ -96,7 +96,7 @@ class ElementTree {
     const std::vector<ElementId>& roots() const { return content_->roots; }
     IdRange<ElementId> children(ElementId e) const { return node(e).children; }  ///< Empty for a leaf.
     bool is_leaf(ElementId e) const { return node(e).children.empty(); }
-    Cut way(ElementId e) const { return node(e).way; }  ///< How it was split; none for a leaf.
+    Cut way(ElementId e) const { return node(e).way; }  ///< How an element was split; none for a leaf.
     double ratio(ElementId e) const {
         return node(e).ratio;
     }  ///< Position of the cut, for splits across one direction.
@@ -110,8 +110,8 @@ class ElementTree {
     }  ///< Area of its domain, m^2.
     const CutLine& line(ElementId e) const {
         return content_->lines[node(e).line].line;
-    }  ///< For an element split along a line.
-    /// For an element split into a fan.
+    }  ///< Line along which it was split (way(e) is Cut::line).
+    /// The fan into which an element was split (way(e) is Cut::fan).
     FanView fan(ElementId e) const {
         const std::uint32_t i = node(e).line, first = cuts_->fans[i].first_place;
         const std::size_t end = i + 1 < cuts_->fans.size() ? cuts_->fans[i + 1].first_place : cuts_->places.size();
