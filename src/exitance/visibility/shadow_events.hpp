@@ -81,7 +81,7 @@ class ShadowEventFinder {
 
     std::size_t wedges = 0;       ///< Number of wedges examined so far.
     std::size_t plane_tests = 0;  ///< Number of listed pieces tested against a wedge's plane.
-    std::size_t too_weak = 0;     ///< Number of wedges of D2 events skipped because their gain is too small.
+    std::size_t too_weak = 0;     ///< Number of wedges of D2 events, and of their stretches, skipped as too weak.
 
   private:
     /// A fan of sight lines from `apex` through base + t along, t in [first, last]. `beyond`: the lines end behind the
