@@ -71,7 +71,7 @@ void ClusterLinks::mark(Field<ElementId, std::uint8_t>& marked) const {
 
 namespace {
 
-/// E of every band on a plane at right angles to the way of the light, and that way, from the source to x.
+/// Irradiance per band on a plane perpendicular to the direction of light, and that direction, from the source to x.
 struct Arrival {
     Spectrum E;
     Vec3 w;

@@ -7,13 +7,13 @@
 
 namespace exitance {
 
-/// A way for light between two bodies, at least one of them a cluster, receiver first.
+/// A transport link between two bodies, at least one of which is a cluster; receiver first.
 struct ClusterLink {
     Body receiver, source;
-    float visible = 1;  ///< Share of what passes between them that nothing stops.
+    float visible = 1;  ///< Unoccluded share of the light between them.
 };
 
-/// Elements and clusters as bodies far away: a middle, a ball about it, and vector areas.
+/// Elements and clusters seen from far away: a centre, a bounding ball, and vector areas.
 class Bodies {
   public:
     Bodies(const LinkSites& sites, const ClusterTree& clusters) : sites_(&sites), clusters_(&clusters) {}
@@ -30,7 +30,7 @@ class Bodies {
     bool is_leaf(Body b) const { return !b.is_cluster() && elements().is_leaf(b.element()); }
     std::vector<Body> parts(Body b) const;
 
-    /// Input polygon that it begins with, for traces.
+    /// The region of the first element in the body, for traces.
     RegionId region(Body b) const;
 
   private:
@@ -38,42 +38,44 @@ class Bodies {
     const ClusterTree* clusters_;
 };
 
-/// For each band, the sum of A b n over the members of a facing, W: what it sends towards w is that times w / pi.
+/// Vector power of a facing: per band, the sum of A b n over its members, W. The intensity towards w is its component
+/// along w, divided by pi.
 using VectorPower = std::array<Vec3, bands>;
 
 VectorPower power_of(const LinkSites& sites, ElementId e, const NodalField& b);
 
-/// What clusters send, by facing, from the light of the elements. O(pieces + facings).
+/// Vector powers of all facings of the clusters, from the radiosity b of the elements. O(pieces + facings).
 Field<FacingId, VectorPower> find_vector_powers(const Bodies& bodies, const NodalField& b);
 
 /// All links to or from clusters.
 ///
-/// From a facing of the source, whose vector power is v, light of intensity v.w / pi goes towards w, where its vector
-/// area faces w; it arrives over the distance r as
+/// A facing of the source with vector power v emits the intensity v.w / pi towards w, if its vector area faces w. At
+/// distance r the irradiance is
 ///
 ///     E = V v.w / (pi r^2)
 ///
-/// on a plane at right angles to w. A cluster that receives holds E w by facing, which comes to each member as
-/// -w.n. Elements that receive take it at each node. Linear in b. Source: [Willmott99]. O(links) and 12 bytes each.
+/// on a plane perpendicular to w. A receiving cluster stores E w per facing, which contributes -E w.n to each member
+/// with normal n. A receiving element evaluates it at each node. Linear in b. Source: [Willmott99]. O(links) time, 12
+/// bytes per link.
 class ClusterLinks {
   public:
-    /// `links` in any order.
+    /// links  in any order
     ClusterLinks(const Bodies& bodies, std::vector<ClusterLink> links);
 
     std::size_t size() const { return links_.size(); }
     std::size_t memory_bytes() const;
 
-    /// Adds what arrives by these links to E of every element that they lead to; what clusters receive, to their
-    /// pieces'.
+    /// Adds to E what these links contribute, for b at the sources: to each receiving element, and for receiving
+    /// clusters to their pieces.
     void add_to(NodalField& E, const NodalField& b) const;
 
-    /// Marks the elements that links lead to or come from.
+    /// Marks the elements that are receivers or sources of links.
     void mark(Field<ElementId, std::uint8_t>& marked) const;
 
   private:
     Bodies bodies_;
-    std::vector<ClusterLink> links_;  ///< By receiver, then by source.
-    std::vector<std::size_t> first_;  ///< Row i, one receiver, stands in links_[first_[i], first_[i + 1]).
+    std::vector<ClusterLink> links_;  ///< Sorted by receiver, then by source.
+    std::vector<std::size_t> first_;  ///< Row i (one receiver) is links_[first_[i], first_[i + 1]).
 };
 
 }  // namespace exitance

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// The links of a scene and its clusters whose elements reflect b(x), refined until their errors are below `tolerance`.
+/// Links of a scene with clusters, whose elements reflect b(x); refined until each error is below `tolerance`.
 struct Clustered : LitElements {
     ClusterTree clusters;
     ClusterRefiner far;
@@ -37,11 +37,11 @@ struct Clustered : LitElements {
         E.push();
         return E;
     }
-    /// What the links say of themselves, as a mean over the surfaces of reflectance `rho`.
+    /// Error estimate of the links, as a mean over the surfaces of reflectance `rho`.
     double estimate(double rho) const { return std::hypot(near.error(), far.error()) / std::sqrt(stage.area) / rho; }
 };
 
-/// A closed room of 4 m x 4 m x 2 m from the place given on, 24 cubes of 10 cm hanging in it.
+/// A closed room of 4 m x 4 m x 2 m at the given position, with 24 cubes of 10 cm in the air.
 void add_furnished_room(SceneDescription& d, const Point& at) {
     const auto add_box = [&](const Point& from, const Vec3& size, bool inwards) {
         const auto first = static_cast<std::uint32_t>(d.points.size());
@@ -71,7 +71,7 @@ Scene furnished(const std::vector<Point>& rooms) {
     return std::move(*checked.scene);
 }
 
-TEST(ClusterLinks, OfAClosedRoomOfEvenLightBringOneEverywhere) {
+TEST(ClusterLinks, GiveOneEverywhereInAClosedRoomOfUniformLight) {
     const Scene room = furnished({{0, 0, 0}});
     for (const HierarchyBasis kind : {HierarchyBasis::haar, HierarchyBasis::multiwavelet2}) {
         const Clustered of(room, kind, 0.01, [](const Point&) { return 1.0; });
@@ -83,11 +83,11 @@ TEST(ClusterLinks, OfAClosedRoomOfEvenLightBringOneEverywhere) {
                 sum += of.tree.area(e) * of.sites.weight(e, k) * std::pow(E.node(e, k)[0] - 1, 2);
         const double error = std::sqrt(sum / of.stage.area);
         EXPECT_LT(error, of.estimate(0.8)) << static_cast<int>(kind);
-        EXPECT_LT(error, 0.1) << static_cast<int>(kind);  // of 150 links a receiver, errors of 0.01 each
+        EXPECT_LT(error, 0.1) << static_cast<int>(kind);  // of 150 links per receiver, with errors of 0.01 each
     }
 }
 
-/// A x E on all pieces of a cluster, summed: by a link to it, and by each pair of their pieces, middle to middle.
+/// Sum of A x E over all pieces of a cluster: by a link to it, and by links between the centres of each pair of pieces.
 std::pair<double, double> sums(const Clustered& of, ClusterId receiver, ClusterId source) {
     const Bodies bodies(of.sites, of.clusters);
     NodalField E(of.sites);
@@ -108,7 +108,7 @@ std::pair<double, double> sums(const Clustered& of, ClusterId receiver, ClusterI
     return {sum, expected};
 }
 
-TEST(ClusterLinks, BringWhatTheirPiecesDoFromAfar) {
+TEST(ClusterLinks, AgreeWithTheirPiecesInTheFarField) {
     const Scene room = furnished({{0, 0, 0}});
     const Clustered of(room, HierarchyBasis::haar, 0.02, [](const Point& x) { return 1 + x.x; });
     std::vector<ClusterId> lowest;
@@ -123,12 +123,12 @@ TEST(ClusterLinks, BringWhatTheirPiecesDoFromAfar) {
             const double reach = of.clusters.radius(source) + of.clusters.radius(receiver);
             if (reach > 0.15 * r) continue;
             const auto [sum, expected] = sums(of, receiver, source);
-            // As much as the bodies are large beside their distance, which is what links are judged by.
+            // The relative error is at most the ratio of the bodies' size to their distance, by which links are judged.
             EXPECT_NEAR(sum, expected, reach / r * expected);
         }
 }
 
-TEST(ClusterLinks, OfALitRoomBringNothingThroughAWallOfAMillimetre) {
+TEST(ClusterLinks, LeakNothingThroughAWallOfAMillimetre) {
     const Scene rooms = furnished({{0, 0, 0}, {4.001, 0, 0}});
     for (const HierarchyBasis kind : {HierarchyBasis::haar, HierarchyBasis::multiwavelet2}) {
         const Clustered of(rooms, kind, 0.01, [](const Point& x) { return x.x < 4.0005 ? 1.0 : 0.0; });
@@ -140,7 +140,7 @@ TEST(ClusterLinks, OfALitRoomBringNothingThroughAWallOfAMillimetre) {
     }
 }
 
-TEST(Rooms, AreToldApartByTheWallBetweenThemAlone) {
+TEST(Rooms, AreSeparatedByTheWallBetweenThem) {
     const Scene rooms = furnished({{0, 0, 0}, {4.001, 0, 0}});
     const Stage stage(rooms);
     const ElementTree tree = stage.make_elements({0.5, 0});
@@ -152,18 +152,19 @@ TEST(Rooms, AreToldApartByTheWallBetweenThemAlone) {
     EXPECT_LT(*std::max_element(room.begin(), room.end()), 2u);
 }
 
-TEST(ClusterLinks, GrowNoFasterThanTheScene) {
+TEST(ClusterLinks, GrowLinearlyWithTheScene) {
     std::array<std::size_t, 2> links{};
     for (std::size_t i = 0; i < 2; ++i) {
         const Scene scene = built_scene("complex", {{"m", i == 0 ? "10" : "40"}});
         const Clustered of(scene, HierarchyBasis::haar, 0.02 * (i == 0 ? 1 : 2), [](const Point&) { return 1.0; });
         links[i] = of.far.size() + of.near.size();
     }
-    // Four times as much in a room of four times the floor; a tolerance relative to all light doubles. k^2 would be 16.
+    // A room of four times the floor area contains four times as many objects, and a tolerance relative to all light
+    // doubles. k^2 would be 16.
     EXPECT_LT(links[1], 5.0 * static_cast<double>(links[0]));
 }
 
-TEST(ClusterLinks, AreTheSameOnAnyNumberOfThreads) {
+TEST(ClusterLinks, DoNotDependOnTheNumberOfThreads) {
     const Scene room = furnished({{0, 0, 0}});
     std::vector<double> before;
     for (const int count : {1, 2}) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t block_size = 32;
 
-/// A sum over the pieces of each facing, from pieces upwards.
+/// Sums a term per piece over the pieces of each facing, bottom-up.
 template <class Term>
 Field<FacingId, double> sum_over_pieces(const Bodies& bodies, const Term& term) {
     const ClusterTree& clusters = bodies.clusters();
@@ -27,17 +27,17 @@ Field<FacingId, double> sum_over_pieces(const Bodies& bodies, const Term& term) 
 
 }  // namespace
 
-/// What a block of pairs came to.
+/// The result of judging a block of pairs.
 struct ClusterRefiner::Block {
     std::vector<Found> links, cut;
     std::vector<LinkPair> pairs;
     std::size_t rays = 0;
 };
 
-/// Looks at pairs, and decides. One a thread.
+/// Judges pairs. One object per thread.
 class ClusterRefiner::Judge {
   public:
-    /// What all of them share.
+    /// Data shared by all threads.
     struct Light {
         Light(const Bodies& bodies, const NodalField& b, const LinkTolerance& tolerance)
             : powers(find_vector_powers(bodies, b)),
@@ -46,7 +46,7 @@ class ClusterRefiner::Judge {
               importance(sum_over_pieces(
                   bodies, [&](ElementId e) { return bodies.elements().area(e) * tolerance.weight(e); })) {}
 
-        /// How much of the light that falls on an element counts, by mean bands.
+        /// Share of the light on an element that counts, mean over bands.
         static double weight(const Bodies& bodies, ElementId e) {
             return mean(light_weight(bodies.sites().stage().scene.material(bodies.elements().region(e))));
         }
@@ -71,10 +71,10 @@ class ClusterRefiner::Judge {
         const double extent = tolerance_.systematic * reach / r * light.most;
         if (extent > allowed) return larger_part(R, S);
         const bool tiny = light.most < calibrated::weak_link_share * allowed;
-        constexpr unsigned few = 4, enough = 16;
-        const unsigned wanted = tiny ? few : enough;
+        constexpr unsigned min_rays = 4, max_rays = 16;
+        const unsigned wanted = tiny ? min_rays : max_rays;
         if (wanted > pair.rays) cast(pair, wanted);
-        // As many open as closed ones are half a ray short of certainty.
+        // Half a ray is added to both open and blocked rays, so that few rays do not give certainty.
         const double open = (pair.open + 0.5) / (pair.rays + 1), hidden = light.most * std::sqrt(open * (1 - open));
         if (hidden > allowed) return larger_part(R, S);
         pair.squared_error = extent * extent + hidden * hidden;
@@ -85,23 +85,24 @@ class ClusterRefiner::Judge {
     std::size_t rays() const { return rays_; }
 
   private:
-    /// Of those that can be cut. Elements are cut for their light's sake later, and rather left whole until then.
+    /// Chooses the larger body that can be split. Clusters count as four times as large, because elements can be split
+    /// later, when the accuracy of their light requires it.
     Verdict larger_part(Body R, Body S) const {
-        constexpr double whole = 4;
+        constexpr double cluster_weight = 4;
         const auto size = [&](Body b) {
-            return bodies_.is_leaf(b) ? 0 : bodies_.radius(b) * (b.is_cluster() ? whole : 1);
+            return bodies_.is_leaf(b) ? 0 : bodies_.radius(b) * (b.is_cluster() ? cluster_weight : 1);
         };
         return size(R) >= size(S) ? Verdict::cut_receiver : Verdict::cut_source;
     }
 
-    /// Light in the open: root of the integral of the squared radiosity that it causes, with importance, at most, W/m^2
-    /// m; and its power.
+    /// Unoccluded light: upper bound of the root of the integral of the squared radiosity that it causes, weighted with
+    /// importance, W/m^2 m; and its power.
     struct Arrival {
         double most = 0, power = 0;
     };
 
-    /// `w` leads from the source to the receiver; `slack`: how much a cosine between any two of their points may be
-    /// larger than the one between their middles.
+    /// w  direction from the source to the receiver
+    /// slack  maximum difference of a cosine between any two of their points from that between their centres
     Arrival arrival(Body R, Body S, const Vec3& w, double slack) const {
         double sent = 0;
         const auto send = [&](const Vec3& area, double spread, const VectorPower& v) {
@@ -170,12 +171,13 @@ class ClusterRefiner::Judge {
         return bodies_.sites().stage().scene.regions()[p.region].plane.n;
     }
 
-    /// Rays between points that face each other, anywhere on the members; each counts as much as the light on its way.
+    /// Casts rays between random points of the members that face each other. Each ray is weighted with the transport
+    /// along it.
     void cast(Found& pair, unsigned wanted) {
         RandomStream random(tolerance_.seed, Stream::visibility, pair.link.receiver.value(), pair.link.source.value());
         std::vector<SurfacePoint> from, to;
         std::vector<double> share;
-        constexpr unsigned attempts = 4;  // for each
+        constexpr unsigned attempts = 4;  // per ray
         for (unsigned i = 0; i < attempts * wanted && from.size() < wanted; ++i) {
             const SurfacePoint x = any_point(pair.link.receiver, random), y = any_point(pair.link.source, random);
             const Vec3 d = y.at - x.at;
@@ -193,7 +195,7 @@ class ClusterRefiner::Judge {
             if (!blocked[i]) open += share[i], ++pair.open;
         }
         pair.link.visible = all > 0 ? static_cast<float>(open / all) : 1;
-        // Of few rays that face each other, what they show is worth as much less.
+        // If fewer point pairs than requested face each other, scale the number of open rays accordingly.
         if (!from.empty())
             pair.open = pair.open * wanted / static_cast<unsigned>(from.size());
         else
@@ -217,7 +219,7 @@ std::vector<LinkPair> ClusterRefiner::refine(const NodalField& b, const LinkTole
     const Judge::Light light(bodies_, b, tolerance);
     std::vector<LinkPair> pairs;
     while (!open.empty()) {
-        // Once a stop is asked for, what is left is linked as soon as that can be.
+        // After a stop request, link the remaining pairs as soon as possible.
         LinkTolerance now = tolerance;
         if (stop.requested()) now.error = HUGE_VAL;
         std::vector<Block> blocks((open.size() + block_size - 1) / block_size);

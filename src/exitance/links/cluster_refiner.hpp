@@ -8,40 +8,40 @@
 
 namespace exitance {
 
-/// Finds which light may pass between clusters. The whole scene begins as linked to itself; of a pair that is not good
-/// enough the larger part is cut; pairs of elements are left to the LinkRefiner. So pairs of far and dim bodies are
-/// never judged: O(k log k) pairs in place of k^2.
+/// Finds the links between clusters. It starts with a single link of the whole scene to itself. If a pair is not
+/// accurate enough, the larger body is split; pairs of two elements are left to the LinkRefiner. Pairs of distant and
+/// dim bodies are thus never examined one by one: O(k log k) pairs instead of k^2.
 ///
-/// The error of a link is what it brings (bounded, cosines taken at their largest over both balls) times how large the
-/// bodies are beside their distance, and what rays between points of their members leave open of their visibility: as
-/// much as all of it where some members see each other and others do not. So clusters that hold both sides of a wall
-/// are cut as long as what would leak matters. Source: [Smits94].
+/// The error of a link has two parts. The first is an upper bound of its contribution (with the largest cosines over
+/// both balls) times the ratio of the bodies' size to their distance. The second is the uncertainty of visibility from
+/// rays between points of their members: as large as the whole contribution if some members see each other and others
+/// do not. Clusters that contain both sides of a wall are thus split as long as the leaking light matters. Source:
+/// [Smits94].
 class ClusterRefiner {
   public:
     ClusterRefiner(const LinkSites& sites, const ClusterTree& clusters) : bodies_(sites, clusters) {}
 
-    /// Refines the links of clusters that it found before. Returns the pairs of elements that are to be linked, new
-    /// ones only.
+    /// Refines the cluster links found so far. Returns the pairs of elements that must be linked, new ones only.
     std::vector<LinkPair> refine(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop);
 
-    /// Root of areas times squared errors, W/m^2 m.
+    /// Total error of the links: root of the sum of areas times squared errors, W/m^2 m.
     double error() const { return error_; }
-    double light() const { return light_; }  ///< Flux that all links bring, mean of the bands, W.
+    double light() const { return light_; }  ///< Flux of all links, mean of the bands, W.
     std::size_t size() const { return links_.size(); }
     std::size_t rays() const { return rays_; }
     ClusterLinks make_links() const;
 
-    /// Writes or reads what was found so far, for checkpoints.
+    /// Writes or reads the state of the refinement, for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
         a(links_, rays_, begun_);
     }
 
   private:
-    /// A link, or a pair that is not decided yet.
+    /// A link, or a pair that is still undecided.
     struct Found {
         ClusterLink link;
-        unsigned rays = 0, open = 0;  ///< Cast so far, and how many of them met nothing.
+        unsigned rays = 0, open = 0;  ///< Rays cast so far, and how many of them were unoccluded.
         double squared_error = 0, light = 0;
     };
     struct Block;

@@ -4,10 +4,10 @@
 
 namespace exitance {
 
-/// A link of a hierarchy as a solution's file keeps it, for people.
+/// A link of a hierarchy in the form stored in a solution file, for inspection.
 struct KeptLink {
     ElementId receiver, source;
-    float form_factor = 0;  ///< From the receiver to the source, visibility included; the mean over the receiver.
+    float form_factor = 0;  ///< From the receiver to the source, including visibility; mean over the receiver.
 };
 
 }  // namespace exitance

@@ -9,9 +9,9 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t block_size = 8;  // receivers a task
+constexpr std::size_t block_size = 8;  // receivers per task
 
-/// What the leaves of one task are linked to.
+/// The links of the leaves of one task.
 struct Block {
     std::vector<Link> links;
     std::vector<float> blocks;
@@ -19,7 +19,7 @@ struct Block {
     std::size_t rays = 0, form_factors = 0;
 };
 
-/// What each piece shows of itself to one of them, and what may stand in between.
+/// Views between one receiving piece and all pieces, with possible occluders.
 class PieceViews {
   public:
     explicit PieceViews(const LinkSites& sites) : sites_(sites), from_(sites.tree().roots().size()) {}
@@ -54,7 +54,7 @@ class PieceViews {
     Shaft shaft_;
 };
 
-/// Leaves and the pieces that they lie on, piece by piece.
+/// A leaf and its piece; sorted by piece.
 struct LeafOfPiece {
     ElementId leaf, root;
 };
@@ -99,7 +99,7 @@ void link_leaf(const LinkSites& sites, const LeafOfPiece& receiver, std::span<co
 LeafLinks link_leaves(const LinkSites& sites, const NodalField& b, const LinkTolerance& tolerance,
                       const StopRequest& stop) {
     const std::vector<LeafOfPiece> leaves = leaves_by_piece(sites.tree());
-    const Field<ElementId, double> roughness(sites.tree().size(), 0.0);  // leaves are what they are
+    const Field<ElementId, double> roughness(sites.tree().size(), 0.0);  // leaves are exact
     std::vector<Block> found((leaves.size() + block_size - 1) / block_size);
     parallel_for(
         found.size(), 1,

@@ -13,7 +13,7 @@ namespace {
 constexpr HierarchyBasis orders[] = {HierarchyBasis::haar, HierarchyBasis::multiwavelet2,
                                      HierarchyBasis::multiwavelet3};
 
-/// A scene whose elements reflect b(region, x), and what their leaves gather of it.
+/// A scene whose elements reflect b(region, x), and the light that its leaves gather.
 struct Gathered {
     Stage stage;
     ElementTree tree;
@@ -43,7 +43,7 @@ struct Gathered {
         return link_leaves(sites, b, {.error = tolerance}, never);
     }
 
-    /// RMS over `leaves` of the elements' functions less exact(e, x), at 4 x 4 places each.
+    /// RMS over `leaves` of the elements' functions minus exact(e, x), at 4 x 4 points each.
     template <class Function>
     double error(const std::vector<ElementId>& leaves, const Function& exact) const {
         double sum = 0, area = 0;
@@ -67,7 +67,7 @@ Scene two_plates() {
 
 }  // namespace
 
-TEST(LeafLinks, HaveTheOrderOfTheirElements) {
+TEST(LeafLinks, ConvergeWithTheOrderOfTheirElements) {
     const Scene plates = two_plates();
     for (std::size_t i = 0; i < 3; ++i) {
         std::array<double, 2> error{};
@@ -80,18 +80,18 @@ TEST(LeafLinks, HaveTheOrderOfTheirElements) {
                 return sum;
             });
         }
-        // The error of functions of order M falls by 2^M as edges are halved; the coarser mesh is not quite asymptotic.
+        // The error of functions of order M falls by 2^M if edges are halved; the coarser mesh is not quite asymptotic.
         const double rate = std::log2(error[0] / error[1]);
         EXPECT_NEAR(rate, static_cast<double>(i + 1), 0.15) << error[0] << " " << error[1];
     }
 }
 
-TEST(LeafLinks, OfAClosedBoxOfEvenLightBringOneEverywhere) {
+TEST(LeafLinks, GiveOneEverywhereInAClosedBoxOfUniformLight) {
     const Scene box = box_scene(1, 2, 3, 0.8, 1);
     for (const HierarchyBasis kind : orders) {
         const Gathered g(box, kind, {0.7, 2}, 1e-6, [](RegionId, const Point&) { return 1.0; });
         const double error = g.error(g.tree.leaves(), [](ElementId, const Point&) { return 1.0; });
-        // A link's rule may be off by a fifth of the tolerance; some hundred links add up.
+        // A link's rule may be wrong by a fifth of the tolerance; about a hundred links add up.
         EXPECT_LT(error, 1e-4) << static_cast<int>(kind);
         EXPECT_EQ(g.found.open_share, 1);
     }
@@ -116,12 +116,12 @@ TEST(LeafLinks, AgreeWithExactLightBehindOccluders) {
             for (std::size_t k = 0; k < lit.sites.nodes(); ++k) found += lit.sites.weight(e, k) * lit.E.node(e, k)[0];
             sum += lit.tree.area(e) * exact * exact, error += lit.tree.area(e) * (found - exact) * (found - exact);
         }
-        // RMS; 16 to 256 rays a pair in the penumbrae, which are a tenth of what is lit.
+        // RMS; 16 to 256 rays per pair in the penumbrae, which are a tenth of the lit area.
         EXPECT_LT(std::sqrt(error / sum), 0.05) << static_cast<int>(kind);
     }
 }
 
-TEST(LeafLinks, AreNoMoreMadeOnceAStopIsAskedFor) {
+TEST(LeafLinks, AreNotMadeAfterAStopRequest) {
     const Scene box = box_scene(1, 2, 3, 0.8, 1);
     const Gathered g(box, HierarchyBasis::multiwavelet2, {0.7, 0}, 1e-3, [](RegionId, const Point&) { return 1.0; });
     StopRequest stop;
@@ -131,7 +131,7 @@ TEST(LeafLinks, AreNoMoreMadeOnceAStopIsAskedFor) {
     EXPECT_EQ(stopped.links.size(), 0u);
 }
 
-TEST(LeafLinks, AreTheSameOnAnyNumberOfThreads) {
+TEST(LeafLinks, DoNotDependOnTheNumberOfThreads) {
     const Scene scene = built_scene("cornell");
     std::vector<double> before;
     for (const int count : {1, 2}) {

@@ -8,7 +8,7 @@
 #include "exitance/links/link_layout.hpp"
 #include "exitance/links/links.hpp"
 
-// Light over links. What is done once a link counts: it is for this that links are few.
+// Gathering of light over links. Cost per link matters most: there are many.
 namespace exitance {
 namespace {
 
@@ -36,14 +36,14 @@ Lanes positive(const Lanes& v) {
     return v > 0 ? v : Lanes{};
 }
 
-/// Keeps an array in memory, from where one number at a time becomes all lanes by a load; out of registers it would
-/// take two shuffles.
+/// Forces an array into memory: broadcasting one value to all lanes from there is a single load, from registers two
+/// shuffles.
 template <class Array>
 void keep_in_memory(Array& array) {
     asm volatile("" : "+m"(array));
 }
 
-/// 1 in the lanes whose bits are set.
+/// Per bit mask: 1 in the lanes whose bits are set, 0 in the others.
 struct LaneMasks {
     alignas(32) float of[256][8];
     LaneMasks() {
@@ -53,8 +53,8 @@ struct LaneMasks {
 };
 const LaneMasks lane_masks;
 
-/// What links need of a source, side by side: its middle, metres; the rest in single precision, in lengths of the
-/// scene. Where its nodes stand about the middle, and what they send.
+/// The data of a source that links need, contiguous in memory. Its centre is in metres. The rest is in single
+/// precision, in units of the scene's size: its nodes, relative to the centre, and the light that they emit.
 template <std::size_t n>
 struct alignas(64) SourceRecord {
     double centre[3];
@@ -63,7 +63,7 @@ struct alignas(64) SourceRecord {
     float light[bands][n];  ///< w_l A b_l / pi
 };
 
-/// Fetches a record while others are worked on.
+/// Prefetches a record while others are processed.
 template <std::size_t n>
 void prefetch(const SourceRecord<n>& record) {
     for (std::size_t byte = 0; byte < sizeof record; byte += 64)
@@ -90,11 +90,11 @@ void fill(SourceRecord<n>& out, const LinkSites& sites, const NodalField& b, Ele
     }
 }
 
-/// One receiver, and what has arrived there. Nodes 0 to lanes - 1 are lanes; of the last one, where there is one more,
-/// lanes are the source's nodes, and what they bring is summed in the end.
+/// One receiver and the light received so far. Its nodes 0 to lanes - 1 are lanes. For a remaining last node, the lanes
+/// are the nodes of the source, and are summed at the end.
 ///
-/// All nodes of an element lie in one plane. So n . d depends on the source's node alone, m . d on the receiver's, and
-/// of a pair of nodes only the distance is left to compute:
+/// All nodes of an element are in one plane. Therefore n . d depends only on the source's node and m . d only on the
+/// receiver's; per pair of nodes only the distance remains to be computed:
 ///
 ///     E_k = max(0, m . (x_k - y)) sum_l  V_kl / |y_l - x_k|^4  max(0, n . (y_l - x)) w_l A b_l / pi
 template <class Layout>
@@ -117,7 +117,7 @@ class ReceivedLight {
         }
     }
 
-    /// By the kernel, made anew and scaled; `visible` as Links keeps it.
+    /// Adds a link with a recomputed, scaled kernel; `visible` as in Links.
     void add(const SourceRecord<n>& q, float scale, const std::uint32_t* visible) {
         float D[3];
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -139,7 +139,7 @@ class ReceivedLight {
         if constexpr (Layout::has_rest) add_rest(q, D, y, light, scale, visible);
     }
 
-    /// By a block that was integrated.
+    /// Adds a link with an integrated block.
     void add(const float* block, const NodalField& b, ElementId q) {
         for (std::size_t band = 0; band < bands; ++band) {
             const float* const light = b.at(q, band);
@@ -151,7 +151,7 @@ class ReceivedLight {
         }
     }
 
-    /// Puts by what some links have brought, before a float has too much in it to take more.
+    /// Moves the sums to double precision, before single precision loses accuracy.
     void put_by() {
         for (std::size_t band = 0; band < bands; ++band) {
             for (std::size_t k = 0; k < lanes; ++k) total_[k][band] += static_cast<double>(sum_[band][k]);
@@ -173,7 +173,8 @@ class ReceivedLight {
         return load<lanes>(lane_masks.of[bits]);
     }
 
-    /// Where the source's nodes stand as seen from the receiver's middle, and what each sends towards its plane.
+    /// Computes the positions of the source's nodes relative to the receiver's centre, and the light that each emits
+    /// towards the receiver's plane.
     void send(const SourceRecord<n>& q, const float (&D)[3], float (&y)[3][n], float (&light)[bands][n]) const {
         Lanes here{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -224,10 +225,10 @@ class ReceivedLight {
     float rest_[3]{};
     Lanes sum_[bands]{}, rest_lanes_[bands]{};
     float rest_sum_[bands]{};
-    NodalValues total_{};  ///< What was put by.
+    NodalValues total_{};  ///< Sums moved by put_by().
 };
 
-/// Light of constant elements, in whole registers.
+/// Light of constant elements, padded to whole registers.
 struct PaddedSpectrum {
     Floats<std::max<std::size_t>(4, std::bit_ceil(bands))> of{};
 };
@@ -244,8 +245,8 @@ void Links::Rows::for_each(const ElementTree& tree, const Row& gather_row) const
                  {"gather links", [&](std::size_t row) { return tree.region(receiver[row]).value; }, true});
 }
 
-/// Several sums side by side, since one alone would wait for itself at every step; in single precision for some links,
-/// then in double.
+/// Uses several independent sums, because a single one would wait for the previous addition at every step. Sums are in
+/// single precision for some links, then in double.
 void Links::gather_constants(const NodalField& b, NodalField& E) const {
     constexpr std::size_t ways = 8, at_a_time = 256, ahead = 512;
     const std::vector<ElementId>&receiver = constants_.receiver, &sources = constants_.sources;
@@ -280,12 +281,12 @@ void Links::gather_constants(const NodalField& b, NodalField& E) const {
 
 template <class Layout>
 void Links::gather_kernels(const NodalField& b, NodalField& E) const {
-    constexpr std::size_t at_a_time = 16, ahead = 3;  // links: in single precision, to fetch
+    constexpr std::size_t at_a_time = 16, ahead = 3;  // number of links: per single-precision sum; to prefetch
     const double scale = 1 / std::sqrt(sites_->stage().area);
     const std::vector<ElementId>&receiver = kernels_.receiver, &sources = kernels_.sources;
     const std::vector<std::size_t>& first = kernels_.first;
     const std::vector<std::uint32_t>& source = kernels_.source;
-    // Memory that is new is first touched where it is filled, on all threads.
+    // New memory is first touched where it is filled, by all threads.
     const auto records = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sources.size());
     parallel_for(sources.size(), 256, [&](std::size_t i) { fill(records[i], *sites_, b, sources[i], scale); });
     kernels_.for_each(sites_->tree(), [&](std::size_t row) {

@@ -5,11 +5,11 @@
 
 namespace exitance {
 
-/// The kernel between one point and the nodes of a source, four nodes at a time:
+/// The kernel between a point and the nodes of a source, four nodes at a time:
 ///
 ///     w_l A max(0, n . d) max(0, -m . d) / (pi |d|^4),    d = y_l - x
 ///
-/// with n the normal at x and m the source's. Lanes past the last node get 0.
+/// where n is the normal at x and m that of the source. Lanes beyond the last node are 0.
 template <std::size_t groups>
 class SourceNodes {
   public:

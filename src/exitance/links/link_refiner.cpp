@@ -13,8 +13,8 @@ namespace exitance {
 struct LinkRefiner::Block {
     std::vector<FoundLink> links;
     std::vector<float> blocks, shadows;
-    std::vector<LinkPair> cut;        ///< Their sources are to be cut.
-    std::vector<PieceId> candidates;  ///< Of those.
+    std::vector<LinkPair> cut;        ///< Pairs whose sources are to be split.
+    std::vector<PieceId> candidates;  ///< Candidates of these pairs.
     std::size_t rays = 0, form_factors = 0;
 
     std::size_t bytes() const {
@@ -25,13 +25,14 @@ struct LinkRefiner::Block {
 
 namespace {
 
-/// Pairs a task: enough of them to pay for it, and not so many that threads wait for one another at the end of a round.
+/// Number of pairs per task: large enough to outweigh its overhead, small enough to balance the load at the end of a
+/// round.
 std::size_t block_size_for(std::size_t pairs) {
-    constexpr std::size_t tasks = 512, least = 8, most = 128;
-    return std::clamp(pairs / tasks, least, most);
+    constexpr std::size_t tasks = 512, min_size = 8, max_size = 128;
+    return std::clamp(pairs / tasks, min_size, max_size);
 }
 
-/// An element takes its parent's function.
+/// A child inherits its parent's function.
 void inherit(const LinkSites& sites, ElementId parent, ElementId child, NodalField& field) {
     const auto push = sites.push(child);
     const std::size_t n = sites.nodes();
@@ -49,9 +50,9 @@ LinkPair LinkRefiner::pair_of(const FoundLink& found) {
     return {found.link.receiver, found.link.source, found.open ? View::open : View::mixed};
 }
 
-/// Some receivers at a time: k^2 pairs together would take more memory than the links that come of them.
+/// Processes groups of receivers: all k^2 pairs at once would take more memory than the resulting links.
 void LinkRefiner::judge_all_pieces(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop) {
-    constexpr std::size_t at_a_time = 1 << 20;
+    constexpr std::size_t pairs_per_batch = 1 << 20;
     const Scene& scene = sites_.stage().scene;
     std::vector<LinkPair> pairs;
     for (ElementId p : tree_.roots()) {
@@ -59,7 +60,7 @@ void LinkRefiner::judge_all_pieces(const NodalField& b, const LinkTolerance& tol
             if (tree_.region(p) == tree_.region(q) || max(scene.material(tree_.region(q)).reflectance) <= 0) continue;
             pairs.push_back({p, q});
         }
-        if (pairs.size() >= at_a_time) judge(std::exchange(pairs, {}), b, tolerance, stop);
+        if (pairs.size() >= pairs_per_batch) judge(std::exchange(pairs, {}), b, tolerance, stop);
     }
     judge(std::move(pairs), b, tolerance, stop);
 }
@@ -79,10 +80,11 @@ double LinkRefiner::growth(const NodalField& b, ElementId source) const {
     return changed <= negligible_change * negligible_change * now ? growth : -1;
 }
 
-/// Links that are surely good enough still stay: what they carry and what they miss have grown like their source's
-/// light. Returns the others, as pairs.
+/// Keeps the links that are certainly still good enough; their light and error scale with their source's light. Returns
+/// the others, as pairs.
 std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const LinkTolerance& tolerance) {
-    // With a stricter tolerance a link would have been judged by better rules: what it misses has to be well below.
+    // With a stricter tolerance a kept link would have been judged by more accurate rules, so its error must be well
+    // below the limit.
     const double kept_share = calibrated::kept_link_share;
     const double allowed = kept_share * kept_share * tolerance.error * tolerance.error;
     Field<ElementId, float> growth_of(tree_.size(), -1.0f);
@@ -121,7 +123,7 @@ std::vector<LinkPair> LinkRefiner::take_stale_links(const NodalField& b, const L
     return stale;
 }
 
-/// The links that were found before.
+/// Judges the links found earlier.
 void LinkRefiner::judge_again(const NodalField& b, const LinkTolerance& tolerance, const StopRequest& stop) {
     judge(take_stale_links(b, tolerance), b, tolerance, stop);
 }
@@ -153,8 +155,8 @@ void LinkRefiner::open(std::vector<ElementId> parents) {
     light_below_(parents, roughness_);
 }
 
-/// What becomes of some pairs; of those that are not dropped: a link, or a source to be cut. `pool` is what their
-/// candidates are taken from.
+/// Judges some pairs. Each one that is not dropped becomes a link or a source to split. `pool` contains their
+/// candidates.
 LinkRefiner::Block LinkRefiner::judge_block(std::span<const LinkPair> pairs, LinkJudge& judge,
                                             std::span<const PieceId> pool) const {
     Block out;
@@ -204,7 +206,7 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
         std::vector<Block> blocks((pairs.size() + block_size - 1) / block_size);
         LinkTolerance now = tolerance;
         now.importance = importance_.empty() ? nullptr : &importance_;
-        // Once a stop is asked for, what is left is linked as it is.
+        // After a stop request, link the remaining pairs as they are.
         LinkTolerance any = now;
         any.error = HUGE_VAL;
         limited_ |= links_.size() + pairs.size() > tolerance.most_links;
@@ -237,15 +239,15 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
     }
 }
 
-/// What receivers get, from round to round: only what new links bring is added up and judged anew.
+/// The light of receivers over all rounds: only new links are added and judged.
 struct LinkRefiner::Receivers {
     Field<ElementId, ReceivedLight> light;
-    Field<ElementId, double> error;  ///< Of interpolation, squared.
-    std::size_t known = 0;           ///< So many links are in there.
+    Field<ElementId, double> error;  ///< Squared interpolation error.
+    std::size_t known = 0;           ///< Number of links included so far.
 };
 
-/// Adds up new links; returns the receivers of theirs whose light departs too much, as flags, and among `leaves` those
-/// that are to be cut.
+/// Adds the new links. Returns flags of those of their receivers whose light departs too much from a polynomial, and
+/// appends to `leaves` those of them that are leaves and must be split.
 Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers, const LinkTolerance& tolerance,
                                                             std::vector<ElementId>& leaves) {
     receivers.light.resize(tree_.size()), receivers.error.resize(tree_.size(), 0.0);
@@ -267,7 +269,7 @@ Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers
         if (!departs && gained[e] != cutting_ones) continue;
         if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
         too_much[e] = 1;
-        receivers.light[e] = {};  // of the links that will be left
+        receivers.light[e] = {};  // to be summed over the remaining links
         if (tree_.is_leaf(e)) leaves.push_back(e);
     }
     return too_much;
@@ -282,7 +284,8 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
     for (ElementId e : too_much.ids())
         if (too_much[e]) cut.push_back(e);
     open(std::move(cut));
-    // A link that hardly departs stays; all such ones of a receiver together are a share of what is allowed.
+    // A link with a negligible departure stays with the receiver; all such links together are within a share of the
+    // tolerance.
     const double negligible = calibrated::negligible_departure_share * tolerance.interpolation;
     enum : std::uint8_t { untouched, left, handed_on };
     const auto fate_of = [&](const FoundLink& found) -> std::uint8_t {
@@ -290,12 +293,12 @@ std::vector<LinkPair> LinkRefiner::cut_receivers(NodalField& b, std::span<NodalF
         if (!too_much[p]) return untouched;
         if (found.cuts_receiver) return handed_on;
         if (tolerance.oracle != LinkOracle::transport) return left;
-        // Of light that meets something on its way, half may be missing in places.
+        // Half of the light that may be occluded may be missing in places.
         const double light = static_cast<double>(found.light) / tree_.area(p), hidden = found.open ? 0 : 0.5 * light;
         const double error = weight(p) * tree_.area(p) * (mean_square(found.departure) + hidden * hidden);
         return error < negligible * negligible ? left : handed_on;
     };
-    // Receivers that are cut have mostly been linked of late: long stretches of links stay where they are.
+    // Most receivers that are split were linked recently, so long runs of links stay in place.
     constexpr std::size_t stretch = 1024;
     std::vector<std::uint8_t> fate(links_.size()), stays((links_.size() + stretch - 1) / stretch, 1);
     parallel_ranges(links_.size(), stretch, [&](std::size_t first, std::size_t last) {
@@ -384,7 +387,7 @@ void LinkRefiner::sum_up() {
 Links LinkRefiner::make_links() const {
     const std::size_t size = sites_.nodes() * sites_.nodes();
     std::vector<Link> links(links_.size());
-    std::vector<std::uint32_t> place(links_.size());  // of their blocks: those of links that are still there
+    std::vector<std::uint32_t> place(links_.size());  // index of their blocks among those of remaining links
     std::uint32_t near = 0;
     for (std::size_t i = 0; i < links_.size(); ++i) place[i] = near, near += links_[i].near ? 1 : 0;
     std::vector<float> blocks(near * size);

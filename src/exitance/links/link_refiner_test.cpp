@@ -29,7 +29,7 @@ struct Refined : LitElements {
 
 constexpr HierarchyBasis kinds[] = {HierarchyBasis::haar, HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3};
 
-TEST(LinkRefiner, KeepsLinksThatAreGoodEnoughAndLetsThemGrowWithTheirLight) {
+TEST(LinkRefiner, KeepsAndScalesLinksThatAreGoodEnough) {
     const Scene scene = built_scene("cornell");
     for (const HierarchyBasis kind : kinds) {
         Refined r(scene, kind);
@@ -37,8 +37,8 @@ TEST(LinkRefiner, KeepsLinksThatAreGoodEnoughAndLetsThemGrowWithTheirLight) {
         const std::size_t rays = r.refiner.rays(), links = r.refiner.size();
         const double light = r.refiner.light(), error = r.refiner.error();
         r.scale_light(2);
-        r.refine(1);  // where all of them are good enough
-        // Those alone are judged again whose source was cut after they were made.
+        r.refine(1);  // all links are good enough here
+        // Only links whose source was split after they were made are judged again.
         EXPECT_LT(static_cast<double>(r.refiner.rays() - rays), 0.01 * static_cast<double>(rays));
         EXPECT_EQ(r.refiner.size(), links);
         EXPECT_NEAR(r.refiner.light(), 2 * light, 1e-3 * light);
@@ -46,7 +46,7 @@ TEST(LinkRefiner, KeepsLinksThatAreGoodEnoughAndLetsThemGrowWithTheirLight) {
     }
 }
 
-TEST(LinkRefiner, JudgesFewLinksAgainWhereToleranceFalls) {
+TEST(LinkRefiner, JudgesFewLinksAgainIfTheToleranceFalls) {
     const Scene scene = built_scene("cornell");
     for (const HierarchyBasis kind : kinds) {
         Refined once(scene, kind), twice(scene, kind);
@@ -55,12 +55,12 @@ TEST(LinkRefiner, JudgesFewLinksAgainWhereToleranceFalls) {
         const std::size_t before = twice.refiner.rays();
         twice.refine(0.003);
         EXPECT_LT(twice.refiner.rays() - before, 0.8 * static_cast<double>(once.refiner.rays()));
-        // What was kept is as good as what is judged from the beginning.
+        // Kept links are as accurate as links judged from the start.
         EXPECT_LT(twice.refiner.error(), 1.15 * once.refiner.error());
     }
 }
 
-TEST(LinkRefiner, JudgesLinksOfASourceAgainWhoseLightHasAnotherShape) {
+TEST(LinkRefiner, JudgesLinksAgainIfTheirSourcesLightChangesShape) {
     const Scene scene = built_scene("cornell");
     Refined r(scene, HierarchyBasis::multiwavelet2);
     r.refine(0.01);
@@ -73,10 +73,10 @@ TEST(LinkRefiner, JudgesLinksOfASourceAgainWhoseLightHasAnotherShape) {
     EXPECT_GT(r.refiner.rays(), rays);
 }
 
-/// What links bring to the first polygon of a scene and what all others send there, alike all over: the departure of
-/// the mean, and RMS.
+/// Difference between the light of links on the first polygon of a scene and the uniform light that all others emit to
+/// it: error of the mean, and RMS error.
 struct Difference {
-    double mean = 0, rms = 0;  ///< Relative to the mean and the RMS of what is right.
+    double mean = 0, rms = 0;  ///< Relative to the exact mean and to the exact RMS.
 };
 
 Difference on_first_polygon(const Scene& scene, HierarchyBasis kind, double tolerance) {
@@ -109,9 +109,9 @@ Difference on_first_polygon(const Scene& scene, HierarchyBasis kind, double tole
     return {found / expected - 1, std::sqrt(square / expected_square)};
 }
 
-/// What a small plate sends to the long strip that it stands on, between all of the strip's nodes; to a strip that it
-/// stands across, all of whose nodes lie behind it or far off; and a low one to the floor beside it.
-TEST(LinkRefiner, SeesWhatShinesBetweenNodes) {
+/// Light between all of a receiver's nodes: a small plate on a long strip; a plate across a strip whose nodes are all
+/// behind it or distant; and a low plate on a floor.
+TEST(LinkRefiner, DetectsLightBetweenNodes) {
     const Scene along = test::make({{{{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.001, 0}, {0, 0.001, 0}}},
                                     {{{0.24, 0, 0}, {0.24, 0, 0.02}, {0.26, 0, 0.02}, {0.26, 0, 0}}}});
     const Scene across = test::make({{{{0, 0, 0}, {0.4, 0, 0}, {0.4, 0.4, 0}, {0, 0.4, 0}}},
@@ -125,8 +125,8 @@ TEST(LinkRefiner, SeesWhatShinesBetweenNodes) {
     }
 }
 
-/// A wall beside a strip that goes on a little farther than the wall, beyond the strip's last nodes.
-TEST(LinkRefiner, SeesWhereSourcesEnd) {
+/// A wall next to a strip that extends a little beyond the wall and beyond the strip's last nodes.
+TEST(LinkRefiner, DetectsEndsOfSources) {
     const Scene beside = test::make({{{{0, 0, 0}, {0.4, 0, 0}, {0.4, 0.02, 0}, {0, 0.02, 0}}},
                                      {{{0, 0, 0}, {0, 0, 0.2}, {0.38, 0, 0.2}, {0.38, 0, 0}}}});
     for (const HierarchyBasis kind : {HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3})

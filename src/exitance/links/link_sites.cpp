@@ -19,8 +19,9 @@ LinkSites::LinkSites(const Stage& stage, const ElementTree& tree, const NodalBas
     }
 }
 
-/// The parallelogram with the domain's area, middle and second moments: with C their matrix about the middle, and C = L
-/// L^T, its half sides are sqrt 3 times the columns of L (a square of half side h has the second moment h^2 / 3).
+/// The parallelogram with the domain's area, centroid and second moments. Let C be the matrix of second moments about
+/// the centroid, and C = L L^T. The half sides are sqrt 3 times the columns of L (a square of half side h has the
+/// second moment h^2 / 3).
 Patch LinkSites::inertia_parallelogram(ElementId e) const {
     const std::vector<Vec2> domain = tree_->domain(e);
     const Vec2 c = tree_->centre(e);
@@ -68,14 +69,15 @@ std::vector<ElementId> LinkSites::ends() const {
     return out;
 }
 
-/// True if NodalBasis has the filters of the element's cut.
+/// True if NodalBasis provides the filters of the element's split.
 bool LinkSites::is_regular(ElementId parent) const {
     return !tree_->is_cell(parent) &&
            (tree_->way(parent) == Cut::both || (tree_->way(parent) != Cut::line && tree_->ratio(parent) == 0.5));
 }
 
-/// Pull gives the function of the parent nearest to what its children hold: (sum a P^T W P) parent = sum a P^T W child,
-/// with P their push and a their shares of the area. Numbers without weight (a triangle's last one) stay zero.
+/// The pull gives the parent's function that is nearest to those of its children: (sum a P^T W P) parent = sum a P^T W
+/// child, where P is a child's push and a its share of the area. Values without weight (a triangle's last one) stay
+/// zero.
 LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
     ChildMatrices out;
     const Patch outer = frame(parent);
@@ -109,7 +111,7 @@ LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
             }
     }
     for (std::size_t j = 0; j < n_; ++j)
-        gram[j * n_ + j] *= 1 + 1e-12;  // slivers say little of some functions (given by rounding)
+        gram[j * n_ + j] *= 1 + 1e-12;  // slivers hardly determine some functions (given by rounding)
     out.gram = std::move(gram);
     return out;
 }
@@ -133,12 +135,12 @@ void LinkSites::add(ElementId e) {
     inner_[depth_.back() - 1].push_back(parent);
 }
 
-/// Elements whose parents are held or come before them.
+/// Adds elements whose parents are held already or come earlier in the list.
 void LinkSites::hold(std::span<const ElementId> elements) {
     place_.resize(tree_->size(), none);
     const std::size_t before = held_.size();
     for (ElementId e : elements) add(e);
-    // Matrices when all children are there.
+    // Compute matrices once all children are added.
     for (std::size_t i = before; i < held_.size(); ++i) {
         const ElementId parent = tree_->parent(held_[i]);
         if (parent.is_none() || held_[i] != tree_->children(parent).front()) continue;
@@ -186,7 +188,7 @@ void LinkSites::open(std::span<const ElementId> parents) {
 }
 
 ElementPart LinkSites::part_with(Field<ElementId, std::uint8_t> marked) const {
-    // Whatever has a marked element below it is cut.
+    // Elements with a marked element below them become inner elements.
     for (std::size_t e = marked.size(); e-- > 0;)
         if (marked[ElementId(e)] && !tree_->parent(ElementId(e)).is_none()) marked[tree_->parent(ElementId(e))] = 2;
     ElementPart part;
@@ -291,12 +293,12 @@ FromBelow pull_from_parts(const LinkSites& sites, ElementId e, std::span<const F
 
 namespace {
 
-/// Elements a task, that have so many nodes each and four children.
+/// Elements per task, each with this many nodes and about four children.
 std::size_t grain(std::size_t nodes) {
     return nodes == 1 ? 128 : 32;
 }
 
-/// out += matrix in, n numbers of every band.
+/// out += matrix in, for n values of one band.
 void add_product(std::span<const float> matrix, std::size_t n, const float* in, float* out) {
     for (std::size_t i = 0; i < n; ++i) {
         float sum = 0;

@@ -12,28 +12,28 @@
 
 namespace exitance {
 
-/// A hierarchy, or the upper part of one: of no element only some children. Within one level nothing depends on
-/// anything.
+/// A hierarchy, or its upper part: for every element, either all of its children are in it or none. The elements of one
+/// level are independent of each other.
 struct ElementPart {
-    std::vector<std::vector<ElementId>> inner;  ///< By depth, roots first: elements whose children are in it.
-    std::vector<ElementId> ends;                ///< Where it ends, in order of their ids.
+    std::vector<std::vector<ElementId>> inner;  ///< Per depth, roots first: elements whose children are in it.
+    std::vector<ElementId> ends;                ///< Elements whose children are not in it, in the order of their ids.
 };
 
-/// Link sites place the nodes of a basis on the elements of a tree, and carry functions between its levels.
+/// Places the nodes of a basis on the elements of a tree, and transfers functions between its levels.
 ///
-/// A cell (an element whose domain is less than its patch) is replaced by the parallelogram that has the cell's area
-/// and its first and second moments, so that one kind of rule serves all.
+/// A cell is an element whose domain is smaller than its patch. It is replaced by the parallelogram with the same area
+/// and the same first and second moments, so that one kind of rule suffices.
 ///
-/// Values are stored (held) for all elements, or only for those that a link uses: the roots, and the children of what
-/// was opened. Where the mesh follows direct light far below these ends, nothing is stored.
+/// Values are stored (held) for all elements, or only for those that links use: the roots, and the children of opened
+/// elements. Where the mesh for direct light is much finer than these, nothing is stored.
 class LinkSites {
   public:
     enum class Held : std::uint8_t { all, roots };
     LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis, Held held = Held::all);
 
-    /// Stores values for the children of these elements, too, from now on.
+    /// Also stores values for the children of these elements from now on.
     void open(std::span<const ElementId> parents);
-    std::size_t size() const { return held_.size(); }  ///< Elements that are held.
+    std::size_t size() const { return held_.size(); }  ///< Number of held elements.
     bool holds(ElementId e) const { return e.value < place_.size() && place_[e] != none; }
     /// True if the element has children whose values are stored.
     bool is_open(ElementId e) const { return !tree_->is_leaf(e) && holds(tree_->children(e).front()); }
@@ -41,48 +41,52 @@ class LinkSites {
     std::size_t place(ElementId e) const { return place_[e]; }
     /// The smallest element with stored values that contains e: e itself, or an ancestor.
     ElementId held_above(ElementId e) const;
-    std::vector<ElementId> ends() const;  ///< Those held whose children are not, in order of their ids.
+    std::vector<ElementId> ends() const;  ///< Held elements whose children are not held, in the order of their ids.
 
     const Stage& stage() const { return *stage_; }
     const ElementTree& tree() const { return *tree_; }
     const NodalBasis& basis() const { return *basis_; }
-    std::size_t nodes() const { return n_; }  ///< Numbers an element holds.
+    std::size_t nodes() const { return n_; }  ///< Number of values per element.
 
     const Normal& normal(ElementId e) const { return stage_->scene.regions()[tree_->region(e)].plane.n; }
-    double radius(ElementId e) const { return radius_[place_[e]]; }  ///< Of a ball about the centre, metres; held.
+    double radius(ElementId e) const {
+        return radius_[place_[e]];
+    }  ///< Radius of a ball around the centre, metres; held elements only.
     Point centre(ElementId e) const { return frame(e).centre(); }
-    /// The patch, or what stands for a cell.
+    /// The patch; for a cell, the parallelogram that replaces it.
     Patch frame(ElementId e) const;
     Point node(ElementId e, std::size_t k) const { return node(frame(e), k); }
     Point node(const Patch& frame, std::size_t k) const { return frame.at(basis_->nodes(frame.shape)[k].at); }
-    /// Moves a point near a cell into it: beyond its border may be the inside of a box. Other elements keep the point.
+    /// Moves a point near a cell into the cell, because beyond its border there may be the inside of a box. Other
+    /// elements leave the point unchanged.
     Point within(ElementId e, const Point& x) const;
     /// The point at which light is evaluated for a node of a receiver.
     Point receiving_node(ElementId e, std::size_t k) const { return within(e, node(e, k)); }
     double weight(ElementId e, std::size_t k) const { return basis_->nodes(tree_->patch(e).shape)[k].weight; }
 
-    /// child[k] = sum_j push[k n + j] parent[j], and what pull adds to the parent: pull[j n + k] child[k]. Held.
+    /// Matrices between a held child and its parent: child[k] = sum_j push[k n + j] parent[j]; parent[j] = sum over
+    /// children and k of pull[j n + k] child[k].
     std::span<const float> push(ElementId child) const { return {&push_[matrix_[place_[child]]], n_ * n_}; }
     std::span<const float> pull(ElementId child) const { return {&pull_[matrix_[place_[child]]], n_ * n_}; }
-    /// Those of all children of an element, held or not; where `gram` is not empty, nodes()^2 entries, what pull adds
-    /// up is gram times the parent.
+    /// The matrices of all children of an element, held or not. If `gram` is not empty (nodes()^2 entries), the sum of
+    /// the pulls is gram times the parent's values.
     struct ChildMatrices {
         std::vector<std::span<const double>> push, pull;
-        std::vector<double> gram, own;  ///< `own`: what spans refer to that the basis does not have.
+        std::vector<double> gram, own;  ///< `own`: storage for the spans of matrices that the basis does not provide.
 
         ChildMatrices() = default;
-        ChildMatrices(ChildMatrices&&) = default;  // and no copies, whose spans would lead elsewhere
+        ChildMatrices(ChildMatrices&&) = default;  // not copyable: spans would point to the original
     };
     ChildMatrices matrices(ElementId parent) const;
 
-    /// All elements with stored children, by their depth, roots first.
+    /// All elements with held children, per depth, roots first.
     const std::vector<std::vector<ElementId>>& inner() const { return inner_; }
-    /// The least part of the hierarchy that holds all marked elements, which have stored values. O(elements).
+    /// The smallest part of the hierarchy that contains all marked elements, which must be held. O(elements).
     ElementPart part_with(Field<ElementId, std::uint8_t> marked) const;
     std::size_t memory_bytes() const;
-    std::vector<std::size_t> count_by_level() const;  ///< How many elements are held at each depth.
+    std::vector<std::size_t> count_by_level() const;  ///< Number of held elements per depth.
 
-    /// Writes or reads which elements have stored values, for checkpoints.
+    /// Writes or reads which elements are held, for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
         std::vector<ElementId> held = held_;
@@ -96,8 +100,8 @@ class LinkSites {
     void hold_anew(std::span<const ElementId> elements);
     void add(ElementId e);
     bool is_regular(ElementId parent) const;
-    /// Where the push and the pull of its first child stand; the others' follow. Adds them, unless others have the
-    /// same.
+    /// Index of the matrices of the first child; those of the others follow. Adds them, unless equal ones are stored
+    /// already.
     std::uint32_t matrices_below(ElementId parent);
     std::uint32_t add_matrices(ElementId parent);
     Patch inertia_parallelogram(ElementId e) const;
@@ -106,23 +110,23 @@ class LinkSites {
     const ElementTree* tree_;
     const NodalBasis* basis_;
     std::size_t n_;
-    Field<ElementId, std::uint32_t> place_;  ///< Of all elements.
-    std::vector<ElementId> held_;            ///< By place, as all below.
+    Field<ElementId, std::uint32_t> place_;  ///< Per element of the tree.
+    std::vector<ElementId> held_;            ///< Sorted by place, like all arrays below.
     std::vector<double> radius_;
-    std::vector<std::uint32_t> matrix_;                              ///< Where the push and the pull of a child stand:
-    std::vector<float> push_, pull_;                                 ///< what regular cuts have alike, once.
-    std::map<std::pair<Patch::Shape, Cut>, std::uint32_t> regular_;  ///< Where those of the first child stand.
+    std::vector<std::uint32_t> matrix_;  ///< Per child: index of its matrices
+    std::vector<float> push_, pull_;     ///< in these; matrices of regular splits are stored only once.
+    std::map<std::pair<Patch::Shape, Cut>, std::uint32_t> regular_;  ///< Index of the matrices of the first child.
     std::vector<std::vector<ElementId>> inner_;
     std::vector<std::uint32_t> depth_;
-    std::vector<std::uint32_t> cell_frame_;  ///< Of a cell: where its frame stands in `cell_frames_`.
+    std::vector<std::uint32_t> cell_frame_;  ///< Per cell: index in `cell_frames_`; none for other elements.
     std::vector<Patch> cell_frames_;
 };
 
-/// The numbers of one element, node by node.
+/// The values of one element, one per node.
 using NodalValues = std::array<Spectrum, 9>;
 
-/// Numbers of all elements that are held, in single precision as links bring them, band by band: of element e, band and
-/// node k at (place bands + band) nodes + k.
+/// Values of all held elements, in single precision (the precision of links), band by band: value k of element e in a
+/// band is at index (place bands + band) nodes + k.
 class NodalField {
   public:
     explicit NodalField(const LinkSites& sites) : sites_(&sites) { resize(); }
@@ -140,20 +144,21 @@ class NodalField {
         return &values_[(sites_->place(e) * bands + band) * sites_->nodes()];
     }
     Spectrum node(ElementId e, std::size_t k) const;
-    Spectrum mean(ElementId e) const;  ///< Over the element.
+    Spectrum mean(ElementId e) const;  ///< Mean over the element.
     void set_node(ElementId e, std::size_t k, const Spectrum& value);
     void set(ElementId e, const NodalValues& values);
     void add(ElementId e, const NodalValues& values);
-    /// Of any element: below those that are held, of the function of the nearest one.
+    /// Values of any element. Below held elements they are those of the function of the nearest held ancestor.
     NodalValues values(ElementId e) const;
 
-    /// Every inner element takes its numbers from its children's. O(elements), level by level on all threads.
+    /// Computes the values of every inner element from those of its children. O(elements), level by level, parallel.
     void pull() { pull(sites_->inner()); }
     void pull(const ElementPart& part) { pull(part.inner); }
-    /// How far the mean over the bands departs from each element's own function, RMS over the element; of ends: what is
-    /// given, or 0 where nothing is.
+    /// Per element: RMS difference between its own function and those of its descendants, mean over the bands. of_ends:
+    /// the roughness of the ends; 0 if not given.
     Field<ElementId, double> roughness(const Field<ElementId, double>& of_ends = {}) const;
-    /// Every child adds what its parent holds; leaves end with the sum along their path. Likewise.
+    /// Adds the values of every inner element to those of its children, so that leaves have the sum along their path.
+    /// Cost as for pull().
     void push() { push(sites_->inner()); }
     void push(const ElementPart& part) { push(part.inner); }
 
@@ -166,17 +171,18 @@ class NodalField {
     std::vector<float> values_;
 };
 
-/// A function below an element, as the element sees it: the nearest numbers, and the mean square by which the mean over
-/// the bands departs from them.
+/// Approximation at an element of a function given below it: its nodal values, and the mean squared error of the mean
+/// over the bands.
 struct FromBelow {
     NodalValues values{};
     double departure_squared = 0;
 };
 
-/// What an element comes to, of which its children, held or not, come to `parts`.
+/// Computes the approximation at element e from those at its children (`parts`), held or not.
 FromBelow pull_from_parts(const LinkSites& sites, ElementId e, std::span<const FromBelow> parts);
 
-/// Pulls what leaves hold up to an element, held or not. `of_leaf(e)`: the values of a leaf. O(elements below).
+/// Computes the approximation at element e (held or not) from the values of the leaves. `of_leaf(e)`: values of a leaf.
+/// O(elements below).
 template <class OfLeaf>
 FromBelow pull_from_leaves(const LinkSites& sites, ElementId e, const OfLeaf& of_leaf) {
     if (sites.tree().is_leaf(e)) return {of_leaf(e)};

@@ -12,9 +12,9 @@
 namespace exitance {
 namespace {
 
-constexpr double rounding = 1e-12, single = 1e-6;  // fields are held in single precision
+constexpr double rounding = 1e-12, single = 1e-6;  // fields are stored in single precision
 
-/// A floor whose second element is cut into cells along slanted lines.
+/// A floor whose second element is split into cells along slanted lines.
 ElementTree tree_with_cells(const Stage& stage) {
     ElementTree tree = stage.make_elements({1e9, 0});
     const ElementId floor = tree.roots()[0];
@@ -25,7 +25,7 @@ ElementTree tree_with_cells(const Stage& stage) {
     return tree;
 }
 
-TEST(LinkSites, ACellIsSeenAsAParallelogramOfItsAreaAndMoments) {
+TEST(LinkSites, ACellIsReplacedByAParallelogramWithItsAreaAndMoments) {
     const Scene scene = box_scene(1, 2, 3, 0.8, 1);
     const Stage stage(scene);
     const ElementTree tree = tree_with_cells(stage);
@@ -35,7 +35,7 @@ TEST(LinkSites, ACellIsSeenAsAParallelogramOfItsAreaAndMoments) {
     for (ElementId e : tree.ids()) {
         if (!tree.is_cell(e)) continue;
         ++cells;
-        // Mean of x y + 2 x^2 over the cell by a fan of triangles, against the four nodes.
+        // Mean of x y + 2 x^2 - y / 2 over the cell: by a fan of triangles, and from the four nodes.
         const auto f = [&](const Point& p) { return p.x * p.y + 2 * p.x * p.x - 0.5 * p.y; };
         const std::vector<Point> outline = tree.outline(e);
         double exact = 0, area = 0;
@@ -73,7 +73,7 @@ TEST(NodalField, PullAndPushKeepLinearFunctionsOnRegularElementsAndCells) {
     }
 }
 
-TEST(LinkSites, OpenedStepByStepHoldWhatAllOfThemDo) {
+TEST(LinkSites, OpeningStepByStepEqualsHoldingAll) {
     const Scene scene = box_scene(1, 2, 3, 0.8, 1);
     const Stage stage(scene);
     const ElementTree tree = tree_with_cells(stage);
@@ -114,7 +114,7 @@ TEST(LinkSites, OpenedStepByStepHoldWhatAllOfThemDo) {
     }
 }
 
-TEST(NodalField, BelowWhatIsHeldIsTheFunctionOfTheNearestElement) {
+TEST(NodalField, BelowHeldElementsIsTheFunctionOfTheNearestOne) {
     const Scene scene = box_scene(1, 2, 3, 0.8, 1);
     const Stage stage(scene);
     const ElementTree tree = tree_with_cells(stage);
@@ -130,7 +130,7 @@ TEST(NodalField, BelowWhatIsHeldIsTheFunctionOfTheNearestElement) {
     }
 }
 
-/// Points at all distances from a wall, down to its very edge.
+/// Points at all distances from a wall, down to its edge.
 TEST(NearRow, SumsToTheFormFactorAndHasTheRightFirstMoments) {
     const Scene scene = box_scene(1, 1, 1, 0.8, 1);
     const Stage stage(scene);
@@ -148,7 +148,7 @@ TEST(NearRow, SumsToTheFormFactorAndHasTheRightFirstMoments) {
         double sum = 0, height = 0, exact_height = 0;
         for (std::size_t l = 0; l < sites.nodes(); ++l) sum += K[l], height += K[l] * sites.node(wall, l).z;
         EXPECT_NEAR(sum, point_to_polygon(x, sites.normal(floor), outline), 1e-12);
-        // Against thin strips of the wall, each by its exact form factor.
+        // Reference: thin strips of the wall, each with its exact form factor.
         constexpr int strips = 400;
         const Patch frame = sites.frame(wall);
         const bool along_a = std::abs(frame.a.z) > 0.5;
@@ -159,7 +159,7 @@ TEST(NearRow, SumsToTheFormFactorAndHasTheRightFirstMoments) {
             if (!along_a) std::reverse(strip.begin(), strip.end());
             exact_height += point_to_polygon(x, sites.normal(floor), strip) * 0.5 * (strip[0].z + strip[1].z);
         }
-        // The last boxes are a 32nd of the wall, and their light is taken to come from the middle.
+        // The last boxes are 1/32 of the wall, and their light is assumed to come from the centre.
         EXPECT_NEAR(height, exact_height, 3e-3 * sum) << distance;
     }
 }

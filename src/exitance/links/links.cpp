@@ -12,13 +12,13 @@
 namespace exitance {
 namespace {
 
-/// Where the pair of node k of the receiver and node l of the source lies in masks and blocks.
+/// Index in masks and blocks of the pair of node k of the receiver and node l of the source.
 std::size_t position(std::size_t n, std::size_t k, std::size_t l) {
     return n == LinkLayout2::n ? LinkLayout2::position(k, l) : LinkLayout3::position(k, l);
 }
 
-/// By receiver, by counting, and then by source, a receiver at a time on all threads. Returns where those of each
-/// receiver end.
+/// Sorts links by receiver (counting sort), then by source within each receiver, in parallel. Returns the end of each
+/// receiver's links.
 std::vector<std::size_t> sort_by_receiver(std::vector<Link>& links, std::size_t elements) {
     std::vector<std::size_t> end(elements + 1, 0);
     for (const Link& link : links) ++end[link.receiver.value + 1];
@@ -172,7 +172,7 @@ LinkOperator::LinkOperator(const LinkSites& sites, const Links& links, const Clu
     if (dealt_.is_spread()) fetch_what_links_read();
 }
 
-/// The mean of an element is read by way of all ends below it.
+/// Determines which unknowns this process must fetch. The mean of an element depends on all ends below it.
 void LinkOperator::fetch_what_links_read() {
     const std::size_t n = sites_->nodes();
     const std::vector<ElementId>& ends = part_->ends;
@@ -193,7 +193,7 @@ void LinkOperator::fetch_what_links_read() {
     fetched_ = FetchedValues(dealt_, marked);
 }
 
-/// From b at the ends to E at the ends: pull, links, push.
+/// Computes E at the ends from b at the ends: pull, links, push.
 void LinkOperator::carry() const {
     b_.pull(*part_);
     E_.clear(*part_);

@@ -14,15 +14,15 @@
 
 namespace exitance {
 
-/// A way for light between two elements, receiver first: their nodes see each other as the bits say. The kernel is made
-/// anew whenever light passes; what is kept is what is dear.
+/// A transport link between two elements, receiver first, with a visibility bit per pair of nodes. The kernel is
+/// recomputed whenever light is transported; only what is expensive to compute is stored.
 struct Link {
     ElementId receiver, source;
-    /// Bit k n + l: is node l of the source visible from node k of the receiver? The last bit marks a constant: of
-    /// order 1, whatever the basis, from the mean of the source to all of the receiver.
+    /// Bit k n + l: node l of the source is visible from node k of the receiver. The last bit marks a constant link:
+    /// order 1 whatever the basis, from the mean of the source to the whole receiver.
     std::array<std::uint32_t, 3> visible{};
-    /// A constant: form factor times visible share. Else where the link's block stands (Links::blocks_), or, far, the
-    /// number by which its kernel is scaled, with the sign set.
+    /// Constant links: form factor times visible share. Other links: index of the link's block (Links::blocks_) or, for
+    /// far links, the scale of the kernel with the sign bit set.
     union {
         float factor;
         std::uint32_t block;
@@ -41,34 +41,35 @@ struct Link {
 
 /// All links of a hierarchy, sorted by receiver, then by source.
 ///
-/// Constants, which are all of order 1 and those of higher orders that carry little: E = F V b with F the mean over the
-/// receiver, and b that over the source. The others: at each node x_k of the receiver
+/// Constant links (all links of order 1, and links of higher order with a small contribution): E = F V b, where F is
+/// the mean over the receiver and b the mean over the source. Other links: at each node x_k of the receiver
 ///
 ///     E_k = sum_l K_kl V_kl b_l,    K_kl = w_l A cos cos / (pi r^2) between x_k and y_l
 ///
-/// over the nodes y_l of the source, with b_l its numbers: a rule as exact as the basis, made anew when it is applied,
-/// and scaled, so that even light arrives exactly in the mean over the receiver: what the rule misses has the same sign
-/// from link to link, and would come back from every reflection.
-/// Where the source is so near that the rule is not exact enough, the block K is integrated once (NearRow) and kept.
+/// over the nodes y_l of the source, where b_l are its values. This rule is as accurate as the basis. It is recomputed
+/// when it is applied, and scaled so that uniform light has the exact mean over the receiver: otherwise its errors
+/// would have the same sign in all links and accumulate with every reflection. If the source is so near that the rule
+/// is too inaccurate, the block K is integrated once (NearRow) and stored.
 /// Source: [Hanrahan91], [Gortler93].
 class Links {
   public:
-    /// `links` in any order; `blocks` holds nodes()^2 numbers for each link that is near.
+    /// links  in any order
+    /// blocks  nodes()^2 values for each near link
     Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks);
 
     std::size_t size() const { return constants_.size() + kernels_.size(); }
     std::size_t memory_bytes() const;
 
-    /// E of every element that links lead to, at its nodes; of the others: zero. O(links). Kernels are made, and added
-    /// up within a link, in single precision: 1e-6 of what arrives.
+    /// Computes E at the nodes of every receiving element; elsewhere it is zero. O(links). Kernels are evaluated, and
+    /// summed within a link, in single precision: error 1e-6 of the received light.
     void gather(const NodalField& b, NodalField& E) const;
-    /// Adds that to E, which is zero where links lead to.
+    /// Adds the received light to E, which must be zero at receiving elements.
     void add_to(NodalField& E, const NodalField& b) const;
 
-    /// Marks the elements that links lead to or come from.
+    /// Marks the elements that are receivers or sources of links.
     void mark(Field<ElementId, std::uint8_t>& marked) const;
 
-    /// Calls body(receiver, source) for every one.
+    /// Calls body(receiver, source) for every link.
     template <class Body>
     void for_each(const Body& body) const {
         for (const Rows* rows : {&constants_, &kernels_})
@@ -77,24 +78,24 @@ class Links {
                     body(rows->receiver[row], rows->source_of(i));
     }
 
-    /// All of them, by receiver, then by source. O(links).
+    /// All links, sorted by receiver, then by source. O(links).
     std::vector<KeptLink> list() const;
 
   private:
-    /// Links of one kind, one after the other.
+    /// Links of one kind, row by row.
     struct Rows {
-        std::vector<ElementId> receiver;    ///< Of each row.
-        std::vector<std::size_t> first;     ///< Row i stands in [first[i], first[i + 1]).
-        std::vector<ElementId> sources;     ///< All of them, once, in order of their ids;
-        std::vector<std::uint32_t> source;  ///< of a link: its place among them.
+        std::vector<ElementId> receiver;    ///< Per row.
+        std::vector<std::size_t> first;     ///< Row i is [first[i], first[i + 1]).
+        std::vector<ElementId> sources;     ///< All sources, each once, in the order of their ids.
+        std::vector<std::uint32_t> source;  ///< Per link: index of its source in `sources`.
 
-        /// Sorts the links.
+        /// Sorts `links` and builds the rows.
         Rows(std::vector<Link>& links, std::size_t elements);
         std::size_t size() const { return source.size(); }
         ElementId source_of(std::size_t link) const { return sources[source[link]]; }
         std::size_t memory_bytes() const { return 4 * (source.size() + sources.size()) + 12 * receiver.size(); }
         void mark(Field<ElementId, std::uint8_t>& marked) const;
-        /// Calls gather_row(row) for all of them on all threads.
+        /// Calls gather_row(row) for all rows, in parallel.
         template <class Row>
         void for_each(const ElementTree& tree, const Row& gather_row) const;
     };
@@ -102,7 +103,7 @@ class Links {
     struct Kinds {
         std::vector<Link> constants, kernels;
     };
-    /// All are constants where the basis is.
+    /// If the basis is constant, all links are constants.
     static Kinds by_kind(std::vector<Link> links, std::size_t nodes);
     Links(const LinkSites& sites, Kinds links, std::vector<float> blocks);
     template <std::size_t groups>
@@ -114,33 +115,33 @@ class Links {
 
     const LinkSites* sites_;
     Rows constants_, kernels_;
-    std::vector<float> factor_;           ///< Of constants.
-    std::vector<std::uint32_t> visible_;  ///< Of kernels: `words_` a link, bits as LinkLayout has them.
-    std::vector<std::uint32_t> block_;    ///< Of kernels.
+    std::vector<float> factor_;           ///< Per constant link.
+    std::vector<std::uint32_t> visible_;  ///< Per kernel link: `words_` words of bits in the order of LinkLayout.
+    std::vector<std::uint32_t> block_;    ///< Per kernel link.
     std::vector<float> blocks_;
     std::size_t words_ = 0;
 };
 
-/// The least part of a hierarchy that holds all elements which links lead to or come from. `far`: those of clusters;
-/// may be null. What lies below its ends receives alike, and sends as a whole.
+/// The smallest part of a hierarchy that contains all receivers and sources of links. Below its ends, elements receive
+/// the same light and emit as a whole. `far`: cluster links; may be null.
 ElementPart linked_part(const LinkSites& sites, const Links& links, const ClusterLinks* far);
 
-/// Links as an operator on what the ends of a part of the hierarchy hold: unknown i n + k is node k of end i. Pull,
-/// links, push. All elements that links touch must be in the part.
+/// Links as an operator on the values at the ends of a part of the hierarchy: unknown i n + k is node k of end i.
+/// Applies pull, links and push. All receivers and sources must be in the part.
 ///
-/// Over several processes the links may be dealt out by the ends that they lead to: then each process gathers at its
-/// own ends, from these and from those that lie below what its links come from.
+/// With several processes the links may be distributed by the ends that receive them. Each process then gathers at its
+/// own ends; it needs the values of these and of the ends below the sources of its links.
 class LinkOperator final : public TransportOperator {
   public:
-    /// `far`: those of clusters; may be null.
-    /// `together`: so many ends, one after the other, are one process's, and it alone has the links that lead to them;
-    /// all links lead to ends then. 0: every process has all links.
+    /// far  cluster links; may be null
+    /// together  number of consecutive ends per block of one process, which alone has the links to them; all receivers
+    /// must then be ends. 0: every process has all links
     LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part,
                  std::size_t together = 0);
 
     std::size_t size() const override { return part_->ends.size() * sites_->nodes(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
-    /// No cheaper than gathering for all of them.
+    /// Costs as much as gathering for all receivers.
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
     std::size_t memory_bytes() const override { return links_->memory_bytes() + (far_ ? far_->memory_bytes() : 0); }
     DealtUnknowns dealt() const override { return dealt_; }

@@ -15,7 +15,7 @@ namespace {
 constexpr HierarchyBasis all_kinds[] = {HierarchyBasis::haar, HierarchyBasis::flatlet2, HierarchyBasis::flatlet3,
                                         HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3};
 
-/// Links over a scene whose elements reflect b(x), refined until their errors are below `tolerance` each.
+/// Links of a scene whose elements reflect b(x), refined until each error is below `tolerance`.
 struct Linked : LitElements {
     LinkRefiner refiner;
 
@@ -47,23 +47,24 @@ struct Linked : LitElements {
             }
         return std::sqrt(sum / stage.area);
     }
-    /// What the links say of themselves, as a mean over the surfaces of reflectance `rho`.
+    /// Error estimate of the links, as a mean over the surfaces of reflectance `rho`.
     double estimate(double rho) const { return refiner.error() / std::sqrt(stage.area) / rho; }
 };
 
-TEST(Links, OfAClosedBoxOfEvenLightBringOneEverywhere) {
+TEST(Links, GiveOneEverywhereInAClosedBoxOfUniformLight) {
     const Scene box = box_scene(1, 2, 3, 0.8, 1);
     for (const HierarchyBasis kind : all_kinds) {
         const Linked linked(box, kind, 0.01, [](const Point&) { return 1.0; });
         const double error = linked.error([](ElementId, const Point&) { return 1.0; });
-        // The parts cancel in the whole: only the estimate's order is to be right, and from above.
+        // The errors of parts cancel in the whole, so the estimate is only required to be an upper bound of the right
+        // order.
         EXPECT_LT(error, 1.5 * linked.estimate(0.8) + 1e-7) << static_cast<int>(kind);  // blocks are floats
         EXPECT_LT(error, kind == HierarchyBasis::haar ? 0.03 : 0.01) << static_cast<int>(kind);
         EXPECT_EQ(linked.refiner.open_light(), linked.refiner.light()) << static_cast<int>(kind);
     }
 }
 
-/// Light that falls off along a tube, against all leaves one by one.
+/// Light that decreases along a tube, compared with the sum over all leaves.
 TEST(Links, AgreeWithTheSumOverAllLeavesWithinTheirEstimate) {
     const Scene box = box_scene(1, 1, 4, 0.8, 1);
     const auto light = [](const Point& x) { return std::exp(-x.z); };
@@ -87,7 +88,7 @@ TEST(Links, AgreeWithTheSumOverAllLeavesWithinTheirEstimate) {
     }
 }
 
-TEST(Links, HigherOrdersNeedFewerOfThem) {
+TEST(Links, HigherOrdersNeedFewerLinks) {
     const Scene box = box_scene(1, 1, 4, 0.8, 1);
     const auto light = [](const Point& x) { return std::exp(-x.z); };
     std::array<std::size_t, 3> count{};
@@ -99,7 +100,7 @@ TEST(Links, HigherOrdersNeedFewerOfThem) {
     EXPECT_LT(count[2], count[1]);
 }
 
-TEST(Links, BringInSinglePrecisionWhatTheyAreListedWith) {
+TEST(Links, GatherAgreesWithTheListedFormFactors) {
     const Scene scene = built_scene("cornell");
     for (const HierarchyBasis kind : all_kinds) {
         const Linked linked(
@@ -112,33 +113,33 @@ TEST(Links, BringInSinglePrecisionWhatTheyAreListedWith) {
         for (ElementId e : linked.tree.ids()) {
             double mean = 0;
             for (std::size_t k = 0; k < linked.sites.nodes(); ++k) mean += linked.sites.weight(e, k) * E.node(e, k)[0];
-            // Sums of some hundred floats; the list's kernels are double.
+            // Sums of a few hundred floats; the list's kernels are double.
             EXPECT_NEAR(mean, listed[e], 3e-6 * std::max(listed[e], 0.01)) << static_cast<int>(kind);
         }
     }
 }
 
-/// A rule's error has one sign for all of a wall, and would come back from every reflection.
-TEST(Links, BringEvenLightExactlyInTheMeanOverTheirReceiver) {
+/// The error of a rule has the same sign all over a wall, and would accumulate with every reflection.
+TEST(Links, UniformLightHasTheExactMeanOverAReceiver) {
     const Scene box = box_scene(1, 1, 4, 0.8, 1);
     for (const HierarchyBasis kind : all_kinds) {
         const Linked linked(box, kind, 0.01, [](const Point& x) { return std::exp(-x.z); });
         const LinkSites& sites = linked.sites;
         for (const KeptLink& link : linked.refiner.make_links().list()) {
-            if (sites.nodes() == 1) continue;  // their receivers' mean is over other points
+            if (sites.nodes() == 1) continue;  // the mean of their receivers is over other points
             double exact = 0;
             for (std::size_t k = 0; k < sites.nodes(); ++k)
                 exact += sites.weight(link.receiver, k) * point_to_polygon(sites.node(link.receiver, k),
                                                                            sites.normal(link.receiver),
                                                                            linked.tree.outline(link.source));
-            // Links are scaled where they can be off by 1e-5; blocks and scales are floats.
+            // Links are scaled if they may be wrong by 1e-5; blocks and scales are floats.
             EXPECT_NEAR(link.form_factor, exact, 2e-5 * exact + 1e-9) << static_cast<int>(kind);
         }
     }
 }
 
-/// Those that carry little are constants, of higher orders too: less is kept, and looked at, for the same light.
-TEST(Links, OfHigherOrdersMayBeConstants) {
+/// Links with a small contribution are constants even at higher orders: less is stored and read for the same light.
+TEST(Links, WeakLinksOfHigherOrdersAreConstants) {
     const Scene scene = built_scene("cornell");
     const auto light = [](const Point& x) { return 1 + std::sin(3 * x.x); };
     for (const HierarchyBasis kind : {HierarchyBasis::multiwavelet2, HierarchyBasis::multiwavelet3}) {
@@ -147,7 +148,7 @@ TEST(Links, OfHigherOrdersMayBeConstants) {
         EXPECT_LT(links.memory_bytes(), pure.refiner.make_links().memory_bytes()) << static_cast<int>(kind);
         EXPECT_LT(3 * mixed.refiner.form_factors(), 2 * pure.refiner.form_factors()) << static_cast<int>(kind);
         const NodalField E = pure.gathered();
-        // Elements need not be cut alike: E of one is read where the other has its nodes.
+        // Elements may be split differently: E of one is evaluated at the nodes of the other.
         const ElementLocator locator(pure.tree, pure.stage.scene.regions().size());
         const double apart = mixed.error([&](ElementId e, const Point& x) {
             const ElementTree::Place at = locator.find(pure.tree.region(e), x);
@@ -162,21 +163,21 @@ TEST(Links, OfHigherOrdersMayBeConstants) {
     }
 }
 
-/// Most links between things that are near each other carry next to nothing: their kernel is made anew. What is missed
-/// by that is in the links' error, which is small beside what is allowed.
-TEST(Links, KeepBlocksForLightThatCounts) {
+/// Most links between near elements contribute little, and their kernel is recomputed. The error of that is included in
+/// the links' error and is small relative to the tolerance.
+TEST(Links, StoreBlocksOnlyForSignificantLight) {
     const Scene scene = built_scene("cornell");
     const Linked linked(scene, HierarchyBasis::multiwavelet3, 0.05, [](const Point&) { return 1.0; });
     const Links links = linked.refiner.make_links();
-    // 20 bytes a link, and 324 of one in six.
+    // 20 bytes per link, and 324 for one link in six.
     EXPECT_LT(links.memory_bytes(), 75 * links.size());
     const Scene box = box_scene(1, 1, 1, 0.8, 1);
     const Linked even(box, HierarchyBasis::multiwavelet3, 0.5, [](const Point&) { return 1.0; });
     EXPECT_LT(even.error([](ElementId, const Point&) { return 1.0; }), 1.5 * even.estimate(0.8) + 1e-7);
 }
 
-/// What lies below the elements that links touch receives as they do, and sends as a whole.
-TEST(LinkOperator, OnThePartThatLinksTouchBringsWhatItDoesOnAllLeaves) {
+/// Below the elements that links touch, receivers get the same light, and sources act as a whole.
+TEST(LinkOperator, OnTheLinkedPartAgreesWithThatOnAllLeaves) {
     const Scene scene = built_scene("cornell");
     for (const HierarchyBasis kind : all_kinds) {
         const Linked linked(scene, kind, 0.05, [](const Point& x) { return 1 + x.z + x.x * x.y; });
@@ -196,13 +197,13 @@ TEST(LinkOperator, OnThePartThatLinksTouchBringsWhatItDoesOnAllLeaves) {
                 out.set_node(of->ends[i / sites.nodes()], i % sites.nodes(), irradiance[i]);
             out.push();
         }
-        for (ElementId e : all.ends)  // single precision in the gather may round otherwise
+        for (ElementId e : all.ends)  // single precision in the gather may round differently
             for (std::size_t k = 0; k < sites.nodes(); ++k)
                 EXPECT_NEAR(E[1].node(e, k)[0], E[0].node(e, k)[0], 1e-6) << static_cast<int>(kind);
     }
 }
 
-TEST(Links, AreTheSameOnAnyNumberOfThreads) {
+TEST(Links, DoNotDependOnTheNumberOfThreads) {
     const Scene scene = built_scene("cornell");
     std::vector<double> before;
     for (const int count : {1, 2}) {
@@ -221,7 +222,7 @@ TEST(Links, AreTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(Links, DoNotLeakThroughAThinWall) {
-    // Two rooms side by side, 1 mm of wall between them; light in one of them only.
+    // Two rooms side by side, separated by 1 mm of wall; light in one of them only.
     SceneDescription d;
     d.file = "rooms.obj";
     d.materials = {{"wall", Spectrum(0.8), Spectrum()}, {"lamp", Spectrum(0.8), Spectrum(1.0)}};

@@ -10,11 +10,11 @@
 namespace exitance {
 namespace {
 
-/// The leaves in an order in which those of every element stand side by side.
+/// An order of the leaves in which those below every element are contiguous.
 struct LeafOrder {
-    Field<ElementId, std::uint32_t> first, count;  ///< Those of an element are [first, first + count).
-    std::vector<std::uint32_t> place;              ///< By leaf number.
-    std::vector<std::uint32_t> roots;              ///< Where the leaves of each root begin.
+    Field<ElementId, std::uint32_t> first, count;  ///< The leaves below an element are [first, first + count).
+    std::vector<std::uint32_t> place;              ///< Per leaf number: its position.
+    std::vector<std::uint32_t> roots;              ///< Per root: position of its first leaf.
 
     LeafOrder(const ElementTree& tree, const LeafNumbering& numbering)
         : first(tree.size(), 0), count(tree.size(), 0), place(numbering.leaves.size()) {
@@ -38,7 +38,7 @@ class RowLinker {
     RowLinker(const LinkSites& sites, const LeafOrder& order, const Field<ElementId, double>& roughness)
         : tree_(sites.tree()), sites_(sites), order_(order), roughness_(roughness) {}
 
-    /// `counts`: as how many rays each of those counts that `hits` are of; empty: all alike.
+    /// counts  weight of each ray in `hits`; empty: 1
     void link(ElementId receiver, std::span<const std::uint32_t> hits, std::span<const float> counts, double allowed,
               std::vector<Link>& out) {
         places_.clear();
@@ -58,13 +58,14 @@ class RowLinker {
     }
 
   private:
-    /// What a ray met: where its leaf stands in the order, and as how many rays it counts.
+    /// A ray hit: the position of its leaf in the order, and the weight of the ray.
     struct Met {
         std::uint32_t leaf;
         float counts;
     };
 
-    /// `places`: sorted, those of the source first. Returns how many those are.
+    /// Links a receiver to a source, or to its parts. `places`: sorted hits, those of the source first. Returns the
+    /// number of hits of the source.
     std::size_t link_to(ElementId source, std::span<const Met> places, ElementId receiver, double allowed, float share,
                         std::vector<Link>& out) {
         const std::uint32_t end = order_.first[source] + order_.count[source];
@@ -90,7 +91,7 @@ class RowLinker {
     const LinkSites& sites_;
     const LeafOrder& order_;
     const Field<ElementId, double>& roughness_;
-    std::vector<Met> places_;  ///< What the rays of a leaf met.
+    std::vector<Met> places_;  ///< The hits of one leaf's rays.
 };
 
 }  // namespace
@@ -135,7 +136,7 @@ std::vector<KeptLink> list_of_all(const Links& own, const LeafNumbering& numberi
     std::vector<std::size_t> first(leaves + 1, 0);
     for (std::size_t i = 0; i < leaves; ++i) first[i + 1] = first[i] + count[i];
     std::vector<KeptLink> all(first.back());
-    // Leaves are numbered in order of their ids, as links are listed.
+    // Leaves are numbered in the order of their ids, in which links are listed, too.
     for (std::size_t i = 0, at = 0; i < leaves; ++i)
         if (is_own(i, block))
             for (std::size_t k = 0; k < count[i]; ++k) all[first[i] + k] = here[at++];

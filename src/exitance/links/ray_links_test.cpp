@@ -14,7 +14,7 @@ struct Kept {
     Scene scene;
 };
 
-/// Elements of a scene that reflect b(x), and rows of 32 rays of each.
+/// Elements of a scene that reflect b(x), with rows of 32 rays each.
 struct Rows : Kept, LitElements {
     LeafNumbering numbering{tree};
     ElementLocator locator{tree, stage.scene.regions().size()};
@@ -24,7 +24,7 @@ struct Rows : Kept, LitElements {
     Rows(Scene given, const Light& light) : Kept{std::move(given)}, LitElements(scene, HierarchyBasis::haar, light) {}
 
     Links links(double allowed) const { return link_by_rays(sites, numbering, rows, b, allowed); }
-    /// E of leaves.
+    /// E of the leaves.
     std::vector<double> over(const Links& links) const {
         NodalField E(sites);
         links.gather(b, E);
@@ -46,7 +46,7 @@ double uneven(const Point& x) {
     return 1 + x.z + 0.3 * std::sin(7 * x.x);
 }
 
-TEST(RayLinks, OfAClosedSceneSumToOneAtEveryLeaf) {
+TEST(RayLinks, SumToOneAtEveryLeafOfAClosedScene) {
     const Rows box(box_scene(1, 2, 3, 0.5, 1), uneven);
     for (const double allowed : {0.0, 0.01, 1.0}) {
         Field<ElementId, double> sum(box.tree.size(), 0.0);
@@ -56,13 +56,13 @@ TEST(RayLinks, OfAClosedSceneSumToOneAtEveryLeaf) {
     }
 }
 
-TEST(RayLinks, BringWhatRaysDoWhereNothingIsAllowed) {
+TEST(RayLinks, AgreeWithRaysIfNoErrorIsAllowed) {
     const Rows scene(built_scene("cornell"), uneven);
     const std::vector<double> by_links = scene.over(scene.links(0)), by_rays = scene.by_rays();
     for (std::size_t i = 0; i < by_rays.size(); ++i) EXPECT_NEAR(by_links[i], by_rays[i], 1e-6);  // sums of floats
 }
 
-TEST(RayLinks, LeadToLargerSourcesWithinTheErrorAllowed) {
+TEST(RayLinks, LeadToLargerSourcesWithinTheAllowedError) {
     const Rows scene(built_scene("cornell"), uneven);
     const std::vector<double> by_rays = scene.by_rays();
     std::size_t before = scene.links(0).size();
@@ -77,13 +77,13 @@ TEST(RayLinks, LeadToLargerSourcesWithinTheErrorAllowed) {
             const double rho = mean(scene.stage.scene.material(scene.tree.region(e)).reflectance);
             squares += scene.tree.area(e) * std::pow(rho * (by_links[i] - by_rays[i]), 2);
         }
-        // Each link has its share at most; that of a source and those of its neighbours do not all cancel.
+        // Each link has at most its share; errors of a source and of its neighbours do not all cancel.
         EXPECT_LT(std::sqrt(squares), 1.5 * allowed * std::sqrt(static_cast<double>(links.size()))) << allowed;
         EXPECT_GT(squares, 0);
     }
 }
 
-TEST(RayLinks, AreTheSameOnAnyNumberOfThreads) {
+TEST(RayLinks, DoNotDependOnTheNumberOfThreads) {
     const Rows scene(built_scene("cornell"), uneven);
     set_threads(1);
     const std::vector<KeptLink> once = scene.links(0.003).list();
@@ -97,7 +97,7 @@ TEST(RayLinks, AreTheSameOnAnyNumberOfThreads) {
     }
 }
 
-TEST(OpenShare, IsAllWhereNothingStandsInBetweenAndLittleInARoomWithBoxes) {
+TEST(OpenShare, IsOneWithoutOccludersAndSmallInARoomWithBoxes) {
     const auto share = [](Scene scene) {
         const Rows r(std::move(scene), [](const Point&) { return 1.0; });
         const std::vector<Spectrum> even(r.numbering.leaves.size(), Spectrum(1.0));
@@ -116,7 +116,7 @@ TEST(OpenShare, IsAllWhereNothingStandsInBetweenAndLittleInARoomWithBoxes) {
     EXPECT_LT(cornell, 0.6) << "the floor sees nothing whole";
 }
 
-TEST(IsClosed, TellsABoxFromAnOpenRoom) {
+TEST(IsClosed, DistinguishesABoxFromAnOpenRoom) {
     const auto closed = [](Scene scene) {
         const Rows r(std::move(scene), [](const Point&) { return 1.0; });
         return is_closed(r.stage, r.tree, r.numbering, r.locator, 1);

@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// A link with what the refinement needs to judge its receiver.
+/// A link with the data that judging its receiver needs.
 struct FoundLink {
     FoundLink() = default;
     FoundLink(const LinkDecision& decision, bool is_open);
@@ -14,22 +14,22 @@ struct FoundLink {
     Link link;
     std::array<float, 5> departure{};
     float squared_error = 0, light = 0, undersampling = 0;
-    std::uint32_t shadow = none;  ///< Where shadowed light and its variance at the nodes stand in the refiner's pool.
+    std::uint32_t shadow = none;  ///< Index in the refiner's pool of the shadowed light at the nodes and its variance.
     bool near = false;            ///< True if it has a block.
     bool open = false;            ///< True if its view is certainly open.
-    bool cuts_receiver = false;   ///< Whatever its other links bring.
+    bool cuts_receiver = false;   ///< True if its receiver must be split whatever the other links contribute.
 };
 
-/// What all links of a receiver bring to it: the sum of their departures, and light that meets something on its way.
+/// Sum over all links of a receiver: departures, and light that may be occluded.
 struct ReceivedLight {
     Departure departure{};
     NodeRow shadowed{}, variance{};
 
-    /// `shadow`: light at the nodes where something stands in between, then its variance; null: none.
+    /// Adds a link. `shadow`: light at the nodes with possible occluders in between, then its variance; null: none.
     void add(const FoundLink& link, const float* shadow, std::size_t nodes);
 
-    /// Of interpolation, mean square: the departure from a polynomial, and where shadowed light varies over the
-    /// receiver by more than the rays' errors, a part of that, (W/m^2)^2.
+    /// Mean squared interpolation error, (W/m^2)^2: the departure from a polynomial and, if the shadowed light varies
+    /// over the receiver by more than the rays' errors, a share of that variation.
     double squared_error(const LinkSites& sites, ElementId e) const;
 };
 

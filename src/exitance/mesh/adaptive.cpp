@@ -3,7 +3,7 @@
 namespace exitance {
 namespace {
 
-/// The line through a cell's middle at right angles to its longest extent, measured in space.
+/// The line through a cell's centroid perpendicular to its longest extent, measured in space.
 CutLine across_longest_extent(const ElementTree& tree, ElementId e) {
     const std::vector<Vec2> domain = tree.domain(e);
     const Patch& patch = tree.patch(e);
@@ -28,7 +28,7 @@ IdRange<ElementId> refine_element(ElementTree& tree, ElementId leaf, Cut only) {
     }
     const Patch& patch = tree.patch(leaf);
     const double a = norm(patch.a), b = norm(patch.b);
-    constexpr double long_ratio = 1.5 * (1 + 1e-6);  // 3 : 2 is not long, however coordinates are rounded
+    constexpr double long_ratio = 1.5 * (1 + 1e-6);  // 3 : 2 counts as not longer, however coordinates are rounded
     tree.split(leaf, only != Cut::none     ? only
                      : patch.is_triangle() ? Cut::both
                      : a > long_ratio * b  ? Cut::u

@@ -5,17 +5,17 @@
 namespace exitance {
 namespace {
 
-TEST(SufficientCut, IsAcrossWhatLightVariesAlongWhereTheRestMayStay) {
+TEST(SufficientCut, IsAcrossTheDirectionOfVariationIfTheRestIsAllowed) {
     EXPECT_EQ(sufficient_cut(1, {0.95, 0.01}, 0.1), Cut::u);
     EXPECT_EQ(sufficient_cut(1, {0.01, 0.95}, 0.1), Cut::v);
 }
 
-TEST(SufficientCut, IsNoneWhereTheRestIsTooMuchOrNothingIsKnown) {
+TEST(SufficientCut, IsNoneIfTheRestExceedsTheLimitOrIsUnknown) {
     EXPECT_EQ(sufficient_cut(1, {0.5, 0.4}, 0.1), Cut::none);
     EXPECT_EQ(sufficient_cut(1, {0, 0}, 2), Cut::none);
 }
 
-TEST(RefineElement, CutsAParallelogramAcrossTheDirectionNamed) {
+TEST(RefineElement, SplitsAParallelogramAcrossTheGivenDirection) {
     ElementTree tree;
     const ElementId root = tree.add_root(RegionId(0), {{0, 0, 0}, {8, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram});
     const IdRange<ElementId> halves = refine_element(tree, root, Cut::v);

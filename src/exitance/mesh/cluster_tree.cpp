@@ -13,12 +13,12 @@ struct ClusterTree::Item {
     std::uint32_t room = 0;
 };
 
-/// Items that stand together, and may be halved.
+/// A group of items, which can be bisected.
 struct ClusterTree::Group {
     std::span<Item> items;
 
-    /// Where the sum of area times number is least, by bins along the longest side of the middles' box; in the middle
-    /// where that divides nothing.
+    /// Splits the group where the sum of area times number is smallest, using bins along the longest side of the box of
+    /// the items' centres; at the middle if that does not separate any.
     std::array<Group, 2> halves() const {
         constexpr std::size_t bins = 16;
         Box middles;
@@ -74,7 +74,7 @@ ClusterTree::ClusterTree(const ElementTree& pieces, std::span<const std::uint32_
     find_facings();
 }
 
-/// `items` stand by rooms.
+/// Builds a root whose children are the rooms. `items` must be sorted by room.
 ClusterId ClusterTree::join_rooms(std::span<Item> items) {
     const ClusterId c = nodes_.add({});
     sum_up(c, items);
@@ -97,27 +97,27 @@ void ClusterTree::set_children(ClusterId c, std::span<const Body> children) {
 }
 
 ClusterId ClusterTree::build(std::span<Item> items) {
-    constexpr std::size_t most_pieces = 6, most_groups = 4;
-    constexpr double large = 1.0 / 8;  // of half the box's surface
+    constexpr std::size_t max_pieces = 6, max_groups = 4;
+    constexpr double min_direct_share = 1.0 / 8;  // share of half the box's surface area
     const ClusterId c = nodes_.add({});
     sum_up(c, items);
     Box box;
     for (const Item& item : items) box.add(item.box);
     const auto rest_begins = std::stable_partition(
-        items.begin(), items.end(), [&](const Item& item) { return item.area > large * box.half_area(); });
+        items.begin(), items.end(), [&](const Item& item) { return item.area > min_direct_share * box.half_area(); });
     std::vector<Body> children;
     for (auto it = items.begin(); it != rest_begins; ++it) children.push_back(it->piece);
     std::vector<Group> groups;
     const std::span<Item> rest(rest_begins, items.end());
-    if (rest.size() <= most_pieces)
+    if (rest.size() <= max_pieces)
         for (const Item& item : rest) children.push_back(item.piece);
     else
         groups.push_back({rest});
-    while (!groups.empty() && groups.size() < most_groups) {
+    while (!groups.empty() && groups.size() < max_groups) {
         const auto largest = std::max_element(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
             return a.items.size() < b.items.size();
         });
-        if (largest->items.size() <= most_pieces) break;
+        if (largest->items.size() <= max_pieces) break;
         const auto [first, second] = largest->halves();
         *largest = first;
         groups.push_back(second);
@@ -130,7 +130,7 @@ ClusterId ClusterTree::build(std::span<Item> items) {
 
 void ClusterTree::sum_up(ClusterId c, std::span<const Item> items) {
     Node& node = nodes_[c];
-    const Point origin = items[0].box.lo;  // far from the world's origin, sums would lose digits
+    const Point origin = items[0].box.lo;  // avoids cancellation far from the world's origin
     Vec3 moment;
     for (const Item& item : items) {
         moment += item.area * (pieces_.patch(item.piece).centre() - origin);
@@ -146,7 +146,8 @@ void ClusterTree::sum_up(ClusterId c, std::span<const Item> items) {
 
 namespace {
 
-/// Directions in 54 kinds: nine squares on each face of a cube, so that the axes stand in the middle of one.
+/// Assigns directions to 54 classes: nine squares on each face of a cube, so that each axis is in the middle of a
+/// square.
 constexpr std::size_t kinds = 54;
 std::uint8_t kind_of(const Vec3& n) {
     const Vec3 size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
@@ -160,7 +161,7 @@ std::uint8_t kind_of(const Vec3& n) {
 
 }  // namespace
 
-/// From the members' facings to the cluster's, children first.
+/// Sums the members' facings to those of each cluster, children first.
 void ClusterTree::find_facings() {
     constexpr std::uint8_t nowhere = 255;
     struct Part {

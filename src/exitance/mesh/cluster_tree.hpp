@@ -8,9 +8,9 @@
 namespace exitance {
 
 using ClusterId = Id<struct ClusterTag>;  ///< A node of a ClusterTree.
-using FacingId = Id<struct FacingTag>;    ///< A part of a cluster, see Facing.
+using FacingId = Id<struct FacingTag>;    ///< A group of cluster members with similar normals; see Facing.
 
-/// What light passes between: an element, or a cluster of pieces.
+/// A sender or receiver of light: an element, or a cluster of pieces.
 class Body {
   public:
     Body() = default;
@@ -20,7 +20,7 @@ class Body {
     bool is_cluster() const { return value_ & cluster_bit; }
     ElementId element() const { return ElementId(value_); }
     ClusterId cluster() const { return ClusterId(value_ & ~cluster_bit); }
-    std::uint32_t value() const { return value_; }  ///< One for each body.
+    std::uint32_t value() const { return value_; }  ///< Unique for each body.
     constexpr auto operator<=>(const Body&) const = default;
 
   private:
@@ -28,23 +28,23 @@ class Body {
     std::uint32_t value_ = 0;
 };
 
-/// The members of a cluster that face about the same way. From afar they send and receive as their vector area does,
-/// which is exact as long as all of them face the other body, or none. So a wall's lit side never shines through it.
+/// The members of a cluster with similar normals. In the far field they send and receive light like their vector area.
+/// That is exact if all of them face the other body, or none does; so light never leaks through a wall.
 struct Facing {
     Vec3 area;           ///< Sum of A n, m^2.
     double surface = 0;  ///< Sum of A, m^2.
-    double spread = 0;   ///< How far a member's normal may depart from the area's direction, |n - n'|.
-    FacingId above;      ///< Where the cluster's parent holds these members; none for the root.
+    double spread = 0;   ///< Largest deviation of a member's unit normal n from the area's direction n': |n - n'|.
+    FacingId above;      ///< The facing of the parent cluster that includes these members; none for the root.
 };
 
-/// A hierarchy above the pieces of a scene (the roots of its elements), for light that passes between far things: inner
-/// nodes alone, their children being clusters or pieces. Pieces that are large beside a node are its own children; the
-/// others are halved where the sum of area times number is least (binned), until few are left. O(k log k).
-/// Source: [Smits94], [Hasenfratz99]; light by vector areas: [Willmott99].
+/// A cluster hierarchy above the pieces of a scene (the roots of its elements), for light transport between distant
+/// objects. It has inner nodes only; their children are clusters or pieces. Pieces that are large relative to a node
+/// are its direct children. The others are bisected where the sum of area times number is smallest (binned), until few
+/// are left. O(k log k) for k pieces. Source: [Smits94], [Hasenfratz99]; light by vector areas: [Willmott99].
 class ClusterTree {
   public:
-    /// Empty when there are no pieces; the pieces must outlive it. `room`: a number for each of them; no cluster but
-    /// the root holds pieces of two rooms. Empty: all are of one.
+    /// pieces  must outlive the tree; without pieces the tree is empty
+    /// room  index of the room of each piece; only the root may contain pieces of several rooms. Empty: one room
     explicit ClusterTree(const ElementTree& pieces, std::span<const std::uint32_t> room = {});
 
     ClusterId root() const { return ClusterId(0); }
@@ -53,14 +53,16 @@ class ClusterTree {
     std::span<const Body> children(ClusterId c) const {
         return std::span(children_).subspan(nodes_[c].first, nodes_[c].count);
     }
-    const Point& centre(ClusterId c) const { return nodes_[c].centre; }  ///< Of its area.
-    double radius(ClusterId c) const { return nodes_[c].radius; }        ///< Of a ball about the centre, metres.
-    double area(ClusterId c) const { return nodes_[c].area; }            ///< Of all members, m^2.
+    const Point& centre(ClusterId c) const { return nodes_[c].centre; }  ///< Centroid of its area.
+    double radius(ClusterId c) const {
+        return nodes_[c].radius;
+    }  ///< Radius of a ball around the centre that contains it, metres.
+    double area(ClusterId c) const { return nodes_[c].area; }  ///< Total area of all members, m^2.
 
     IdRange<FacingId> facings(ClusterId c) const { return nodes_[c].facings; }
     const Facing& facing(FacingId f) const { return facings_[f]; }
     std::size_t facing_count() const { return facings_.size(); }
-    /// Where the cluster right above a piece holds it.
+    /// The facing that includes a piece, in the cluster directly above it.
     FacingId facing_of(ElementId piece) const { return facing_of_[piece]; }
     std::size_t memory_bytes() const;
 
@@ -68,7 +70,7 @@ class ClusterTree {
     struct Node {
         Point centre;
         double radius = 0, area = 0;
-        std::uint32_t first = 0, count = 0;  ///< Of children_.
+        std::uint32_t first = 0, count = 0;  ///< Range in `children_`.
         IdRange<FacingId> facings;
     };
     struct Item;
@@ -83,7 +85,7 @@ class ClusterTree {
     Field<ClusterId, Node> nodes_;
     std::vector<Body> children_;
     Field<FacingId, Facing> facings_;
-    std::vector<std::uint8_t> key_;  ///< Of each facing, while the tree is built.
+    std::vector<std::uint8_t> key_;  ///< Direction class of each facing, during construction only.
     Field<ElementId, FacingId> facing_of_;
 };
 

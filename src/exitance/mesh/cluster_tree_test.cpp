@@ -78,7 +78,7 @@ TEST(ClusterTree, FacingsAreTheSumsOfTheirMembersWithinTheirSpread) {
     }
 }
 
-TEST(ClusterTree, ALargePolygonStandsApartFromWhatIsSmall) {
+TEST(ClusterTree, ALargePolygonIsSeparateFromSmallOnes) {
     const Scene scene = built_scene("complex", {{"m", "20"}});
     const Clustered of(scene);
     const auto& pieces = of.tree.roots();

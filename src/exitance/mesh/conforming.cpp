@@ -13,22 +13,22 @@
 namespace exitance {
 namespace {
 
-/// A leaf as a polygon, with the corners of others that stand on its sides.
+/// A leaf as a polygon, including the corners of other leaves on its sides.
 struct Polygon {
     ElementId leaf;
-    std::vector<std::uint32_t> vertex;  ///< Welded.
+    std::vector<std::uint32_t> vertex;  ///< Indices of welded points.
     std::vector<Vec2> uv;               ///< In the leaf's coordinates.
-    std::vector<bool> is_own;           ///< Not one of another leaf.
-    std::uint32_t first_slot = 0;       ///< The number of the first vertex among all polygons' vertices.
+    std::vector<bool> is_own;           ///< False for corners of other leaves.
+    std::uint32_t first_slot = 0;       ///< Index of its first vertex among the vertices of all polygons.
 };
 
-/// A side of a polygon, from its vertex `slot` on.
+/// A side of a polygon, starting at its vertex `slot`.
 struct Side {
     std::uint32_t from, to;  ///< Vertices.
     std::uint32_t polygon, slot;
 };
 
-/// The leaves of one plane: what is cut, and which corners share a node.
+/// Finds the splits and the shared nodes of the leaves of one plane.
 class PlaneNodes {
   public:
     PlaneNodes(const ElementTree& tree, std::span<const ElementId> leaves, std::span<const ContactLines::Line> jumps)
@@ -41,8 +41,9 @@ class PlaneNodes {
 
     struct Leaf {
         ElementId leaf;
-        Fan fan;                          ///< Empty border: the leaf stays.
-        std::vector<std::uint32_t> node;  ///< Of the plane: of the apex, then of the border; of the leaf's corners.
+        Fan fan;  ///< Empty border: the leaf stays whole.
+        /// Node numbers within the plane: of the apex, then of the border; or of the leaf's corners.
+        std::vector<std::uint32_t> node;
     };
     std::vector<Leaf> leaves;
     std::uint32_t node_count = 0;
@@ -62,10 +63,10 @@ class PlaneNodes {
 
     const ElementTree& tree_;
     std::vector<Point> places_;
-    double tolerance_ = 0;  ///< Metres: places nearer to one another are one.
+    double tolerance_ = 0;  ///< Metres: points nearer to each other coincide.
     std::vector<std::uint32_t> on_jumps_;
     std::vector<Polygon> polygons_;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_;  ///< Slots that share a node.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_;  ///< Pairs of slots that share a node.
     std::uint32_t slot_count_ = 0;
 };
 
@@ -79,9 +80,10 @@ void PlaneNodes::find_vertices(std::span<const ElementId> leaves, std::span<cons
             box.add(places_.back());
         }
     }
-    constexpr double rounding = 1e-9;  // of the surface, and of where it lies
+    constexpr double rounding = 1e-9;  // share of the surface's size and of its distance from the origin
     tolerance_ = rounding * (norm(box.hi - box.lo) + std::max(norm(box.hi - Point{}), norm(box.lo - Point{})));
-    // Around the end of a line all corners share a node: a jump needs one in the middle, too.
+    // All corners around the end of a line share a node, so a discontinuity needs a vertex in the middle of the line,
+    // too.
     const Patch& patch = tree_.patch(leaves.front());
     for (const ContactLines::Line& line : jumps)
         for (const Point& place : {line.a, line.b, 0.5 * (line.a + line.b)}) {
@@ -101,7 +103,7 @@ void PlaneNodes::find_vertices(std::span<const ElementId> leaves, std::span<cons
     }
 }
 
-/// All sides, those between the same vertices side by side.
+/// All sides of all polygons, sorted so that sides between the same vertices are adjacent.
 std::vector<Side> PlaneNodes::sorted_sides() const {
     std::vector<Side> sides;
     for (std::uint32_t p = 0; p < polygons_.size(); ++p) {
@@ -135,10 +137,10 @@ std::vector<Side> PlaneNodes::unmatched_sides() const {
 
 struct PlaneNodes::Hanging {
     std::uint32_t polygon, slot, vertex;
-    double at;  ///< In (0, 1) along the side.
+    double at;  ///< Position along the side, in (0, 1).
 };
 
-/// Which of these vertices stand on which sides?
+/// Finds those of the given vertices that are inside a side.
 void PlaneNodes::find_hanging(std::span<const Side> sides, std::vector<std::uint32_t> ends,
                               std::vector<Hanging>& out) const {
     std::sort(ends.begin(), ends.end());
@@ -164,8 +166,9 @@ void PlaneNodes::find_hanging(std::span<const Side> sides, std::vector<std::uint
     }
 }
 
-/// All sides but those on the border of the surface, beyond which light has nothing to jump to: no side matches them,
-/// no corner stands on them, and they stand on none. The other side of a sheet has an edge along each.
+/// All sides except those on the border of the surface, across which there is nothing to be discontinuous with. A
+/// border side matches no other side, has no hanging vertices, and its ends do not hang on other sides. The other side
+/// of a sheet would otherwise contribute an edge along each of them.
 std::vector<Side> PlaneNodes::inner_sides(std::span<const Side> open, std::span<const Hanging> found) const {
     std::vector<std::uint32_t> hanging;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> stood_on, border;
@@ -184,8 +187,8 @@ std::vector<Side> PlaneNodes::inner_sides(std::span<const Side> open, std::span<
     return out;
 }
 
-/// Corners of other leaves, which are ends of sides that match no other, and ends and middles of lines at which light
-/// jumps.
+/// Inserts hanging vertices: corners of other leaves (ends of sides that match no other), and ends and middles of lines
+/// of discontinuity.
 void PlaneNodes::insert_hanging_vertices() {
     const std::vector<Side> open = unmatched_sides();
     std::vector<std::uint32_t> ends;
@@ -193,7 +196,7 @@ void PlaneNodes::insert_hanging_vertices() {
     std::vector<Hanging> found;
     find_hanging(open, std::move(ends), found);
     find_hanging(inner_sides(open, found), on_jumps_, found);
-    // The last first, so that what is inserted moves nothing that is still to come.
+    // Last first, so that insertions do not move the remaining ones.
     std::sort(found.begin(), found.end(), [](const Hanging& a, const Hanging& b) {
         return std::tuple(a.polygon, a.slot, a.at, a.vertex) > std::tuple(b.polygon, b.slot, b.at, b.vertex);
     });
@@ -206,7 +209,7 @@ void PlaneNodes::insert_hanging_vertices() {
         Polygon& p = polygons_[h.polygon];
         const auto after = static_cast<std::ptrdiff_t>(h.slot) + 1;
         p.vertex.insert(p.vertex.begin() + after, h.vertex);
-        // Joined places are off by a tolerance, which is much of a thin leaf.
+        // Welded points may be off by the tolerance, which is large relative to a thin leaf.
         const Patch& patch = tree_.patch(p.leaf);
         p.uv.insert(p.uv.begin() + after, into_shape(patch.coordinates(places_[h.vertex]), patch.shape));
         p.is_own.insert(p.is_own.begin() + after, false);
@@ -216,9 +219,9 @@ void PlaneNodes::insert_hanging_vertices() {
 void PlaneNodes::join_corners(std::span<const ContactLines::Line> jumps) {
     for (Polygon& p : polygons_) p.first_slot = slot_count_, slot_count_ += static_cast<std::uint32_t>(p.vertex.size());
     if (polygons_.empty()) return;
-    constexpr double off_line = 1e3;  // a cut follows its line less closely than rounding
+    constexpr double jump_tolerance_factor = 1e3;  // cuts follow their line less accurately than rounding
     const Patch& patch = tree_.patch(polygons_[0].leaf);
-    const OnJump jumps_at(jumps, patch.normal(), patch.origin, off_line * tolerance_);
+    const OnJump jumps_at(jumps, patch.normal(), patch.origin, jump_tolerance_factor * tolerance_);
     const std::vector<Side> sides = sorted_sides();
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         const Side &a = sides[i], &b = sides[i + 1];
@@ -241,7 +244,7 @@ PlaneNodes::Leaf PlaneNodes::with_own_nodes(const Polygon& polygon) {
     return out;
 }
 
-/// Has every triangle an area, beside the element's frame?
+/// Returns whether every triangle has an area above 1e-6 of the element's frame.
 bool has_area(const Fan& fan) {
     constexpr double least = 1e-6;
     for (std::size_t i = 1; i < fan.border.size(); ++i)
@@ -249,8 +252,8 @@ bool has_area(const Fan& fan) {
     return true;
 }
 
-/// Around the one corner of another leaf that stands on the sides, where there is one alone; a cell without any around
-/// its first corner; else around the middle.
+/// Makes a fan. The apex is the only hanging vertex if there is exactly one, the first corner of a cell without any,
+/// and otherwise the centroid.
 PlaneNodes::Leaf PlaneNodes::as_fan(const Polygon& polygon, const std::vector<std::uint32_t>& node_of_slot) {
     const std::size_t n = polygon.vertex.size();
     const auto hanging = static_cast<std::size_t>(std::count(polygon.is_own.begin(), polygon.is_own.end(), false));
@@ -297,7 +300,7 @@ void PlaneNodes::choose_fans() {
     }
 }
 
-/// Makes room for fans and for the nodes of leaves, `share` times as many as were found.
+/// Reserves memory for fans and nodes: `share` times the numbers in `found`.
 void reserve(const std::vector<FoundLeaves>& found, double share, ElementTree& tree, SharedNodes& nodes) {
     FoundLeaves::Counts counts;
     for (const FoundLeaves& f : found) f.count(counts);
@@ -306,10 +309,10 @@ void reserve(const std::vector<FoundLeaves>& found, double share, ElementTree& t
     nodes.first_corner.reserve(tree.size() + shared(counts.triangles)), nodes.node_of.reserve(shared(counts.corners));
 }
 
-/// Cuts the leaves of one plane into their fans, and gives all of them their nodes, after those of the planes before.
+/// Splits the leaves of one plane into their fans and assigns nodes, numbered after those of the previous planes.
 void add_plane(const FoundLeaves& f, ElementTree& tree, SharedNodes& out) {
     const std::uint32_t first = out.first_node.back();
-    std::uint32_t more = 0;  // nodes of slivers that could not be cut after all
+    std::uint32_t more = 0;  // nodes of slivers that could not be split after all
     const auto add_leaf = [&](ElementId e, std::initializer_list<std::uint32_t> nodes) {
         out.first_corner.resize(tree.size());
         out.first_corner[e] = static_cast<std::uint32_t>(out.node_of.size());
@@ -355,15 +358,16 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
     };
     std::size_t left = 0;
     for (const std::vector<ElementId>& of_plane : leaves) left += of_plane.size();
-    // Some planes after the other: what is found takes more memory than what is made of it.
-    constexpr std::size_t together = std::size_t(1) << 17;  // leaves
+    // Processes the planes in groups, because the intermediate result needs more memory than the final one.
+    constexpr std::size_t group_size = std::size_t(1) << 17;  // leaves per group
     SharedNodes out;
     out.first_node.push_back(0);
     for (std::size_t first = 0, end = 0; first < planes; first = end) {
         std::size_t count = 0;
-        for (; end < planes && count < together; ++end) count += leaves[end].size();
+        for (; end < planes && count < group_size; ++end) count += leaves[end].size();
         std::vector<FoundLeaves> found(end - first);
-        std::vector<double> work;  // planes differ much: a floor may have as many leaves as all that stands on it
+        // Planes differ greatly: a floor may have as many leaves as all objects on it together.
+        std::vector<double> work;
         for (std::size_t p = first; p < end; ++p) work.push_back(static_cast<double>(leaves[p].size()));
         find_together(
             found, 1, [&](std::size_t k) { return find(first + k); },
@@ -372,7 +376,8 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         for (std::size_t k = 0; k < found.size(); ++k)
             if (!leaves[first + k].empty() && found[k].leaf.empty()) return {};
         if (first == 0 && count > 0) {
-            constexpr double margin = 1.1;  // by which others may be cut more often; only memory that is used counts
+            // Later planes may need more splits; reserved memory that is not used costs nothing.
+            constexpr double margin = 1.1;
             reserve(found, left > count ? margin * static_cast<double>(left) / static_cast<double>(count) : 1, tree,
                     out);
         }

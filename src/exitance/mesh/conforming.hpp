@@ -8,12 +8,13 @@
 
 namespace exitance {
 
-/// The nodes of a conforming mesh: places at which the corners of leaves meet and hold one value. Corners at one place
-/// share a node where they can be walked to around it without crossing a line at which light jumps.
+/// The nodes of a conforming mesh: points at which leaf corners meet and share one value. Corners at one point share a
+/// node if a path around the point connects them without crossing a line of discontinuity.
 struct SharedNodes {
-    Field<ElementId, std::uint32_t> first_corner;  ///< Of a leaf in `node_of`; of inner elements: unused.
-    std::vector<std::uint32_t> node_of;            ///< The node of a corner; nodes of a plane stand side by side,
-    std::vector<std::uint32_t> first_node;         ///< from here on: one a plane, and one past the last.
+    /// Per leaf: index of its first corner in `node_of`. Unused for inner elements.
+    Field<ElementId, std::uint32_t> first_corner;
+    std::vector<std::uint32_t> node_of;     ///< Node of each corner. The nodes of a plane are contiguous,
+    std::vector<std::uint32_t> first_node;  ///< starting here: one entry per plane, and one past the last.
 
     std::span<const std::uint32_t> of(ElementId leaf, const ElementTree& tree) const {
         const int corners = leaf < tree.first_of_fans() ? tree.patch(leaf).corner_count() : 3;
@@ -21,10 +22,11 @@ struct SharedNodes {
     }
 };
 
-/// Makes a function that is one polynomial a leaf and one value a node continuous over whole planes: leaves on whose
-/// sides corners of others stand, and cells, are cut into fans of triangles. A sliver that has no triangles keeps nodes
-/// of its own. Light jumps at contacts, as leaves of their size see it. O(n log n).
-/// Where `stop` is requested before all leaves are looked at, no nodes are returned, and the tree is of no use.
+/// Makes a tree conforming, so that a function with one polynomial per leaf and one value per node is continuous over
+/// whole planes. Leaves with hanging nodes (corners of other leaves on their sides), and cells, are split into fans of
+/// triangles. A sliver that cannot be triangulated gets nodes of its own. Lines of contact are discontinuities, as
+/// judged by the size of the leaves. O(n log n).
+/// stop  if requested before all leaves are processed, returns no nodes, and the tree is unusable
 SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
                             const ContactLines& contacts, const StopRequest* stop = nullptr);
 

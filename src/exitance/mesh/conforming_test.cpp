@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A floor of 4 m x 4 m in two materials that meet at x = 2.5, and a plate upright on it along x = 1 from y = 1 to 3.
+/// A floor of 4 m x 4 m in two materials that meet at x = 2.5, and an upright plate on it along x = 1 from y = 1 to 3.
 Scene floor_and_plate() {
     SceneDescription d;
     d.points = {{0, 0, 0}, {2.5, 0, 0}, {2.5, 4, 0}, {0, 4, 0}, {4, 0, 0},
@@ -20,7 +20,7 @@ Scene floor_and_plate() {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// All its pieces, cut along contacts, then at random in every way there is.
+/// All pieces of the scene, split along contacts, then randomly in all supported ways.
 ElementTree cut_at_random(const Scene& scene, const ContactLines& contacts, int cuts) {
     ElementTree tree;
     for (const Piece& piece : cut_into_pieces(scene)) tree.add_root(piece.region, piece.patch);
@@ -39,7 +39,7 @@ ElementTree cut_at_random(const Scene& scene, const ContactLines& contacts, int 
     return tree;
 }
 
-/// The value at a place of the floor of a function that is `value[node]` at every node, on the side of `from`.
+/// Value at a point of the floor of the function that equals `value[node]` at every node, on the side of `from`.
 double value_at(const ElementTree& tree, const SharedNodes& nodes, const std::vector<double>& value, const Point& p) {
     for (ElementId root : tree.roots()) {
         const Vec2 uv = tree.patch(root).coordinates(p);
@@ -69,7 +69,7 @@ TEST(Conforming, TheOtherSideOfASheetCutsNoFans) {
     EXPECT_EQ(nodes.first_node.back(), 6u) << "three corners of each side";
 }
 
-TEST(Conforming, NodesMakeFunctionsContinuousButAcrossContacts) {
+TEST(Conforming, NodesMakeFunctionsContinuousExceptAcrossContacts) {
     const Scene scene = floor_and_plate();
     const ContactLines contacts(scene);
     for (const int cuts : {0, 3, 60}) {
@@ -78,7 +78,7 @@ TEST(Conforming, NodesMakeFunctionsContinuousButAcrossContacts) {
         RandomStream random(8, Stream::mesh);
         std::vector<double> value(nodes.first_node.back());
         for (double& v : value) v = random.uniform();
-        // Leaves are wider than a millimetre or two: across a micrometre a continuous function changes by little.
+        // Leaves are wider than one or two millimetres, so a continuous function changes little across a micrometre.
         constexpr double step = 1e-6, steepest = 1e4;
         int jumps = 0;
         for (int i = 0; i < 20000; ++i) {
@@ -96,7 +96,7 @@ TEST(Conforming, NodesMakeFunctionsContinuousButAcrossContacts) {
     }
 }
 
-TEST(Conforming, PlanesHoldWhatLightSeesAsOneSurface) {
+TEST(Conforming, PlanesGroupCoplanarRegionsThatReceiveLightAlike) {
     const Field<RegionId, std::uint32_t> plane = plane_of_regions(floor_and_plate());
     ASSERT_EQ(plane.size(), 3u);
     EXPECT_EQ(plane[RegionId(0)], plane[RegionId(1)]);

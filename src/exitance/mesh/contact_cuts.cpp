@@ -10,11 +10,12 @@
 namespace exitance {
 namespace {
 
-/// Cuts a leaf along a line; a parallelogram along its own directions into parallelograms, else into cells. False, and
-/// nothing is done, when that leaves hardly anything on one side: so for a line along the border.
+/// Splits a leaf along a line: into parallelograms if the line is parallel to one of a parallelogram's directions,
+/// otherwise into cells. Returns false, and does nothing, if almost nothing would be on one side, as for a line along
+/// the border.
 bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
-    constexpr double least = 1e-5;     // of the area
-    constexpr double parallel = 1e-6;  // of the element that a line may be off a direction
+    constexpr double least = 1e-5;     // share of the area
+    constexpr double parallel = 1e-6;  // deviation from parallel, as a share of the element
     if (!tree.is_cell(e) && !tree.patch(e).is_triangle())
         for (const auto& [way, along, across] :
              {std::tuple{Cut::u, line.normal.x, line.normal.y}, {Cut::v, line.normal.y, line.normal.x}}) {
@@ -27,10 +28,11 @@ bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
     return !tree.split_by_line(e, line, least).is_none();
 }
 
-/// Cuts one element along the contacts inside it.
+/// Splits one element along the contact lines inside it.
 ///
-/// Where many things stand, lines would run from one to all others: halves first, and each has fewer to look at. But
-/// around a point where many meet there is no end to it: what has been halved some times in vain is left as it is.
+/// With many lines, splitting along each would make every part search all others. The element is therefore bisected
+/// first, and each half has fewer lines. Near a point where many lines meet this never ends: an element that was
+/// bisected several times without effect stays as it is.
 class ContactCutter {
   public:
     using Lines = std::vector<ContactLines::Line>;
@@ -38,7 +40,7 @@ class ContactCutter {
     ContactCutter(ElementTree& tree, const ContactLines& contacts, const StopRequest* stop)
         : tree_(tree), contacts_(contacts), stop_(stop) {}
 
-    /// `around`: the lines that run through the element.
+    /// around  the lines that cross the element
     void run(ElementId e, Lines around) {
         open_.push_back(
             {.element = e, .area = tree_.area(e), .around = std::make_shared<const Lines>(std::move(around))});
@@ -52,29 +54,29 @@ class ContactCutter {
   private:
     struct Open {
         ElementId element;
-        double area;                               ///< Before contacts cut it, m^2.
-        std::size_t lines = ~std::size_t(0);       ///< When they last became fewer by a quarter,
-        int in_vain = 0;                           ///< and how many cuts ago that was.
-        std::size_t of_parent = ~std::size_t(0);   ///< Lines that the element had before a line cut it,
-        int unchanged = 0;                         ///< and how often a part had no fewer.
-        std::shared_ptr<const Lines> around = {};  ///< If they were found already.
+        double area;                               ///< Area before contacts split it, m^2.
+        std::size_t lines = ~std::size_t(0);       ///< Number of lines when it last decreased by a quarter or more.
+        int in_vain = 0;                           ///< Number of bisections since then.
+        std::size_t of_parent = ~std::size_t(0);   ///< Number of lines of the parent, which was split by a line.
+        int unchanged = 0;                         ///< How often a part had no fewer lines than its parent.
+        std::shared_ptr<const Lines> around = {};  ///< Lines that may cross it, if known.
     };
 
     void cut(Open now) {
-        constexpr std::size_t many = 24;
-        constexpr int most_in_vain = 6;
+        constexpr std::size_t max_lines = 24;
+        constexpr int max_in_vain = 6;
         const ElementId e = now.element;
         Lines around = now.around ? *now.around : contacts_.around(tree_, e, now.area);
         const std::vector<std::pair<Vec2, Vec2>> lines = contacts_.inside(tree_, e, around);
-        // A line that has cut an element stands in neither part, unless rounding leaves it there, as among nearly
-        // parallel ones that are closer than the cut is exact.
-        if (lines.size() >= now.of_parent && ++now.unchanged > most_in_vain) return;
-        if (lines.size() > many) {
+        // A line that has split an element is inside neither part, unless rounding leaves it there, as with nearly
+        // parallel lines that are closer than the accuracy of the split.
+        if (lines.size() >= now.of_parent && ++now.unchanged > max_in_vain) return;
+        if (lines.size() > max_lines) {
             if (lines.size() < now.lines - now.lines / 4)
                 now = {e, now.area, lines.size()};
-            else if (++now.in_vain > most_in_vain)
+            else if (++now.in_vain > max_in_vain)
                 return;
-            // Halves are smaller elements, for which less is a gap: their lines are found anew.
+            // The halves are smaller elements with smaller limits for gaps, so their lines are searched again.
             for (ElementId child : refine_element(tree_, e))
                 open_.push_back({child, now.area * tree_.area(child) / tree_.area(e), now.lines, now.in_vain});
             if (!tree_.is_leaf(e)) return;
@@ -87,7 +89,7 @@ class ContactCutter {
             if (!cut_along(tree_, e, {normal, dot(normal, a)})) continue;
             for (ElementId child : tree_.children(e))
                 open_.push_back({child, now.area, now.lines, now.in_vain, lines.size(), now.unchanged, of_parts});
-            return;  // the children look for their own share of the other contacts
+            return;  // the children process the remaining lines
         }
     }
 
@@ -97,7 +99,7 @@ class ContactCutter {
     std::vector<Open> open_;
 };
 
-/// A leaf of one tree as one of another: a root, or where it is a cell, what the same lines cut from a root.
+/// Copies a leaf to another tree: as a root, or for a cell, by repeating the splits of its root.
 ElementId copy_leaf(const ElementTree& tree, ElementId e, ElementTree& out) {
     if (!tree.is_cell(e)) return out.add_root(tree.region(e), tree.patch(e));
     const ElementId parent = tree.parent(e);
@@ -105,10 +107,10 @@ ElementId copy_leaf(const ElementTree& tree, ElementId e, ElementTree& out) {
     return ElementId(first.value + e.value - tree.children(parent).front().value);
 }
 
-/// How elements are cut, one after the other, to be done again in another tree.
+/// A recording of how elements are split, for repetition in another tree.
 class FoundCuts {
   public:
-    /// All that comes of `element` stands in the tree from `first` on.
+    /// Records the splits of `element`, whose descendants are in the tree from index `first` on.
     void add(const ElementTree& tree, ElementId element, std::size_t first) {
         const std::size_t before = cuts_.size();
         for (std::size_t i = first; i < tree.size(); ++i) {
@@ -122,7 +124,7 @@ class FoundCuts {
     }
     void add_none() { count_.push_back(0); }
 
-    /// Cuts these, the last first.
+    /// Repeats the splits, last element first.
     void cut(ElementTree& tree, std::span<const ElementId> elements) const {
         auto end = cuts_.end();
         for (std::size_t i = count_.size(); i-- > 0;) {
@@ -146,15 +148,15 @@ class FoundCuts {
 
   private:
     struct MadeCut {
-        std::uint32_t element;  ///< 0: the element itself; else the so-many-th of those that came of it.
+        std::uint32_t element;  ///< 0: the element itself; k > 0: the k-th of its descendants.
         Cut way;
-        CutLine line;  ///< Of a cut across one direction, its ratio in place of the offset.
+        CutLine line;  ///< For splits across one direction, the ratio replaces the offset.
     };
-    std::vector<std::uint32_t> count_;  ///< Of each element's cuts.
+    std::vector<std::uint32_t> count_;  ///< Per element: its number of splits.
     std::vector<MadeCut> cuts_;
 };
 
-/// In a tree of their own, so that elements are cut side by side.
+/// Finds the splits in a separate tree, so that elements can be processed in parallel.
 FoundCuts find_cuts(const ElementTree& tree, std::span<const ElementId> elements, const ContactLines& contacts,
                     const StopRequest* stop) {
     FoundCuts out;
@@ -181,12 +183,12 @@ FoundCuts find_cuts(const ElementTree& tree, std::span<const ElementId> elements
 
 void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts,
                         const StopRequest* stop) {
-    constexpr std::size_t together = 8;  // few: of neighbours many may be cut often
+    constexpr std::size_t block_size = 8;  // small, because many neighbouring elements may need many splits
     const auto block = [&](std::size_t b) {
-        const std::size_t first = b * together;
-        return std::span(from).subspan(first, std::min(together, from.size() - first));
+        const std::size_t first = b * block_size;
+        return std::span(from).subspan(first, std::min(block_size, from.size() - first));
     };
-    std::vector<FoundCuts> found((from.size() + together - 1) / together);
+    std::vector<FoundCuts> found((from.size() + block_size - 1) / block_size);
     find_together(
         found, 1, [&](std::size_t b) { return find_cuts(tree, block(b), contacts, stop); },
         [](auto& a, FoundCuts& cuts) { a(cuts); }, "contacts");

@@ -11,20 +11,20 @@ bool hovers(double hp, double hq, double tolerance, double gap) {
     return std::min(hp, hq) >= -tolerance && std::max(hp, hq) <= gap;
 }
 
-/// The part of an edge that lies in a plane though the edge as a whole leaves it: of a box turned by a tiny angle. A
-/// jump ends where it does. Steep edges meet the plane in a point.
+/// Adds the part of an edge inside a plane that the edge as a whole leaves, e.g. of a box rotated by a tiny angle. The
+/// discontinuity ends where this part ends. Steep edges meet the plane only in a point and are skipped.
 void contact_of_tilted_edge(const Point& p, const Point& q, const Plane& plane, double tolerance,
                             std::vector<Segment>& out) {
-    constexpr double steepest = 0.01;  // sine; the part is 1e-4 of the scene's size long then
+    constexpr double max_sine = 0.01;  // sine; at this slope the part is 1e-4 of the scene's size long
     const double hp = plane.signed_distance(p), rise = plane.signed_distance(q) - hp;
-    if (std::abs(rise) > steepest * norm(q - p) || rise == 0) return;
+    if (std::abs(rise) > max_sine * norm(q - p) || rise == 0) return;
     const double at_low = (-tolerance - hp) / rise, at_high = (tolerance - hp) / rise;
     const double first = std::max(0.0, std::min(at_low, at_high)), last = std::min(1.0, std::max(at_low, at_high));
     if (first < last) out.push_back({p + first * (q - p), p + last * (q - p), 0});
 }
 
-/// An edge that lies in a plane, or hovers over it by less than `gap`: then also a line on either side as far away as
-/// the edge is high, so wide is the strip in which light changes.
+/// Adds the line of an edge that is in a plane or above it by less than `gap`. In the latter case also adds a line on
+/// each side, at a distance equal to the edge's height: the width of the strip in which light changes.
 void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double tolerance, double gap,
                       std::vector<Segment>& out) {
     const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
@@ -37,7 +37,7 @@ void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double
     out.push_back({p - across, q - across, height});
 }
 
-/// How far a flat outline reaches at right angles to a line of its plane, on either side of it; metres.
+/// How far a planar outline extends perpendicular to a line in its plane, on each side of the line; metres.
 struct Reach {
     double left = 0, right = 0;
 
@@ -53,25 +53,25 @@ struct Reach {
     double whole() const { return left + right; }
 };
 
-/// Leaves of the lines beside what hovers over an element those that are worth it. Light there changes within the
-/// height: to a slat no wider than a few heights that is no jump, however long the slat is; what is cut off along a
-/// border is to be no mere trace of the element; and strips in a gap are to be a noticeable part of it, all together.
-/// `before_cuts`: how many times longer the element was before contacts cut it.
+/// Removes lines that are not worth a split. Light below an edge changes within the edge's height; this is not a
+/// discontinuity for a slat a few heights wide, however long. A part cut off along a border must be more than a trace
+/// of the element, and the strips of a gap together a noticeable share of it.
+/// before_cuts  length of the element before contacts split it, relative to now
 void leave_worthy(std::vector<Segment>& lines, std::span<const Point> outline, double before_cuts, const Normal& n,
                   double tolerance) {
-    constexpr double trace = 0.01, noticeable = 0.1;  // of its width across the line
+    constexpr double min_side_share = 0.01, min_depth_share = 0.1;  // shares of its width across the line
     std::erase_if(lines, [&](const Segment& line) {
         if (line.height <= 10 * tolerance) return false;
         const Reach reach(outline, line, n);
         const double width = before_cuts * reach.whole(), area = width * width;
-        const bool is_part = std::min(reach.left, reach.right) > trace * width;
+        const bool is_part = std::min(reach.left, reach.right) > min_side_share * width;
         const bool is_strip = line.gap_depth > 0;
         const double highest = is_strip ? ContactLines::height_of_gap(area) : ContactLines::height_of_jump(area);
-        return !is_part || line.height > highest || (is_strip && line.gap_depth < noticeable * width);
+        return !is_part || line.height > highest || (is_strip && line.gap_depth < min_depth_share * width);
     });
 }
 
-/// The line in which a face crosses a plane; its edges that hover over the plane are left out.
+/// Adds the line in which a face crosses a plane; edges of the face just above the plane are excluded.
 void crossing_of_face(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
                       std::vector<Segment>& out) {
     const std::size_t m = outline.size();
@@ -86,14 +86,14 @@ void crossing_of_face(std::span<const Point> outline, const Plane& plane, double
             crossings.push_back(p + (hp / (hp - hq)) * (q - p));
     }
     if (crossings.size() < 2) return;
-    // In order along the line; a concave face crosses the plane in several stretches, which may run into one here.
+    // Sort along the line. A concave face may cross the plane in several segments, which are merged here.
     const Vec3 direction = crossings[1] - crossings[0];
     std::sort(crossings.begin(), crossings.end(),
               [&](const Point& a, const Point& b) { return dot(a, direction) < dot(b, direction); });
     out.push_back({crossings.front(), crossings.back(), 0});
 }
 
-/// Length of the part of a segment inside a convex polygon, as a share of the segment, and where it runs.
+/// Clips a segment to a convex polygon. Returns false if nothing is left.
 bool clip_to_domain(const std::vector<Vec2>& domain, Vec2& a, Vec2& b) {
     double first = 0, last = 1;
     const Vec2 d = b - a;
@@ -128,7 +128,7 @@ ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7
     for (const Region& region : scene.regions())
         for (const std::vector<Point>& loop : region.loops) edges += loop.size();
     edges_.reserve(edges);
-    // Edges between coplanar faces are in nothing's way: borders of regions alone count.
+    // Edges between coplanar faces occlude nothing, so only borders of regions count.
     boxes.clear();
     const auto add_loop = [&](const std::vector<Point>& loop, RegionId r) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -180,17 +180,17 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::inside(const ElementTree& tree,
     const std::vector<Point> outline = tree.outline(e);
     double longest = 0;
     for (const Point& corner : outline) longest = std::max(longest, norm(corner - outline[0]));
-    // What contacts turned by tiny angles leave between them is too thin to be cut again with any exactness.
-    constexpr double thinnest = 100;  // in tolerances: 1e-5 of the scene's size
-    if (tree.area(e) <= thinnest * tolerance_ * longest) lines.clear();
+    // The slivers between contacts that differ by tiny angles are too thin to be split accurately.
+    constexpr double min_width_in_tolerances = 100;  // times the tolerance: 1e-5 of the scene's size
+    if (tree.area(e) <= min_width_in_tolerances * tolerance_ * longest) lines.clear();
     const std::vector<Vec2> domain = tree.domain(e);
     const Patch& patch = tree.patch(e);
     std::vector<std::pair<Vec2, Vec2>> out;
     std::erase_if(lines, [&](const Line& line) {
         Vec2 a = patch.coordinates(line.a), b = patch.coordinates(line.b);
         if (!clip_to_domain(domain, a, b)) return true;
-        constexpr double shortest = 1e-3;  // of the element: a contact at a point alone parts nothing
-        if (std::hypot(b.x - a.x, b.y - a.y) > shortest) out.emplace_back(a, b);
+        constexpr double min_length = 1e-3;  // share of the element: a contact in a single point separates nothing
+        if (std::hypot(b.x - a.x, b.y - a.y) > min_length) out.emplace_back(a, b);
         return false;
     });
     return out;
@@ -208,8 +208,8 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
         return !std::binary_search(regions.begin(), regions.end(), r,
                                    [](RegionId a, RegionId b) { return a.value < b.value; });
     };
-    // What covers a place may hover over it by as much (Occluders::is_covered).
-    constexpr double coplanar = 1e-6;  // of the scene's size
+    // A surface that covers a point may be above it by this much (Occluders::is_covered).
+    constexpr double coplanar = 1e-6;  // share of the scene's size
     const double near = coplanar * scene_->size(), highest = std::max(near, gap);
     Box box;
     for (RegionId region : regions)

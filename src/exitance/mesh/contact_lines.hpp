@@ -11,44 +11,48 @@
 
 namespace exitance {
 
-/// Where other polygons touch a surface or pass through it. Across such a line light jumps: under a box that stands on
-/// a floor it is dark, beside it not; on either side of a pane it is unlike. No polynomial follows that: elements are
-/// cut.
+/// Lines along which other polygons touch a surface or intersect it. Light is discontinuous across such a line: dark
+/// under a box on the floor and lit next to it, or different on the two sides of a pane. No polynomial approximates
+/// that, so elements are split along these lines.
 class ContactLines {
   public:
     /// The scene must outlive it. O(n log n).
     explicit ContactLines(const Scene& scene);
 
-    /// A stretch of a line over a plane, and how high it is above it at most, metres.
+    /// A segment above a plane, with its largest height above the plane, metres.
     struct Line {
         Point a, b;
         double height;
-        double gap_depth = 0;  ///< Of a line between strips of a gap: how far into it all of them reach, metres.
+        /// For a line between strips of a gap: how far all strips together extend into the gap, metres.
+        double gap_depth = 0;
     };
-    /// Lines that may run through an element's domain, from faces of other regions: edges that lie in its plane or
-    /// hover over it by little, with a line on either side of the latter; the lines in which faces cross it; and in
-    /// gaps, along whose mouths light falls off, up to three lines inwards. What is little, and what a gap, are shares
-    /// of its width across the line and of the root of `area` (m^2), the element's before contacts cut it, so that its
-    /// parts share its lines.
+    /// Lines that may cross an element's domain, caused by faces of other regions: edges in its plane; edges at a small
+    /// height above it, each with one more line on either side; intersections with faces; and in gaps, where light
+    /// falls off from the mouth, up to three lines parallel to the mouth. What counts as a small height or a gap
+    /// depends on the element's width across the line and on `area`.
+    /// area  of the element before contacts split it, m^2, so that its parts share its lines
     std::vector<Line> around(const ElementTree& tree, ElementId e, double area) const;
-    /// Leaves of the lines those that meet an element's domain; returns what of them runs through its inside, as pairs
-    /// of points in the element's own coordinates.
+    /// Removes from `lines` those that do not meet the element's domain. Returns the parts of the others inside the
+    /// domain, as pairs of points in the element's coordinates.
     std::vector<std::pair<Vec2, Vec2>> inside(const ElementTree& tree, ElementId e, std::vector<Line>& lines) const;
 
-    /// All contacts of a whole region's plane within the region's box, along its border, too. Metres.
+    /// All contact lines in the plane of a whole region inside the region's box, including those along its border.
+    /// Metres.
     std::vector<std::pair<Point, Point>> of_region(RegionId region) const;
 
-    /// The same of regions in one plane, ascending, but for contacts among themselves; up to a height of `gap` metres.
+    /// Like of_region(), for several coplanar regions (sorted), excluding contacts among them, and including edges up
+    /// to a height of `gap` metres.
     std::vector<Line> over_plane(std::span<const RegionId> regions, double gap) const;
 
-    /// Under an edge that hovers over a surface light changes within a strip as narrow as the edge is high: that is a
-    /// jump to elements whose area (m^2) is so large.
+    /// Height (metres) up to which an edge above a surface counts as a discontinuity for elements of this area (m^2).
+    /// The light changes within a strip as wide as the edge is high.
     static double height_of_jump(double area) { return 0.05 * std::sqrt(area); }
-    /// Between two faces light falls off within their distance from where it enters: elements of such an area that are
-    /// more than twice as wide as the faces are apart would carry it further in than it goes, and from there back out.
+    /// Distance (metres) of two faces up to which they count as a gap for elements of this area (m^2): half of the
+    /// element's width. Light that enters a gap falls off within that distance; wider elements would carry it too far
+    /// into the gap, and from there back out.
     static double height_of_gap(double area) { return 0.5 * std::sqrt(area); }
 
-    /// Calls visit(span) for the plain arrays that most of it stands in.
+    /// Calls visit(span) for the arrays that hold most of the memory.
     template <class Visit>
     void visit_arrays(const Visit& visit) const {
         faces_.visit_arrays(visit), borders_.visit_arrays(visit), gaps_.visit_arrays(visit);
@@ -62,13 +66,13 @@ class ContactLines {
     };
     const Scene* scene_;
     Bvh faces_, borders_, gaps_;
-    std::vector<Edge> edges_;         ///< Of borders of regions, and of panes, which are of none.
-    std::vector<GapLine> gap_lines_;  ///< What `gaps_` is of.
-    double tolerance_;                ///< Metres; what is nearer than this to a plane touches it.
+    std::vector<Edge> edges_;         ///< Border edges of regions, and edges of panes (region: none).
+    std::vector<GapLine> gap_lines_;  ///< Indexed by `gaps_`.
+    double tolerance_;                ///< Metres: points nearer to a plane than this touch it.
 };
 
-/// Cuts every leaf of `from` along the contacts inside it: into parallelograms where they run in its directions, else
-/// into cells. Leaves those that are still to be cut as they are where a stop is asked for.
+/// Splits every leaf in `from` along the contact lines inside it: into parallelograms where the lines are parallel to
+/// its directions, otherwise into cells. If a stop is requested, the remaining leaves stay unsplit.
 void cut_along_contacts(ElementTree& tree, const std::vector<ElementId>& from, const ContactLines& contacts,
                         const StopRequest* stop = nullptr);
 

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A floor of 4 m x 4 m, and a plate that stands on it upright along x = 1, from y = 1 to y = 3, `gap` metres over it.
+/// A floor of 4 m x 4 m, and an upright plate along x = 1 from y = 1 to y = 3, `gap` metres above it.
 Scene floor_and_plate(double gap) {
     SceneDescription d;
     d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, gap}, {1, 3, gap}, {1, 3, 1}, {1, 1, 1}};
@@ -17,7 +17,7 @@ Scene floor_and_plate(double gap) {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-TEST(ContactLines, AnElementIsCutWhereAPlateStandsOnIt) {
+TEST(ContactLines, AnElementIsCutAlongAPlateOnIt) {
     const Scene scene = floor_and_plate(0);
     const ContactLines contacts(scene);
     ElementTree tree;
@@ -29,11 +29,11 @@ TEST(ContactLines, AnElementIsCutWhereAPlateStandsOnIt) {
     EXPECT_NE(left, right);
     EXPECT_NEAR(tree.area(left), 4, 1e-9);
     EXPECT_NEAR(tree.area(right), 12, 1e-9);
-    // Along its own direction: what comes of it can do all that parallelograms can.
+    // Split along its own direction, so that the parts are parallelograms.
     EXPECT_FALSE(tree.is_cell(left) || tree.is_cell(right));
 }
 
-TEST(ContactLines, AnElementIsCutWhereAPaneStandsOnIt) {
+TEST(ContactLines, AnElementIsCutAlongAPaneOnIt) {
     SceneDescription d;
     d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
     d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
@@ -50,7 +50,7 @@ TEST(ContactLines, AnElementIsCutWhereAPaneStandsOnIt) {
     EXPECT_NEAR(tree.area(tree.leaf_at(ElementId(0), {0.2499, 0.5}).element), 4, 1e-9) << "on its one side";
 }
 
-TEST(ContactLines, NothingIsCutOnceAStopIsAskedFor) {
+TEST(ContactLines, NothingIsCutAfterAStopRequest) {
     const Scene scene = floor_and_plate(0);
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
@@ -60,7 +60,7 @@ TEST(ContactLines, NothingIsCutOnceAStopIsAskedFor) {
     EXPECT_TRUE(tree.is_leaf(ElementId(0)));
 }
 
-TEST(ContactLines, AcrossItsDirectionsAnElementIsCutIntoCells) {
+TEST(ContactLines, ASlantingLineCutsAnElementIntoCells) {
     const Scene scene = floor_and_plate(0);
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {3, 1, 0}, {-1, 3, 0}, Patch::Shape::parallelogram});
@@ -69,8 +69,8 @@ TEST(ContactLines, AcrossItsDirectionsAnElementIsCutIntoCells) {
     for (ElementId e : tree.leaves()) EXPECT_TRUE(tree.is_cell(e));
 }
 
-/// A floor that slanting lines have parted already, one cell within another, which the plate crosses from part to part.
-TEST(ContactLines, CellsAreCutAsWholeElementsAre) {
+/// A floor already split by slanting lines, one cell within another; the plate crosses several of them.
+TEST(ContactLines, CellsAreCutLikeWholeElements) {
     const Scene scene = floor_and_plate(0);
     ElementTree tree;
     const ElementId floor = tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
@@ -82,7 +82,7 @@ TEST(ContactLines, CellsAreCutAsWholeElementsAre) {
     double area = 0;
     for (ElementId e : tree.leaves()) area += tree.area(e);
     EXPECT_NEAR(area, 16, 1e-9);
-    // Each as if it were alone.
+    // Split each one separately.
     for (ElementId e : before) {
         ElementTree alone;
         alone.add_root(RegionId(0), tree.patch(floor));
@@ -100,7 +100,7 @@ TEST(ContactLines, CellsAreCutAsWholeElementsAre) {
         EXPECT_NE(tree.leaf_at(floor, {0.2499, y / 4}).element, tree.leaf_at(floor, {0.2501, y / 4}).element) << y;
 }
 
-TEST(ContactLines, AnEdgeThatHoversHasAStripOnEitherSide) {
+TEST(ContactLines, AnEdgeAboveASurfaceHasAStripOnEachSide) {
     const Scene scene = floor_and_plate(0.05);
     const ContactLines contacts(scene);
     ElementTree tree;
@@ -111,7 +111,7 @@ TEST(ContactLines, AnEdgeThatHoversHasAStripOnEitherSide) {
     EXPECT_NEAR(tree.area(tree.leaf_at(ElementId(0), {0.25 + 0.006, 0.5}).element), 0.05 * 4, 1e-9);
 }
 
-/// A floor of 4 m x 4 m, and a board of 1 m x 2 m that looks down at it from `gap` metres above.
+/// A floor of 4 m x 4 m, and a board of 1 m x 2 m that faces it from `gap` metres above.
 Scene floor_under_board(double gap) {
     SceneDescription d;
     d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, gap}, {1, 3, gap}, {2, 3, gap}, {2, 1, gap}};
@@ -121,8 +121,8 @@ Scene floor_under_board(double gap) {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// Where parts of the first element end along its middle, in heights of the gap under the board's edge at x = 1. The
-/// element begins at x = `from` and is `width` wide.
+/// Ends of the parts of the first element along its middle line, in heights of the gap, measured from below the board's
+/// edge at x = 1. The element starts at x = `from` and is `width` wide.
 std::vector<double> ends_under_board(const ElementTree& tree, double from, double width, double gap) {
     std::vector<double> out;
     for (double height : {0.0, 1.0, 3.0, 7.0}) {
@@ -134,7 +134,7 @@ std::vector<double> ends_under_board(const ElementTree& tree, double from, doubl
     return out;
 }
 
-/// A part of the floor of `width` metres, as wide as it is long, from `from` on, cut.
+/// A square part of the floor of `width` metres, starting at x = `from`, split along contacts.
 ElementTree floor_element(const Scene& scene, double from, double width) {
     ElementTree tree;
     tree.add_root(RegionId(0), {{from, 2 - width / 2, 0}, {width, 0, 0}, {0, width, 0}, Patch::Shape::parallelogram});
@@ -142,10 +142,10 @@ ElementTree floor_element(const Scene& scene, double from, double width) {
     return tree;
 }
 
-TEST(ContactLines, AGapHasStripsThatWidenFromItsMouthInwards) {
+TEST(ContactLines, StripsOfAGapWidenFromItsMouthInwards) {
     const Scene scene = floor_under_board(0.045);
     EXPECT_EQ(ends_under_board(floor_element(scene, 0.5, 2), 0.5, 2, 0.045), (std::vector<double>{0, 1, 3, 7}));
-    // The board itself, from its own border on; beyond it there is nothing.
+    // The board itself: strips start at its border, and there is nothing beyond it.
     ElementTree board;
     board.add_root(RegionId(1), {{1, 1, 0.045}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
     cut_along_contacts(board, {ElementId(0)}, ContactLines(scene));
@@ -157,8 +157,8 @@ TEST(ContactLines, AGapHasStripsThatWidenFromItsMouthInwards) {
     }
 }
 
-/// What is no jump to an element may be a gap to it still: until the gap is half as high as the element is wide.
-TEST(ContactLines, AnElementThatIsWiderThanAGapIsHighIsCut) {
+/// A height that is no discontinuity for an element may still be a gap for it, up to half of the element's width.
+TEST(ContactLines, AnElementWiderThanTheHeightOfAGapIsCut) {
     const Scene scene = floor_under_board(0.05);
     EXPECT_EQ(ends_under_board(floor_element(scene, 0.8, 0.4), 0.8, 0.4, 0.05), (std::vector<double>{1, 3}));
     EXPECT_EQ(ends_under_board(floor_element(scene, 0.97, 0.12), 0.97, 0.12, 0.05), (std::vector<double>{1}));
@@ -172,7 +172,7 @@ TEST(ContactLines, StripsEndBeforeTheMiddleOfAGap) {
     }
 }
 
-/// Of boards that hang one above the other the lowest makes the floor's gap; another one's mouth is not over the floor.
+/// Only the lowest of several stacked boards makes a gap with the floor; the mouths of the others are not over it.
 TEST(ContactLines, TheNearestOfAStackMakesTheGap) {
     SceneDescription d;
     d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
@@ -189,7 +189,7 @@ TEST(ContactLines, TheNearestOfAStackMakesTheGap) {
     EXPECT_EQ(floor_element(scene, 0.8, 0.4).leaves().size(), floor_element(alone, 0.8, 0.4).leaves().size());
 }
 
-TEST(ContactLines, ABoardFarAboveHasNone) {
+TEST(ContactLines, ABoardFarAboveMakesNoGap) {
     const Scene scene = floor_under_board(0.5);
     ElementTree board;
     board.add_root(RegionId(1), {{1, 1, 0.5}, {0, 2, 0}, {1, 0, 0}, Patch::Shape::parallelogram});
@@ -197,9 +197,9 @@ TEST(ContactLines, ABoardFarAboveHasNone) {
     EXPECT_EQ(board.leaves().size(), 1u);
 }
 
-/// Where 2 m long slats 25 mm wide stand in parallel, what is 5 mm above one is near to its length, but a fifth of its
-/// width: light across it turns no faster than polynomials follow, and none of them is cut. What is 1 mm above is.
-TEST(ContactLines, ASlatIsCutForWhatIsNearToItsWidthAndNotToItsLength) {
+/// Parallel slats 2 m long and 25 mm wide. A height of 5 mm is small relative to a slat's length but a fifth of its
+/// width: polynomials can follow the light across it, and no slat is split. At 1 mm the slats are split.
+TEST(ContactLines, WhetherASlatIsCutDependsOnItsWidthAndNotOnItsLength) {
     for (const double gap : {0.005, 0.001}) {
         SceneDescription d;
         d.points = {{0, 0, 0},      {2, 0, 0},       {2, 0.025, 0},   {0, 0.025, 0},
@@ -230,7 +230,7 @@ TEST(ContactLines, AnEdgeFarAboveAndABorderCutNothing) {
 }
 
 TEST(ContactLines, TrianglesOfTheOtherSideOfASheetCutNothing) {
-    // A disc with two sides, each of 48 triangles around one corner, as exporters write it.
+    // A disc with two sides, each of 48 triangles around one corner, as written by exporters.
     constexpr std::uint32_t n = 50;
     SceneDescription d;
     for (std::uint32_t k = 0; k < n; ++k) d.points.push_back({std::cos(2 * pi * k / n), std::sin(2 * pi * k / n), 0});
@@ -246,9 +246,9 @@ TEST(ContactLines, TrianglesOfTheOtherSideOfASheetCutNothing) {
     EXPECT_EQ(tree.leaves().size(), 1u);
 }
 
-TEST(ContactLines, WhatIsLittleToAnElementIsMoreToItsHalves) {
-    // Forty plates stand close together on a large floor, and a board hovers 2 m over them. To half the floor, 45 m
-    // wide, that is near, to the halves that many plates make of it no longer.
+TEST(ContactLines, LimitsOfHeightShrinkWithTheElement) {
+    // Forty plates close together on a large floor, and a board 2 m above them. For half of the floor, 45 m wide, that
+    // height is small; for the smaller parts into which the plates split it, it is not.
     SceneDescription d;
     d.points = {{0, 0, 0}, {64, 0, 0}, {64, 64, 0}, {0, 64, 0}, {8.5, 1, 2}, {8.5, 3, 2}, {11, 3, 2}, {11, 1, 2}};
     d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
@@ -277,13 +277,13 @@ TEST(ContactLines, WhatIsLittleToAnElementIsMoreToItsHalves) {
               tree.leaf_at(ElementId(0), {10.015 / 64, 2. / 64}).element);
 }
 
-TEST(ContactLines, APointWhereManyThingsMeetIsNotLookedIntoForEver) {
+TEST(ContactLines, CuttingEndsAtAPointWhereManyFacesMeet) {
     SceneDescription d;
     d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1.3, 1.7, 0}, {1.3, 1.7, 1}};
     d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
     d.groups = {"all"};
     d.faces = {{{0, 1, 2, 3}, 0, 0, 1}};
-    for (std::uint32_t k = 0; k < 40; ++k) {  // leaves of a book that stands open
+    for (std::uint32_t k = 0; k < 40; ++k) {  // like the leaves of an open book
         d.points.push_back({1.3 + std::cos(0.1 + 0.15 * k), 1.7 + std::sin(0.1 + 0.15 * k), 0});
         d.faces.push_back({{4, static_cast<std::uint32_t>(d.points.size()) - 1, 5}, 0, 0, 2});
     }

@@ -7,9 +7,9 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t few_roots = 8;
+constexpr std::size_t max_searched_roots = 8;
 
-/// Cell of a coordinate along an axis of `count` cells; what lies outside goes to the cell at the end.
+/// Index of the cell of a coordinate along an axis with `count` cells; coordinates outside are clamped.
 std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count) {
     const double i = (x - origin) * scale;
     return i > 0 ? static_cast<std::uint32_t>(std::min(i, static_cast<double>(count - 1))) : 0;  // NaN goes to 0
@@ -17,7 +17,7 @@ std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count
 
 }  // namespace
 
-/// The root among some that holds a point, or else the one nearest by.
+/// The root that contains a point, or otherwise the nearest one.
 struct ElementLocator::Nearest {
     const Root* root = nullptr;
     Vec2 uv;
@@ -30,14 +30,14 @@ struct ElementLocator::Nearest {
             root = &r, uv = at, distance = 0;
             return;
         }
-        for (const Root& r : roots) {  // only rounding leads here
+        for (const Root& r : roots) {  // reached only because of rounding
             const Vec2 at = r.coordinates(p), held = into_shape(at, r.shape);
             const double d = squared_length(r, at - held);
             if (d < distance) root = &r, uv = held, distance = d;
         }
     }
 
-    /// Of a vector given in a root's coordinates: its sides are those that du and dv are the duals of.
+    /// Squared length (m^2) of a vector in a root's coordinates. The root's sides are the dual basis of du and dv.
     static double squared_length(const Root& r, Vec2 v) {
         const double uu = dot(r.du, r.du), vv = dot(r.dv, r.dv), uv = dot(r.du, r.dv), det = uu * vv - uv * uv;
         return (vv * v.x * v.x - 2 * uv * v.x * v.y + uu * v.y * v.y) / det;
@@ -68,7 +68,7 @@ ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count
     }
     for (std::size_t r = 0; r < region_count; ++r) {
         const std::span<const Root> mine = roots(RegionId(r));
-        if (mine.size() <= few_roots) continue;
+        if (mine.size() <= max_searched_roots) continue;
         grid_of_[r] = static_cast<std::int32_t>(grids_.size());
         grids_.push_back(make_grid(mine));
     }
@@ -83,7 +83,7 @@ ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     grid.s = (drop + 1) % 3, grid.t = (drop + 2) % 3;
 
     const auto box_of = [](const Root& r) {
-        // The sides are the duals of the coordinates' gradients.
+        // The sides are the dual basis of the coordinates' gradients.
         const double uu = dot(r.du, r.du), vv = dot(r.dv, r.dv), uv = dot(r.du, r.dv), det = uu * vv - uv * uv;
         const Vec3 a = (vv * r.du - uv * r.dv) / det, b = (uu * r.dv - uv * r.du) / det;
         Box box;
@@ -93,7 +93,7 @@ ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     };
     Box all;
     for (const Root& r : roots) all.add(box_of(r));
-    // About one cell a root, as square as the region allows.
+    // About one cell per root, as square as the region allows.
     const double width = all.size()[grid.s], height = all.size()[grid.t], count = static_cast<double>(roots.size());
     const double side = std::sqrt(width * height / count);
     const auto cells = [&](double length) {
@@ -104,7 +104,7 @@ ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     grid.s0 = all.lo[grid.s], grid.t0 = all.lo[grid.t];
     grid.s_scale = width > 0 ? grid.columns / width : 0, grid.t_scale = height > 0 ? grid.rows / height : 0;
 
-    // Counted, then filled. Boxes grow a little, so that points on borders find the roots of both sides.
+    // Count, then fill. Boxes are enlarged slightly, so that points on borders find the roots of both sides.
     const double margin = 1e-9 * all.diagonal();
     const auto for_cells = [&](const Root& root, const auto& body) {
         const Box box = box_of(root);
@@ -129,7 +129,8 @@ ElementLocator::Nearest ElementLocator::nearest_root(RegionId region, const Poin
         const Grid& grid = grids_[static_cast<std::size_t>(g)];
         nearest.look_at(grid.cell(grid.row(p[grid.t]) * grid.columns + grid.column(p[grid.s])), p);
         const double margin = 1e-9 * (1 / std::max(grid.s_scale, 1e-300) + 1 / std::max(grid.t_scale, 1e-300));
-        // Outside the roots of its cell by more than rounding: rare, and then every root may be the nearest.
+        // The point is outside all roots of its cell by more than rounding. This is rare, and any root may be the
+        // nearest.
         if (!(nearest.distance <= margin * margin)) nearest.look_at(roots(region), p);
     } else {
         nearest.look_at(roots(region), p);

@@ -8,33 +8,35 @@
 
 namespace exitance {
 
-/// Finds the leaf of a tree that holds a point of a region. A region of few roots looks at each of them; one of many
-/// keeps a grid over its plane; below the root the leaf finder takes over. So a query costs a few steps whatever the
-/// number of roots and the depth. What is found are the leaves that there were when the locator was made.
+/// Finds the leaf of a tree that contains a point of a region. Regions with few roots are searched linearly, those with
+/// many use a grid over the plane; below the root a LeafFinder takes over. A query takes a few steps, independent of
+/// the number of roots and of the depth. Results refer to the tree as it was at construction.
 class ElementLocator {
   public:
     ElementLocator(const ElementTree& tree, std::size_t region_count);
 
-    /// The leaf of `region` that holds the foot of `p` (metres) in the region's plane, and the coordinates there. A
-    /// point outside every root, by rounding or more, goes to the root nearest by; one on a border to the root of the
-    /// lower id. The element is none when the region has no roots. Safe to call from any thread.
+    /// Returns the leaf of `region` that contains the projection of `p` (metres) onto the region's plane, and the
+    /// coordinates in it. A point outside all roots is assigned to the nearest root; a point on a border, to the root
+    /// with the lower id. Returns element none if the region has no roots. Thread-safe.
     ElementTree::Place find(RegionId region, const Point& p) const;
 
-    /// The same by the leaf's number, its place among the leaves in the order of their ids; `no_leaf` for none.
+    /// Like find(), but returns the leaf's index among all leaves in the order of their ids; `no_leaf` if there is
+    /// none.
     LeafFinder::Found find_leaf(RegionId region, const Point& p) const;
     static constexpr std::uint32_t no_leaf = 0xffffffffu;
 
-    /// The root of a region that holds a point, and the coordinates there, for LeafFinder::find; the region must have
-    /// roots. `leaf` is left open. Written in place, since a copy at once would wait for what was just written.
+    /// Finds the root of a region that contains a point, and the coordinates in it, for LeafFinder::find(). The region
+    /// must have roots. Does not set `leaf`. Writes to `out` directly because copying a result that was just written
+    /// would stall.
     void find_root(RegionId region, const Point& p, LeafFinder::Query& out) const;
     const LeafFinder& leaves() const { return leaves_; }
 
   private:
-    /// A root, and how to take coordinates in it: u = du . (p - origin), v = dv . (p - origin).
+    /// A root with the gradients of its coordinates: u = du . (p - origin), v = dv . (p - origin).
     struct Root {
         Point origin;
         Vec3 du, dv;
-        std::uint32_t number = 0;  ///< Among the tree's roots.
+        std::uint32_t number = 0;  ///< Index among the tree's roots.
         Patch::Shape shape = Patch::Shape::parallelogram;
 
         Vec2 coordinates(const Point& p) const {
@@ -47,12 +49,12 @@ class ElementLocator {
         }
         Vec2 held(Vec2 at) const { return holds(at) ? at : into_shape(at, shape); }
     };
-    /// Roots by the cell of a grid over the two axes along which the region's plane can be told apart.
+    /// Roots of a region per cell of a grid, over the two axes on which the region's plane projects best.
     struct Grid {
-        std::uint8_t s = 0, t = 1;  ///< The axes.
+        std::uint8_t s = 0, t = 1;  ///< The two axes.
         std::uint32_t columns = 1, rows = 1;
         double s0 = 0, t0 = 0, s_scale = 0, t_scale = 0;  ///< cell = floor((p - origin) scale)
-        std::vector<std::uint32_t> first;                 ///< Per cell, and one past the last: where its roots begin.
+        std::vector<std::uint32_t> first;                 ///< Per cell, and one past the last: first index in `roots`.
         std::vector<Root> roots;
 
         std::uint32_t column(double x) const;
@@ -72,9 +74,9 @@ class ElementLocator {
     static Grid make_grid(std::span<const Root> roots);
 
     LeafFinder leaves_;
-    std::vector<std::uint32_t> first_root_;  ///< Per region, and one past the last, into `roots_`.
-    std::vector<Root> roots_;                ///< Sorted by region, then by number.
-    std::vector<std::int32_t> grid_of_;      ///< Per region; -1 for those of few roots.
+    std::vector<std::uint32_t> first_root_;  ///< Per region, and one past the last: first index in `roots_`.
+    std::vector<Root> roots_;                ///< Sorted by region, then by index.
+    std::vector<std::int32_t> grid_of_;      ///< Per region: index in `grids_`; -1 for regions with few roots.
     std::vector<Grid> grids_;
 };
 

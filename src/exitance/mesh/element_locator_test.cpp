@@ -47,7 +47,7 @@ TEST_P(Chequerboards, HoldEveryPointInTheLeafFound) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Chequerboards, testing::Values(1, 2, 5, 40));
 
-TEST(ElementLocator, TakesTheNearestRootForAPointOutside) {
+TEST(ElementLocator, AssignsAPointOutsideToTheNearestRoot) {
     const ElementTree tree = chequerboard(20);
     const ElementLocator locator(tree, 3);
     const ElementTree::Place place = locator.find(RegionId(1), {1 + 1e-6, 0.51, 2});
@@ -56,7 +56,7 @@ TEST(ElementLocator, TakesTheNearestRootForAPointOutside) {
     EXPECT_NEAR(back.y, 0.51, 1e-14);
 }
 
-TEST(ElementLocator, GivesBordersToTheLowerId) {
+TEST(ElementLocator, AssignsBordersToTheLowerId) {
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, Shape::parallelogram});
     tree.add_root(RegionId(0), {{1, 0, 0}, {1, 0, 0}, {0, 1, 0}, Shape::parallelogram});
@@ -69,7 +69,7 @@ TEST(ElementLocator, FindsNothingInARegionWithoutRoots) {
     EXPECT_TRUE(ElementLocator(tree, 3).find(RegionId(2), {0, 0, 0}).element.is_none());
 }
 
-TEST(ElementLocator, CopesWithRootsOnALine) {
+TEST(ElementLocator, SupportsRootsOnALine) {
     ElementTree tree;
     for (int i = 0; i < 50; ++i)
         tree.add_root(RegionId(0), {{0, double(i), 0}, {1e-3, 0, 1e-3}, {0, 1, 0}, Shape::parallelogram});

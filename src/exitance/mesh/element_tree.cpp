@@ -15,7 +15,7 @@ Vec2 into_shape(Vec2 uv, Patch::Shape shape) {
 
 namespace {
 
-/// Which piece of cut() holds (u, v), and the coordinates there.
+/// Returns the part of cut() that contains (u, v), and the coordinates in it.
 std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut way, double ratio) {
     const auto [u, v] = uv;
     if (shape == Patch::Shape::triangle) {
@@ -36,7 +36,7 @@ double polygon_area(std::span<const Vec2> p) {
     return 0.5 * sum;
 }
 
-/// The part of a convex polygon on one side (-1: the first, +1: the second) of a line.
+/// The part of a convex polygon on one side of a line (side -1: the first, 1: the second).
 std::vector<Vec2> side_of_line(const std::vector<Vec2>& polygon, const CutLine& line, int side) {
     std::vector<Vec2> out;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -84,7 +84,7 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
             return {Patch{p.origin, ratio * p.a, p.b}, Patch{p.origin + ratio * p.a, (1 - ratio) * p.a, p.b}};
         case Cut::v:
             return {Patch{p.origin, p.a, ratio * p.b}, Patch{p.origin + ratio * p.b, p.a, (1 - ratio) * p.b}};
-        case Cut::line:  // no ways of cutting patches: ElementTree::split_by_line, split_fan
+        case Cut::line:  // not supported for patches: see ElementTree::split_by_line, split_fan
         case Cut::fan:
         case Cut::both:
             break;
@@ -184,7 +184,7 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
 
 ElementId ElementTree::split_fan(ElementId leaf, const Fan& fan) {
     EXI_CHECK(is_leaf(leaf) && fan.border.size() >= 2);
-    constexpr double least = 1e-12;  // of the element's frame
+    constexpr double least = 1e-12;  // share of the element's frame
     for (std::size_t i = 1; i < fan.border.size(); ++i)
         if (!(cross(fan.border[i - 1] - fan.apex, fan.border[i] - fan.apex) > least)) return ElementId();
     if (!is_stored(leaf)) store_triangles();
@@ -202,7 +202,7 @@ ElementId ElementTree::split_fan(ElementId leaf, const Fan& fan) {
     return ElementId(first);
 }
 
-/// The triangle that a place lies in deepest.
+/// The triangle of a fan that contains a point, by the largest distance to its sides.
 ElementTree::Place ElementTree::in_fan(ElementId e, Vec2 uv) const {
     const FanView fan = this->fan(e);
     Place out;
@@ -257,7 +257,8 @@ double ElementTree::reach(ElementId e, Vec2 uv) const {
 
 Vec2 ElementTree::uniform(ElementId e, double s, double t) const {
     if (!is_cell(e)) return uniform_in_shape(node(e).shape, s, t);
-    // A triangle of the fan around the first corner, chosen by its area with the first number, which is then stretched.
+    // Choose a triangle of the fan around the first corner, with probability proportional to area, by the first number;
+    // then reuse the rest of that number inside the triangle.
     const std::span<const Vec2> p = cell_domain(e);
     double rest = s * polygon_area(p);
     for (std::size_t i = 2;; ++i) {

@@ -13,8 +13,8 @@ namespace exitance {
 
 using ElementId = Id<struct ElementTag>;  ///< A node of an ElementTree.
 
-/// The affine image of a reference shape: p(u, v) = origin + u a + v b, with (u, v) in the unit square for a
-/// parallelogram and in {u, v >= 0, u + v <= 1} for a triangle. Its front is where a x b points. Metres.
+/// Affine image of a reference shape: p(u, v) = origin + u a + v b, with (u, v) in the unit square for a parallelogram
+/// and in {u, v >= 0, u + v <= 1} for a triangle. The front is where a x b points. Metres.
 struct Patch {
     enum class Shape : std::uint8_t { parallelogram, triangle };
 
@@ -30,19 +30,19 @@ struct Patch {
     Point centre() const { return is_triangle() ? at(1.0 / 3, 1.0 / 3) : at(0.5, 0.5); }
 
     int corner_count() const { return is_triangle() ? 3 : 4; }
-    /// Corner i, counter-clockwise: (0,0), (1,0), then (1,1), (0,1) or for a triangle (0,1).
+    /// Corner i, counter-clockwise: (0,0), (1,0), then (1,1), (0,1) for a parallelogram or (0,1) for a triangle.
     Point corner(int i) const { return at(corner_uv(i)); }
     Vec2 corner_uv(int i) const;
 
-    /// The coordinates (u, v) of the foot of p in the patch's plane.
+    /// The coordinates (u, v) of the projection of p onto the patch's plane.
     Vec2 coordinates(const Point& p) const;
 };
 
-/// How an element is cut: across its u direction, across v, or both; a triangle has one way, `both`: four, at its
-/// edges' midpoints. `line`: along any straight line, into cells. `fan`: into triangles around a place.
+/// How an element is split. `u`, `v`: across that direction. `both`: into four (the only way for triangles: at the
+/// middles of their edges). `line`: along any straight line, into two cells. `fan`: into triangles around a point.
 enum class Cut : std::uint8_t { none, u, v, both, line, fan };
 
-/// A straight line in an element's own coordinates: its first side is normal . uv <= offset.
+/// A straight line in an element's coordinates. Its first side is normal . uv <= offset.
 struct CutLine {
     Vec2 normal;
     double offset = 0;
@@ -50,45 +50,45 @@ struct CutLine {
     double distance(Vec2 uv) const { return dot(normal, uv) - offset; }
 };
 
-/// Triangles around a place of an element: (apex, border[i], border[i + 1]), counter-clockwise, in its coordinates.
+/// Triangles around a point of an element: (apex, border[i], border[i + 1]), counter-clockwise, in its coordinates.
 struct Fan {
     Vec2 apex;
     std::vector<Vec2> border;
 };
-/// A fan as a tree holds it.
+/// A view of a fan stored in a tree.
 struct FanView {
     Vec2 apex;
     std::span<const Vec2> border;
 };
 
-/// Coordinates that rounding left at most a little outside the reference shape, moved onto it.
+/// Moves coordinates that are slightly outside the reference shape, because of rounding, onto it.
 Vec2 into_shape(Vec2 uv, Patch::Shape shape);
 
-/// A place of a reference shape with uniform density, from two numbers in [0, 1).
+/// Maps two numbers in [0, 1) to a point of the reference shape, with uniform density.
 Vec2 uniform_in_shape(Patch::Shape shape, double s, double t);
 
-/// The pieces of a patch, in a fixed order; `ratio` in (0, 1) is where a cut across one direction stands.
+/// The parts of a patch after a split, in a fixed order. `ratio`: position of a cut across one direction, in (0, 1).
 std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
 
-/// Elements from whole pieces of a region (roots) to leaves, in one growing pool. Children lie side by side and after
-/// their parent. Hence one forward sweep pushes light down, one backward sweep pulls it up, and neither recurses.
-/// Ids survive growth; spans and references do not. Copies share their memory until one of them is cut; cutting leaves
-/// into fans takes no more of it than what the fans are.
+/// Elements from whole pieces of a region (roots) to leaves, in one growing pool. Children are consecutive and come
+/// after their parent. Hence one forward sweep pushes light down and one backward sweep pulls it up, both without
+/// recursion. Ids stay valid when the tree grows; spans and references do not. Copies share memory until one of them is
+/// split (copy on write); splitting leaves into fans then copies only the data of the cuts.
 ///
-/// Where other polygons touch an element (a box on a floor), light jumps along a straight line that follows none of its
-/// directions. There an element is cut along that line into cells: convex parts of a parallelogram, their frame. A
-/// cell's patch is its frame, its domain what it really covers.
+/// Where other polygons touch an element (e.g. a box on a floor), light is discontinuous across a line that is not
+/// parallel to the element's directions. The element is then split along that line into cells: convex parts of a
+/// parallelogram, their frame. The patch of a cell is its frame; its domain is the part that it really covers.
 class ElementTree {
   public:
     ElementId add_root(RegionId region, const Patch& shape);
-    /// Cuts a leaf; returns the first child.
+    /// Splits a leaf; returns the first child.
     ElementId split(ElementId leaf, Cut way, double ratio = 0.5);
-    /// Cuts a leaf along a line into two cells, the first side first; returns the first child. None, and nothing is
-    /// done, when less than `least` of the leaf's area would lie on one side.
+    /// Splits a leaf along a line into two cells, the first side first. Returns the first child; returns none, and does
+    /// nothing, if one side has less than `least` of the leaf's area.
     ElementId split_by_line(ElementId leaf, CutLine line, double least = 1e-6);
 
-    /// Cuts a leaf into the triangles of a fan, which are to cover it; returns the first child. None, and nothing is
-    /// done, when one of them has no area.
+    /// Splits a leaf into the triangles of a fan, which must cover it. Returns the first child; returns none, and does
+    /// nothing, if a triangle has no area.
     ElementId split_fan(ElementId leaf, const Fan& fan);
 
     std::size_t size() const { return stored() + cuts_->fan_of.size(); }
@@ -96,8 +96,10 @@ class ElementTree {
     const std::vector<ElementId>& roots() const { return content_->roots; }
     IdRange<ElementId> children(ElementId e) const { return node(e).children; }  ///< Empty for a leaf.
     bool is_leaf(ElementId e) const { return node(e).children.empty(); }
-    Cut way(ElementId e) const { return node(e).way; }         ///< How an element was cut; none for a leaf.
-    double ratio(ElementId e) const { return node(e).ratio; }  ///< Where; meaningful for cuts across one direction.
+    Cut way(ElementId e) const { return node(e).way; }  ///< How an element was split; none for a leaf.
+    double ratio(ElementId e) const {
+        return node(e).ratio;
+    }  ///< Position of the cut, for splits across one direction.
     ElementId parent(ElementId e) const {
         return is_stored(e) ? content_->parent[e] : fanned(e);
     }  ///< None for a root.
@@ -105,39 +107,40 @@ class ElementTree {
     Patch patch(ElementId e) const { return is_stored(e) ? content_->patch[e] : fan_triangle(e); }
     double area(ElementId e) const {
         return is_stored(e) ? content_->area[e] : fan_triangle(e).area();
-    }  ///< Of its domain, m^2.
+    }  ///< Area of its domain, m^2.
     const CutLine& line(ElementId e) const {
         return content_->lines[node(e).line].line;
-    }  ///< Of an element cut along a line.
-    /// Of an element cut into a fan.
+    }  ///< Line along which it was split (way(e) is Cut::line).
+    /// The fan into which an element was split (way(e) is Cut::fan).
     FanView fan(ElementId e) const {
         const std::uint32_t i = node(e).line, first = cuts_->fans[i].first_place;
         const std::size_t end = i + 1 < cuts_->fans.size() ? cuts_->fans[i + 1].first_place : cuts_->places.size();
         return {cuts_->places[first], std::span(cuts_->places).subspan(first + 1, end - first - 1)};
     }
-    /// Elements from this one on are the triangles of fans, which are leaves: those that were cut last.
+    /// The first element that is a triangle of an unstored fan; from it on all elements are such triangles, and leaves.
     ElementId first_of_fans() const { return ElementId(stored()); }
-    /// Of an element cut along a line: the frame of its cell on a side, origin and size in the element's coordinates.
+    /// For an element split along a line: the frame of the cell on one side, as origin and size in the element's
+    /// coordinates.
     std::array<Vec2, 2> cell_frame(ElementId e, std::size_t side) const {
         const LineCut& cut = content_->lines[node(e).line];
         return {cut.origin[side], cut.size[side]};
     }
     bool is_cell(ElementId e) const {
         return is_stored(e) && content_->cell[e] != none;
-    }  ///< Is its domain less than its patch?
-    /// What the element covers, as a convex polygon in its own coordinates, counter-clockwise.
+    }  ///< True if its domain is smaller than its patch.
+    /// The domain as a convex polygon in the element's coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
-    /// The same in space, metres.
+    /// The domain in space, metres.
     std::vector<Point> outline(ElementId e) const;
-    /// Mean place of the domain.
+    /// Centroid of the domain.
     Vec2 centre(ElementId e) const;
-    /// How much of the way from the centre to a place lies within the domain; at most 1.
+    /// Fraction of the segment from the centre to uv inside the domain; at most 1.
     double reach(ElementId e, Vec2 uv) const;
-    /// A place of the domain with uniform density, from two numbers in [0, 1).
+    /// Maps two numbers in [0, 1) to a point of the domain, with uniform density.
     Vec2 uniform(ElementId e, double s, double t) const;
-    std::vector<ElementId> leaves() const;  ///< In order of their ids.
+    std::vector<ElementId> leaves() const;  ///< In the order of their ids.
 
-    /// The leaf below `e` that holds the point (u, v) of `e`, and the point's coordinates there, pushed into the leaf.
+    /// Finds the leaf below `e` that contains the point (u, v) of `e`, and the coordinates there, clamped to the leaf.
     /// O(depth).
     struct Place {
         ElementId element;
@@ -146,7 +149,7 @@ class ElementTree {
     Place leaf_at(ElementId e, Vec2 uv) const;
 
     std::size_t memory_bytes() const;
-    /// Calls visit(span) for the plain arrays that most of it stands in.
+    /// Calls visit(span) for the arrays that hold most of the memory.
     template <class Visit>
     void visit_arrays(const Visit& visit) const {
         const Content& c = *content_;
@@ -154,29 +157,29 @@ class ElementTree {
         visit(c.cell.span()), visit(std::span(c.lines)), visit(std::span(c.corners)), visit(cuts_->nodes.span());
         visit(std::span(cuts_->fan_of)), visit(std::span(cuts_->fans)), visit(std::span(cuts_->places));
     }
-    /// Makes room for so many elements but for the triangles of fans, so that growing to them copies nothing.
+    /// Reserves memory for this many elements in all, excluding triangles of fans, so that growing copies nothing.
     void reserve(std::size_t elements);
-    /// The same for fans, with so many triangles.
+    /// Reserves memory for this many more fans, with this many triangles in all.
     void reserve_fans(std::size_t fans, std::size_t triangles);
-    /// Gives back memory kept for growth.
+    /// Releases memory kept for growth.
     void shrink_to_fit();
 
   private:
     static constexpr std::uint32_t none = 0xffffffffu;
-    /// What finding a leaf reads of an element, side by side.
+    /// The data of an element that finding a leaf reads, contiguous in memory.
     struct Node {
         IdRange<ElementId> children;
         double ratio = 0.5;
-        std::uint32_t line = none;  ///< Of an element cut along a line or into a fan: where that stands among those.
+        std::uint32_t line = none;  ///< Index of the line or fan, for elements split by one.
         Cut way = Cut::none;
         Patch::Shape shape = Patch::Shape::parallelogram;
     };
-    /// A cut along a line, and the frames of the two cells in the coordinates of the element that was cut.
+    /// A split along a line, with the frames of the two cells in the coordinates of the split element.
     struct LineCut {
         CutLine line;
         std::array<Vec2, 2> origin, size;
     };
-    /// What elements are.
+    /// The elements themselves.
     struct Content {
         void add(RegionId region, ElementId parent, const Patch& shape, double area);
 
@@ -184,10 +187,11 @@ class ElementTree {
         Field<ElementId, ElementId> parent;
         Field<ElementId, RegionId> region;
         Field<ElementId, double> area;
-        Field<ElementId, std::uint32_t>
-            cell;  ///< Of a cell: its domain is [first_corner[cell], first_corner[cell + 1])
+        /// Index of a cell; `none` for other elements. Its domain is corners[first_corner[cell], first_corner[cell +
+        /// 1]).
+        Field<ElementId, std::uint32_t> cell;
         std::vector<std::uint32_t> first_corner = {0};
-        std::vector<Vec2> corners;  ///< of these.
+        std::vector<Vec2> corners;
         std::vector<LineCut> lines;
         std::vector<ElementId> roots;
     };
@@ -195,14 +199,14 @@ class ElementTree {
         ElementId element;
         std::uint32_t first_place;
     };
-    /// How they are cut. The triangles of fans follow from these. Where they are many, as in functions that are joined
-    /// to continuous ones, each takes some 20 bytes in place of more than 100: as long as no others are added, those at
-    /// the end are not stored.
+    /// How the elements are split. The triangles of fans follow from this, so those at the end of the tree are not
+    /// stored as long as no other elements are added. In trees with many of them, such as those of continuous
+    /// functions, each takes about 20 bytes instead of more than 100.
     struct Cuts {
-        Field<ElementId, Node> nodes;       ///< Of what is stored.
-        std::vector<FanCut> fans;           ///< In the order in which they were cut.
-        std::vector<Vec2> places;           ///< Of each, its apex, then its border.
-        std::vector<std::uint32_t> fan_of;  ///< The fan of each triangle that is not stored.
+        Field<ElementId, Node> nodes;       ///< Per stored element.
+        std::vector<FanCut> fans;           ///< In the order of the splits.
+        std::vector<Vec2> places;           ///< Per fan: its apex, then its border.
+        std::vector<std::uint32_t> fan_of;  ///< Per unstored triangle: its fan.
     };
 
     std::size_t stored() const { return content_->patch.size(); }
@@ -211,10 +215,10 @@ class ElementTree {
         static constexpr Node triangle{.children = {}, .shape = Patch::Shape::triangle};
         return is_stored(e) ? cuts_->nodes[e] : triangle;
     }
-    /// The parent of a triangle that is not stored.
+    /// The parent of an unstored triangle.
     ElementId fanned(ElementId e) const { return cuts_->fans[cuts_->fan_of[e.value - stored()]].element; }
     Patch fan_triangle(ElementId e) const;
-    /// Stores all triangles, so that other elements can follow them.
+    /// Stores all triangles of fans, so that other elements can be added after them.
     void store_triangles();
     void add(RegionId region, ElementId parent, const Patch& shape, double area);
     Place in_fan(ElementId e, Vec2 uv) const;
@@ -223,8 +227,8 @@ class ElementTree {
         return std::span(content_->corners).subspan(first[0], first[1] - first[0]);
     }
 
-    CopyOnWrite<Content> content_;  ///< Many functions stand on one tree,
-    CopyOnWrite<Cuts> cuts_;        ///< and on some that differ by their fans alone.
+    CopyOnWrite<Content> content_;  ///< Shared by the trees of many functions.
+    CopyOnWrite<Cuts> cuts_;        ///< Trees with different fans share the rest.
 };
 
 }  // namespace exitance

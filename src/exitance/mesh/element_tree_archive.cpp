@@ -9,13 +9,13 @@ struct Root {
     Patch patch;
 };
 
-/// In the order of the first children, which is that of the cuts.
+/// A split, stored in the order of the first children, which is the order of the splits.
 struct CutMade {
     ElementId element;
     Cut way = Cut::none;
     double ratio = 0.5;
     CutLine line;
-    std::uint32_t fan_size = 0;  ///< Of a fan: how many places make its border.
+    std::uint32_t fan_size = 0;  ///< For fans: number of points of the border.
 };
 
 }  // namespace
@@ -23,7 +23,7 @@ struct CutMade {
 void archive(ArchiveWriter& a, const ElementTree& tree) {
     std::vector<Root> roots;
     std::vector<CutMade> cuts;
-    std::vector<Vec2> fans;  // apex, then border
+    std::vector<Vec2> fans;  // per fan: apex, then border
     for (ElementId e : tree.ids()) {
         const ElementId parent = tree.parent(e);
         if (parent.is_none()) {

@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// A tree as its roots and how each element was cut, from which the same tree comes again, bit for bit.
+/// Stores a tree as its roots and splits, from which the reader reconstructs the same tree bit for bit.
 void archive(ArchiveWriter& a, const ElementTree& tree);
 void archive(ArchiveReader& a, ElementTree& tree);
 

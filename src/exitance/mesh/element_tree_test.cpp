@@ -11,7 +11,7 @@ Patch patch(Patch::Shape shape) {
     return {{1, 2, 3}, {2, 0.5, 0}, {-0.3, 1, 0.4}, shape};
 }
 
-/// A tree that has been cut in every way there is.
+/// A tree that has been split in all supported ways.
 ElementTree well_cut_tree(Patch::Shape shape) {
     ElementTree tree;
     tree.add_root(RegionId(0), patch(shape));
@@ -20,7 +20,7 @@ ElementTree well_cut_tree(Patch::Shape shape) {
     tree.split(children[1], shape == Patch::Shape::triangle ? Cut::both : Cut::u, 0.3);
     tree.split_by_line(children[2], {{0.6, 0.8}, 0.45});
     tree.split_by_line(tree.children(children[2])[1], {{-0.8, 0.6}, -0.1});
-    // Around a place within, and around one on a side.
+    // Around a point inside, and around one on a side.
     const std::vector<Vec2> corners = tree.domain(children[0]);
     Fan around{tree.centre(children[0]), corners};
     around.border.push_back(corners[0]);
@@ -42,7 +42,7 @@ TEST_P(EveryShape, LeavesTileTheRoot) {
     EXPECT_GT(tree.leaves().size(), 6u);
 }
 
-TEST_P(EveryShape, TheLeafThatHoldsAPointHoldsIt) {
+TEST_P(EveryShape, LeafAtFindsTheLeafThatContainsAPoint) {
     const ElementTree tree = well_cut_tree(GetParam());
     RandomStream random(1, Stream::mesh);
     for (int k = 0; k < 2000; ++k) {
@@ -54,7 +54,7 @@ TEST_P(EveryShape, TheLeafThatHoldsAPointHoldsIt) {
         const std::vector<Vec2> domain = tree.domain(place.element);
         for (std::size_t i = 0; i < domain.size(); ++i) {
             const Vec2 edge = domain[(i + 1) % domain.size()] - domain[i];
-            EXPECT_GT(cross(edge, place.uv - domain[i]), -1e-12);  // inside but for rounding
+            EXPECT_GT(cross(edge, place.uv - domain[i]), -1e-12);  // inside except for rounding
         }
     }
 }
@@ -67,13 +67,13 @@ TEST_P(EveryShape, UniformPlacesHaveTheDomainsCentre) {
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) sum = sum + tree.uniform(e, (i + 0.5) / n, (j + 0.5) / n);
         const Vec2 mean = (1.0 / (n * n)) * sum;
-        // A midpoint rule of 64 x 64 cells: up to half a cell is lost at each seam of a cell's fan of triangles.
+        // Midpoint rule with 64 x 64 cells: up to half a cell is lost at each seam of a cell's fan of triangles.
         EXPECT_NEAR(mean.x, tree.centre(e).x, 0.5 / n);
         EXPECT_NEAR(mean.y, tree.centre(e).y, 0.5 / n);
     }
 }
 
-TEST_P(EveryShape, TrianglesOfFansAreTheSameWhetherTheyAreStored) {
+TEST_P(EveryShape, TrianglesOfFansAreTheSameStoredOrNot) {
     const ElementTree tree = well_cut_tree(GetParam());
     ASSERT_LT(tree.first_of_fans().value, tree.size());
     ElementTree stored = tree;
@@ -108,7 +108,7 @@ TEST(ElementTree, TrianglesOfFansCanBeCut) {
     EXPECT_EQ(first.value, last.value + 1);
     EXPECT_EQ(tree.patch(first).origin, before.origin);
     EXPECT_EQ(tree.children(last).size(), 4u);
-    // And into fans themselves.
+    // They can also be split into fans.
     ElementTree fans = well_cut_tree(Patch::Shape::parallelogram);
     const std::vector<Vec2> corners = fans.domain(last);
     const ElementId child = fans.split_fan(last, {fans.centre(last), {corners[0], corners[1], corners[2], corners[0]}});
@@ -131,7 +131,7 @@ TEST(ElementTree, CopiesThatDifferByFansShareTheRest) {
         triangles += 4;
     }
     EXPECT_EQ(fans.size(), tree.size() + triangles);
-    // A place and a half of 16 bytes a triangle, and the fan's own few.
+    // One and a half points of 16 bytes per triangle, plus a few bytes per fan.
     EXPECT_LE(fans.memory_bytes() - tree.memory_bytes(), 32 * triangles);
     tree.visit_arrays([&](const auto& of_tree) {
         if (of_tree.size_bytes() != tree.size() * sizeof(Patch)) return;
@@ -151,7 +151,7 @@ TEST(ElementTree, ALineThatMissesAnElementCutsNothing) {
     EXPECT_TRUE(tree.is_leaf(ElementId(0)));
 }
 
-TEST(ElementTree, AFanWithATriangleOfNoAreaIsNone) {
+TEST(ElementTree, AFanWithATriangleWithoutAreaIsRejected) {
     ElementTree tree;
     tree.add_root(RegionId(0), patch(Patch::Shape::parallelogram));
     EXPECT_TRUE(tree.split_fan(ElementId(0), {{0, 0}, {{0.5, 0}, {1, 0}, {1, 1}, {0, 1}}}).is_none());
@@ -160,11 +160,11 @@ TEST(ElementTree, AFanWithATriangleOfNoAreaIsNone) {
     EXPECT_EQ(tree.children(ElementId(0)).size(), 3u);
 }
 
-TEST_P(EveryShape, DomainsEndWhereTheyAreReached) {
+TEST_P(EveryShape, ReachEndsOnTheBorderOfTheDomain) {
     const ElementTree tree = well_cut_tree(GetParam());
     for (ElementId e : tree.leaves()) {
         const std::vector<Vec2> domain = tree.domain(e);
-        const auto depth = [&](Vec2 uv) {  // within the edge that is nearest, as twice an area
+        const auto depth = [&](Vec2 uv) {  // distance to the nearest edge, as twice an area
             double least = HUGE_VAL;
             for (std::size_t i = 0; i < domain.size(); ++i)
                 least = std::min(least, cross(domain[(i + 1) % domain.size()] - domain[i], uv - domain[i]));

@@ -7,16 +7,17 @@
 
 namespace exitance {
 
-/// The leaves of a plane as make_conforming finds them, side by side: what they are cut to, and their nodes. Few
-/// arrays, since there are as many of these as planes, and processes tell them to one another.
+/// The result of make_conforming for the leaves of one plane: how they are split, and their nodes. Uses few arrays
+/// because there is one object per plane and processes exchange them.
 struct FoundLeaves {
     std::uint32_t node_count = 0;
     std::vector<ElementId> leaf;
-    std::vector<std::uint32_t> places, nodes;  ///< Of a leaf, how many of these are its own:
-    std::vector<Vec2> place;                   ///< of a fan, its apex and its border; of a leaf that stays, none,
-    std::vector<std::uint32_t> node;           ///< and of the apex, then of the border; of the leaf's corners.
+    std::vector<std::uint32_t> places, nodes;  ///< Per leaf: how many entries of `place` and of `node` belong to it.
+    std::vector<Vec2> place;                   ///< Of a fan: apex, then border. Leaves that stay whole have none.
+    /// Of a fan: nodes of the apex, then of the border. Otherwise: nodes of the leaf's corners.
+    std::vector<std::uint32_t> node;
 
-    /// A fan without a border: the leaf stays.
+    /// Adds a leaf; it stays whole if the fan has no border.
     void add(ElementId e, const Fan& fan, std::span<const std::uint32_t> of_leaf) {
         leaf.push_back(e);
         places.push_back(static_cast<std::uint32_t>(fan.border.empty() ? 0 : 1 + fan.border.size()));
@@ -26,7 +27,7 @@ struct FoundLeaves {
         node.insert(node.end(), of_leaf.begin(), of_leaf.end());
     }
 
-    /// What is made of them: fans, their triangles, and corners of these and of leaves that stay.
+    /// Numbers of the resulting fans, of their triangles, and of the corners of these and of whole leaves.
     struct Counts {
         std::size_t fans = 0, triangles = 0, corners = 0;
     };

@@ -10,15 +10,14 @@
 namespace exitance {
 namespace {
 
-/// Where strips end, in heights of the gap: at the last of them a hundredth of the light at its mouth is left.
-constexpr std::array<double, 3> ends_of_strips{1, 3, 7};
+/// Ends of the strips, in heights of the gap. At the last one, 1% of the light at the mouth is left.
+constexpr std::array<double, 3> strip_ends{1, 3, 7};
 
-/// A gap that is less than this many times as wide as it is high has no strips: the first one, and as much as that up
-/// to the middle, from both sides.
-constexpr double narrowest = 4;
+/// Minimum ratio of width to height for a gap with strips: the first strip and an equal distance to the middle, from
+/// both sides.
+constexpr double min_width_ratio = 4;
 
-/// An edge of a border along which a gap may open, and the directions in the plane, of length 1, along it and to the
-/// region's inside.
+/// An edge of a border along which a gap may open, with unit vectors in the plane along it and into the region.
 struct Mouth {
     Point p, q;
     Vec3 along, inwards;
@@ -27,7 +26,7 @@ struct Mouth {
         : p(from), q(to), along(normalized(to - from)), inwards(cross(n, along)) {}
 };
 
-/// How far a region reaches from a mouth inwards, or if that is less, along it; metres.
+/// Extent of a region from a mouth inwards, or along the mouth if that is less; metres.
 double width_at(const Mouth& mouth, const Region& region) {
     double inwards = 0, least = HUGE_VAL, most = -HUGE_VAL;
     for (const std::vector<Point>& loop : region.loops)
@@ -39,12 +38,12 @@ double width_at(const Mouth& mouth, const Region& region) {
     return std::min(inwards, most - least);
 }
 
-/// Where along a mouth it is looked for what stands opposite: in the middles of its thirds.
+/// Positions along a mouth at which the opposite surface is searched: the middles of its thirds.
 constexpr double middle = 0.5;
-constexpr std::array<double, 3> places{1.0 / 6, middle, 5.0 / 6};
-constexpr double alike = 0.9;  ///< Cosine of the angle that two sides of a gap may make.
+constexpr std::array<double, 3> positions_along{1.0 / 6, middle, 5.0 / 6};
+constexpr double min_cosine = 0.9;  ///< Minimum cosine of the angle between the two sides of a gap.
 
-/// A region that stands opposite a mouth, how far off at most, and does it so in the mouth's middle?
+/// A region opposite a mouth, its largest distance (metres), and whether it is opposite the mouth's middle.
 struct Opposite {
     RegionId region;
     double height;
@@ -59,7 +58,7 @@ class GapFinder {
         Box box;
         for (const std::vector<Point>& loop : region(own).loops)
             for (const Point& corner : loop) box.add(corner);
-        highest_ = norm(box.hi - box.lo) / narrowest;
+        highest_ = norm(box.hi - box.lo) / min_width_ratio;
     }
 
     std::vector<GapLine> run() {
@@ -73,7 +72,7 @@ class GapFinder {
 
     void find_at(const Mouth& mouth) {
         opposite_.clear();
-        for (const double along : places) look_from(mouth, along);
+        for (const double along : positions_along) look_from(mouth, along);
         if (opposite_.empty()) return;
         const double own_width = width_at(mouth, region(own_));
         for (const Opposite& other : opposite_) {
@@ -83,7 +82,7 @@ class GapFinder {
         }
     }
 
-    /// Notes what stands in front of a place at the mouth, if the nearest is one that looks back.
+    /// Records the nearest surface in front of a point at the mouth, if it faces back.
     void look_from(const Mouth& mouth, double along) {
         const Point x = mouth.p + along * (mouth.q - mouth.p) + touching_ * mouth.inwards;
         Opposite nearest{RegionId(), highest_, along == middle};
@@ -99,7 +98,7 @@ class GapFinder {
             const double h = other.signed_distance(x) / down;
             if (h <= touching_ || h > nearest.height) return;
             if (!contains(scene_.outline(s), other.n, x + h * plane_.n)) return;
-            nearest.region = r, nearest.height = h, looks_back = down > alike;
+            nearest.region = r, nearest.height = h, looks_back = down > min_cosine;
         });
         if (!looks_back) return;
         for (Opposite& known : opposite_)
@@ -116,7 +115,7 @@ class GapFinder {
         const Plane& plane = region(on).plane;
         const auto foot = [&](const Point& x) { return x - plane.signed_distance(x) * plane.n; };
         double depth = 0;
-        for (const double end : ends_of_strips) {
+        for (const double end : strip_ends) {
             const double at = end * height, strip = at - depth;
             if (0.5 * width - at < strip) break;
             depth = at;
@@ -131,7 +130,7 @@ class GapFinder {
     double touching_, highest_ = 0;
     RegionId own_;
     const Plane& plane_;
-    std::vector<Opposite> opposite_;  ///< Of the mouth at hand.
+    std::vector<Opposite> opposite_;  ///< For the current mouth.
     std::vector<GapLine> out_;
 };
 

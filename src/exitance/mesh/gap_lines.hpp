@@ -7,23 +7,23 @@
 
 namespace exitance {
 
-/// A line between two strips of a surface that is one side of a gap, along the gap's mouth.
+/// A line between two strips of a surface on one side of a gap, parallel to the gap's mouth.
 struct GapLine {
     Point a, b;       ///< In the plane of the region.
-    double height;    ///< Of the gap, metres.
-    double depth;     ///< How far into the gap all its strips reach, metres.
-    RegionId region;  ///< Whose surface it is.
+    double height;    ///< Distance between the sides of the gap, metres.
+    double depth;     ///< How far all strips together extend into the gap, metres.
+    RegionId region;  ///< Region of the surface.
 };
 
-/// Gaps open along the borders of regions that look at each other from nearby. Light that enters falls off with the
-/// distance from the mouth by the height, so that strips twice as wide as those before them follow it: one height, two,
-/// and four; until next to nothing is left, or less than a strip up to the middle of the gap: there light enters from
-/// the other side, too.
+/// Finds gaps, which open at the borders of regions that face each other at a small distance. Light that enters decays
+/// with the distance from the mouth, on the scale of the gap's height. Each strip is twice as wide as the one before:
+/// one height, two, and four. Strips end when almost no light is left, or when the next one would not fit before the
+/// middle of the gap, beyond which light enters from the other side, too.
 ///
-/// faces        a tree of the boxes of the scene's surfaces, by number
-/// touching     metres; what is nearer than this is no gap
-/// Returns the lines on both sides of every gap, in the order of the borders. O(edges log n), parallel; the corners of
-/// both regions more for each edge that a gap opens at.
+/// faces        a tree over the boxes of the scene's surfaces, by index
+/// touching     metres; smaller distances are contacts, not gaps
+/// Returns the lines on both sides of every gap, in the order of the borders. O(edges log n), parallel; plus the number
+/// of corners of both regions for each edge at which a gap opens.
 std::vector<GapLine> find_gap_lines(const Scene& scene, const Bvh& faces, double touching);
 
 }  // namespace exitance

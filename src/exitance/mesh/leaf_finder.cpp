@@ -5,29 +5,29 @@
 
 namespace exitance {
 
-/// Own coordinates of an element are (root's - origin) x scale: all but a fan's triangles are parallel to their
-/// root.
+/// Coordinates in an element, relative to those of its root: (root's - origin) x scale. All elements except triangles
+/// of fans are parallel to their root.
 struct LeafFinder::Frame {
     Vec2 origin, scale;
 
     Frame part(Vec2 at, Vec2 stretch) const {
         return {{origin.x + at.x / scale.x, origin.y + at.y / scale.y}, {scale.x * stretch.x, scale.y * stretch.y}};
     }
-    /// A cut along the line normal . uv = offset, in these coordinates.
+    /// A cut along the line normal . uv = offset in these coordinates.
     Node line(Vec2 normal, double offset) const {
         const Vec2 n = {normal.x * scale.x, normal.y * scale.y};
         return {n, offset + dot(n, origin), {0, 1}};
     }
 };
 
-/// Triangles of a fan, told apart by lines through its apex. Where they go all around it, the first line parts them in
-/// two halves, which share the triangle on its far side.
+/// Finds triangles of a fan by bisection with lines through its apex. In a fan that surrounds its apex, the first line
+/// separates two halves that share the triangle on the far side.
 class LeafFinder::FanWalk {
   public:
     FanWalk(const ElementTree& tree, ElementId e, const Frame& frame)
         : tree_(tree), element_(e), fan_(tree.fan(e)), frame_(frame) {}
 
-    /// The triangle that holds a point of the root, by its place in the fan.
+    /// Returns the index in the fan of the triangle that contains a point of the root.
     std::size_t find(Vec2 uv) const {
         std::size_t begin = 0, end = fan_.border.size() - 1;
         if (goes_around()) {
@@ -63,7 +63,7 @@ class LeafFinder::FanWalk {
         while (far + 2 < fan_.border.size() && cross(start, fan_.border[far + 1] - fan_.apex) >= 0) ++far;
         return far;
     }
-    /// The line through a place of the border; its parts are the triangles before it and those after it.
+    /// The line through a border point; its parts are the triangles before and after that point.
     Node ray(std::size_t i) const {
         const Vec2 d = fan_.border[i] - fan_.apex, n = {-d.y, d.x};
         return frame_.line(n, dot(n, fan_.apex));
@@ -76,7 +76,7 @@ class LeafFinder::FanWalk {
     Frame frame_;
 };
 
-/// Walks the tree from its roots and writes cuts and leaves down in the coordinates of the root.
+/// Traverses the tree from its roots and records cuts and leaves in the coordinates of the root.
 struct LeafFinder::Builder {
     const ElementTree& tree;
     LeafFinder& out;
@@ -124,7 +124,8 @@ struct LeafFinder::Builder {
         return is_leaf | is_fan | static_cast<std::uint32_t>(out.fans_.size() - 1);
     }
 
-    /// Corners at (1, 0) and (0, 1), then what the third line leaves: the corner at (0, 0) and the middle, upside down.
+    /// Cuts off the corners at (1, 0) and (0, 1); a third line then separates the corner at (0, 0) from the inverted
+    /// middle triangle.
     std::uint32_t add_triangle(ElementId e, const Frame& frame) {
         const IdRange<ElementId> children = tree.children(e);
         const std::uint32_t u = add_node(frame, {1, 0}, 0.5), v = add_node(frame, {0, 1}, 0.5),
@@ -166,7 +167,7 @@ std::uint32_t LeafFinder::FanWalk::add_nodes(Builder& builder) const {
     return node;
 }
 
-/// Triangles that together take half a turn at most.
+/// Adds the nodes for triangles that together span at most half a turn.
 std::uint32_t LeafFinder::FanWalk::add_sectors(Builder& builder, std::size_t begin, std::size_t end) const {
     if (end - begin == 1) return builder.add_leaf(leaf(begin));
     const std::size_t middle = (begin + end) / 2;
@@ -177,8 +178,9 @@ std::uint32_t LeafFinder::FanWalk::add_sectors(Builder& builder, std::size_t beg
 }
 
 LeafFinder::LeafFinder(const ElementTree& tree) {
-    constexpr std::size_t many = std::size_t(1) << 17;  // with what reads them they take 200 bytes each: 25 MB
-    const bool by_fans = tree.size() - tree.first_of_fans().value > many;
+    // Above this, triangles of fans are not stored: with dependent data they take 200 bytes each, 25 MB in all.
+    constexpr std::size_t max_stored_triangles = std::size_t(1) << 17;
+    const bool by_fans = tree.size() - tree.first_of_fans().value > max_stored_triangles;
     const std::size_t stored = by_fans ? tree.first_of_fans().value : tree.size();
     if (by_fans) tree_ = tree;
     Builder builder{tree, *this, Field<ElementId, std::uint32_t>(stored)};
@@ -190,7 +192,7 @@ LeafFinder::LeafFinder(const ElementTree& tree) {
     for (ElementId root : tree.roots()) {
         const std::size_t before = builder.leaves_met;
         const std::uint32_t whole = builder.add(root, {{0, 0}, {1, 1}});
-        // About four cells a leaf, as square as the root's shape allows.
+        // About four cells per leaf, as square as the root's shape allows.
         const double cells = 4.0 * static_cast<double>(builder.leaves_met - before);
         const double aspect = norm(tree.patch(root).a) / norm(tree.patch(root).b);
         const auto power = [](double wanted) {
@@ -209,7 +211,7 @@ LeafFinder::LeafFinder(const ElementTree& tree) {
     nodes_.shrink_to_fit(), start_.shrink_to_fit(), fans_.shrink_to_fit();
 }
 
-/// The leaf that a part leads to, and its number.
+/// Returns the leaf of a part, and its index.
 LeafFinder::Leaf LeafFinder::leaf_at(std::uint32_t part, Vec2 uv, std::uint32_t& number) const {
     if (!(part & is_fan)) {
         number = part & ~is_leaf;
@@ -222,14 +224,14 @@ LeafFinder::Leaf LeafFinder::leaf_at(std::uint32_t part, Vec2 uv, std::uint32_t&
     return triangle;
 }
 
-/// The last part on the way down from `part` that holds a whole box.
+/// The deepest part below `part` that contains a whole box.
 std::uint32_t LeafFinder::deepest_around(std::uint32_t part, Vec2 lo, Vec2 hi) const {
     const Vec2 middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
     while (!(part & is_leaf)) {
         const Node& node = nodes_[part];
         const double height = dot(node.normal, middle) - node.offset;
         const double reach = std::abs(node.normal.x) * half.x + std::abs(node.normal.y) * half.y;
-        // A cut along the side of the box, where most are, leaves it whole; the box's further sides belong to others.
+        // Most cuts are along a side of the box and leave it whole; the far sides of the box belong to its neighbours.
         const double rounding = 1e-12 * (std::abs(node.normal.x) + std::abs(node.normal.y));
         if (std::abs(height) < reach - rounding) break;
         part = node.part[height > 0 ? 1 : 0];
@@ -237,7 +239,7 @@ std::uint32_t LeafFinder::deepest_around(std::uint32_t part, Vec2 lo, Vec2 hi) c
     return part;
 }
 
-/// Where a point's way down begins, in `start_`.
+/// Index in `start_` of the cell that contains a point.
 std::size_t LeafFinder::cell(std::size_t root, Vec2 uv) const {
     const Grid& grid = grids_[root];
     const auto index = [](double t, std::uint32_t count) {
@@ -256,10 +258,10 @@ LeafFinder::Found LeafFinder::find(std::size_t root, Vec2 uv) const {
 }
 
 void LeafFinder::find(std::span<Query> queries) const {
-    constexpr std::size_t together = 32;
-    std::size_t at[together];
-    for (std::size_t first = 0; first < queries.size(); first += together) {
-        const std::span<Query> batch = queries.subspan(first, std::min(together, queries.size() - first));
+    constexpr std::size_t batch_size = 32;
+    std::size_t at[batch_size];
+    for (std::size_t first = 0; first < queries.size(); first += batch_size) {
+        const std::span<Query> batch = queries.subspan(first, std::min(batch_size, queries.size() - first));
         for (std::size_t i = 0; i < batch.size(); ++i) {
             at[i] = cell(batch[i].root, batch[i].uv);
             __builtin_prefetch(&start_[at[i]]);
@@ -268,8 +270,8 @@ void LeafFinder::find(std::span<Query> queries) const {
             batch[i].leaf = start_[at[i]];
             if (!(batch[i].leaf & is_leaf)) __builtin_prefetch(&nodes_[batch[i].leaf]);
         }
-        // Those still on their way, closed up after every step, without a branch that could be guessed wrong.
-        std::array<std::uint32_t, together> open;
+        // The unfinished queries, compacted after every step without an unpredictable branch.
+        std::array<std::uint32_t, batch_size> open;
         std::size_t count = 0;
         for (std::size_t i = 0; i < batch.size(); ++i) {
             open[count] = static_cast<std::uint32_t>(i);

@@ -8,32 +8,32 @@
 
 namespace exitance {
 
-/// The leaves of a tree, laid out for being found by rays in great numbers: every cut is a line in the coordinates of
-/// its root, and a grid over the root says from which cut on to look. A handful of steps whatever the depth, where the
-/// tree itself takes one or two a level. Immutable; O(elements) to make, about 100 bytes a leaf. Where the tree does
-/// not store its fans' triangles, and they are many, they take nothing: they are found by the fans, which takes longer.
+/// The leaves of a tree in a layout for finding them for very many rays. Every cut is a line in the coordinates of its
+/// root, and a grid over the root gives the cut to start from. A query takes a few steps whatever the depth, whereas
+/// the tree itself needs one or two per level. Immutable. Construction: O(elements), about 100 bytes per leaf. If the
+/// tree has very many unstored triangles of fans, they are not stored here either but found from the fans, which is
+/// slower.
 class LeafFinder {
   public:
     LeafFinder() = default;
-    /// The tree may change or go afterwards; what is found is what was there.
+    /// The tree may be changed or destroyed afterwards; results refer to the tree as it was.
     explicit LeafFinder(const ElementTree& tree);
 
     struct Found {
-        std::uint32_t leaf;  ///< Its place among the leaves in the order of their ids.
-        Vec2 uv;             ///< The point in the leaf's own coordinates, pushed into it.
+        std::uint32_t leaf;  ///< Index among the leaves in the order of their ids.
+        Vec2 uv;             ///< The point in the leaf's own coordinates, clamped to it.
     };
-    /// The leaf that holds a point of a root, given in the root's coordinates and within its shape. `root` counts the
-    /// tree's roots in the order of their ids.
+    /// Returns the leaf that contains a point of a root, given in the root's coordinates and inside its shape. `root`:
+    /// index among the tree's roots in the order of their ids.
     Found find(std::size_t root, Vec2 uv) const;
 
-    /// A point of a root, and the leaf that holds it.
+    /// A point of a root, and the leaf that contains it.
     struct Query {
         std::uint32_t root;
         Vec2 uv;
         std::uint32_t leaf;
     };
-    /// Fills in the leaves of many points. Memory is asked for ahead of time, so the points do not wait for one
-    /// another.
+    /// Sets `leaf` in all queries. Prefetches memory, so that the queries do not wait for each other.
     void find(std::span<Query> queries) const;
 
     ElementId id(std::uint32_t leaf) const {
@@ -41,9 +41,9 @@ class LeafFinder {
                                      : ElementId(tree_.first_of_fans().value + (leaf - leaves_.size()));
     }
     std::size_t size() const { return leaves_.size() + (tree_.size() - tree_.first_of_fans().value); }
-    /// How many leaves, the first ones, are no such triangles.
+    /// Number of leaves that are not unstored triangles of fans; they come first.
     std::size_t own_leaves() const { return leaves_.size(); }
-    /// Calls visit(span) for the plain arrays that most of it stands in.
+    /// Calls visit(span) for the arrays that hold most of the memory.
     template <class Visit>
     void visit_arrays(const Visit& visit) const {
         visit(std::span(nodes_)), visit(std::span(leaves_)), visit(std::span(grids_)), visit(std::span(start_));
@@ -51,7 +51,7 @@ class LeafFinder {
     }
 
   private:
-    /// A cut: points with normal . uv >= offset lie in the second part. Parts are nodes, or leaves by their number.
+    /// A cut: points with normal . uv >= offset are in the second part. A part is a node, or a leaf by its index.
     struct Node {
         Vec2 normal;
         double offset;
@@ -60,11 +60,12 @@ class LeafFinder {
         std::uint32_t part_of(Vec2 uv) const { return part[dot(normal, uv) >= offset ? 1 : 0]; }
     };
     struct Leaf {
-        Vec2 origin, du, dv;  ///< Own coordinates are du and dv . (root's - origin).
+        Vec2 origin, du,
+            dv;  ///< Coordinates in the leaf: u = du . (uv - origin), v = dv . (uv - origin), uv those of the root.
         ElementId id;
         Patch::Shape shape;
     };
-    /// Cells of equal size, powers of two in number, over the unit square of a root.
+    /// Equal cells over the unit square of a root; their numbers are powers of two.
     struct Grid {
         std::uint32_t first = 0, columns = 1, rows = 1;
     };
@@ -78,10 +79,10 @@ class LeafFinder {
     static constexpr std::uint32_t is_leaf = 0x80000000u, is_fan = 0x40000000u;
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
-    std::vector<Leaf> fans_;            ///< Elements cut into fans of triangles that the tree does not store,
-    ElementTree tree_;                  ///< and that tree; without elements where there are none.
-    std::vector<Grid> grids_;           ///< Of every root.
-    std::vector<std::uint32_t> start_;  ///< Of every cell: the part that holds all of it.
+    std::vector<Leaf> fans_;            ///< Elements split into fans whose triangles are not stored.
+    ElementTree tree_;                  ///< The tree of these fans; empty if there are none.
+    std::vector<Grid> grids_;           ///< Per root.
+    std::vector<std::uint32_t> start_;  ///< Per cell: the smallest part that contains all of it.
 };
 
 }  // namespace exitance

@@ -7,8 +7,8 @@
 namespace exitance {
 namespace {
 
-/// A parallelogram and a triangle, cut at random in every way there is; `many`: and a square cut into so many fans that
-/// their triangles are not held.
+/// A parallelogram and a triangle, split randomly in all supported ways. `many`: additionally a square split into so
+/// many fans that their triangles are not stored.
 ElementTree cut_at_random(int cuts, std::uint64_t seed, bool many = false) {
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {3, 0.2, 0}, {0.5, 1, 0}, Patch::Shape::parallelogram});
@@ -29,7 +29,7 @@ ElementTree cut_at_random(int cuts, std::uint64_t seed, bool many = false) {
         tree.add_root(RegionId(2), {{0, 0, 2}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram});
         for (std::size_t e = first; tree.size() < first + 160000; ++e) tree.split(ElementId(e), Cut::both);
     }
-    // Fans of every third leaf, around its middle or around a place on its first side.
+    // Fans of every third leaf, around its centre or a point on its first side.
     for (ElementId leaf : tree.leaves()) {
         if (leaf.value % 3 != 0) continue;
         std::vector<Vec2> corners = tree.domain(leaf);
@@ -42,7 +42,7 @@ ElementTree cut_at_random(int cuts, std::uint64_t seed, bool many = false) {
     return tree;
 }
 
-TEST(LeafFinder, FindsWhatTheTreeFinds) {
+TEST(LeafFinder, FindsTheSameLeavesAsTheTree) {
     for (const int cuts : {0, 1, 5, 40, 300}) {
         const ElementTree tree = cut_at_random(cuts, static_cast<std::uint64_t>(cuts));
         const LeafFinder finder(tree);
@@ -60,14 +60,14 @@ TEST(LeafFinder, FindsWhatTheTreeFinds) {
             finder.find(std::span(&query, 1));
             EXPECT_EQ(query.leaf, found.leaf);
             EXPECT_EQ(finder.id(found.leaf), tree.leaves()[found.leaf]);
-            // Rounding, of thirty cuts within one another at most.
+            // Rounding of at most thirty nested cuts.
             EXPECT_NEAR(found.uv.x, place.uv.x, 1e-9);
             EXPECT_NEAR(found.uv.y, place.uv.y, 1e-9);
         }
     }
 }
 
-TEST(LeafFinder, FindsTrianglesOfFansWhetherTheyAreStored) {
+TEST(LeafFinder, FindsTrianglesOfFansStoredOrNot) {
     const ElementTree tree = cut_at_random(60, 4, true);
     ASSERT_LT(tree.first_of_fans().value, tree.size());
     ElementTree stored = tree;
@@ -83,11 +83,11 @@ TEST(LeafFinder, FindsTrianglesOfFansWhetherTheyAreStored) {
         const Vec2 uv = uniform_in_shape(tree.patch(tree.roots()[root]).shape, s, t);
         const LeafFinder::Found a = finder.find(root, uv), b = of_stored.find(root, uv);
         ASSERT_EQ(a.leaf, b.leaf);
-        EXPECT_EQ(a.uv, b.uv);  // to the last bit
+        EXPECT_EQ(a.uv, b.uv);  // bitwise
     }
 }
 
-TEST(LeafFinder, TakesCornersAndEdgesOfTheRoot) {
+TEST(LeafFinder, SupportsCornersAndEdgesOfTheRoot) {
     const ElementTree tree = cut_at_random(100, 3);
     const LeafFinder finder(tree);
     for (const Vec2 uv : {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}, Vec2{0.5, 0}, Vec2{0, 0.5}, Vec2{0.5, 0.5}})

@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-/// Does a stretch of a line lie on one at which light jumps?
+/// Tests whether a segment is on a line of discontinuity.
 class OnJump {
   public:
     OnJump(std::span<const ContactLines::Line> jumps, const Normal& n, const Point& in_plane, double tolerance)
@@ -24,7 +24,7 @@ class OnJump {
         tree_ = Bvh(boxes);
     }
 
-    /// `area`: of the smaller of the two elements that meet there, m^2.
+    /// Returns whether the segment a b is on such a line. `area`: of the smaller of the two adjacent elements, m^2.
     bool operator()(const Point& a, const Point& b, double area) const {
         if (lines_.empty()) return false;
         constexpr double parallel = 1e-3;

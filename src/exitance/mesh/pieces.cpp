@@ -12,14 +12,14 @@
 namespace exitance {
 namespace {
 
-/// Below this share of the polygon's extent lengths are rounding. Well above the digits that scene files carry.
+/// Lengths below this share of the polygon's extent are rounding errors. Well above the precision of scene files.
 constexpr double same_place = 1e-9;
-/// How far the corners of a parallelogram may be from one, as a share of its shortest side.
-constexpr double near_parallelogram = 1e-4;
-/// The smallest height to longest side that a triangle beside a parallelogram may have.
+/// Maximum deviation of corners from a parallelogram, as a share of its shortest side.
+constexpr double max_parallelogram_gap = 1e-4;
+/// Minimum ratio of height to longest side of a triangle that is split off next to a parallelogram.
 constexpr double sliver = 0.15;
-/// Outlines with more corners are not searched for parallelograms at their border, which takes a time of corners^3.
-constexpr std::size_t most_peeled = 40;
+/// Outlines with more corners are not searched for parallelograms at their border, which takes O(corners^3).
+constexpr std::size_t max_peeled_corners = 40;
 
 using Loop = std::vector<Point>;
 
@@ -27,28 +27,29 @@ Patch triangle(const Point& p, const Point& q, const Point& r) {
     return {p, q - p, r - p, Patch::Shape::triangle};
 }
 
-/// Four corners as a parallelogram, if they are one but for a small share of the shortest side: files that carry six
-/// digits round that much, and only functions live on patches, while outlines decide where light goes. It has the
-/// corners' area exactly: a and b are means of opposite sides, and a x b is half the product of the diagonals, as for
-/// the corners.
+/// Returns four corners as a parallelogram if they deviate from one by at most a small share of the shortest side:
+/// files with six digits have such rounding errors. Patches only carry functions; visibility uses the outlines. The
+/// area is exactly that of the corners: a and b are means of opposite sides, and a x b is half the product of the
+/// diagonals, as for the corners.
 std::optional<Patch> as_parallelogram(std::span<const Point> p) {
     const Vec3 gap = (p[0] + p[2]) - (p[1] + p[3]);
     double shortest = norm(p[3] - p[0]);
     for (std::size_t i = 0; i < 3; ++i) shortest = std::min(shortest, norm(p[i + 1] - p[i]));
-    if (norm(gap) > near_parallelogram * shortest) return std::nullopt;
+    if (norm(gap) > max_parallelogram_gap * shortest) return std::nullopt;
     const Vec3 a = 0.5 * ((p[1] - p[0]) + (p[2] - p[3])), b = 0.5 * ((p[3] - p[0]) + (p[2] - p[1]));
     return Patch{p[0] - 0.25 * gap, a, b, Patch::Shape::parallelogram};
 }
 
-/// A convex quadrangle with two parallel sides as a parallelogram on the shorter one and a triangle; nothing when no
-/// sides are parallel or the triangle would be a sliver.
+/// Returns a convex quadrilateral with two parallel sides as a parallelogram on the shorter one and a triangle; empty
+/// if no sides are parallel or the triangle would be a sliver.
 std::vector<Patch> as_trapezoid(std::span<const Point> p, double tolerance) {
     for (std::size_t i = 0; i < 4; ++i) {
-        const Point &s = p[i], &t = p[(i + 1) % 4], &u = p[(i + 2) % 4], &v = p[(i + 3) % 4];  // is s -> t the longer?
+        const Point &s = p[i], &t = p[(i + 1) % 4], &u = p[(i + 2) % 4],
+                    &v = p[(i + 3) % 4];  // is s -> t the longer one?
         const Vec3 lower = t - s, upper = u - v;
         const double length = norm(lower);
         if (norm(upper) > length || norm(cross(lower, upper)) > tolerance * length || dot(lower, upper) <= 0) continue;
-        const Point foot = s + upper;  // the parallelogram s, foot, u, v and the triangle foot, t, u
+        const Point foot = s + upper;  // parallelogram s, foot, u, v and triangle foot, t, u
         const Patch rest = triangle(foot, t, u);
         const double longest = std::max({norm(t - foot), norm(u - t), norm(u - foot)});
         if (2 * rest.area() < sliver * longest * longest) continue;
@@ -57,8 +58,9 @@ std::vector<Patch> as_trapezoid(std::span<const Point> p, double tolerance) {
     return {};
 }
 
-/// Takes a parallelogram off an outline whose sides are three edges in a row and a chord that nothing crosses; what is
-/// left has two corners less, and none where it goes straight on. False when there is none.
+/// Cuts a parallelogram off an outline. Its sides are three consecutive edges and a chord that nothing crosses. The
+/// remaining outline has two corners less; corners at which it is straight are removed. Returns false if there is no
+/// such parallelogram.
 bool peel_parallelogram(Loop& loop, const Normal& n, double tolerance, std::vector<Patch>& out) {
     const std::size_t m = loop.size();
     for (std::size_t i = 0; m > 4 && i < m; ++i) {
@@ -87,7 +89,7 @@ bool peel_parallelogram(Loop& loop, const Normal& n, double tolerance, std::vect
     return false;
 }
 
-/// A frame in the polygon's plane along its longest edge, in which right angles lie along the axes.
+/// A frame in the polygon's plane along its longest edge, so that right angles are parallel to the axes.
 struct PlaneFrame {
     Point origin;
     Vec3 u, v;
@@ -97,7 +99,7 @@ struct PlaneFrame {
         for (const Loop& loop : loops)
             for (std::size_t i = 0; i < loop.size(); ++i) {
                 const Vec3 d = loop[(i + 1) % loop.size()] - loop[i];
-                // A clear margin: of edges of about one length the first is taken, whatever rounding says.
+                // The margin makes the first of several nearly equal edges win, independent of rounding.
                 if (squared_norm(d) > longest * (1 + 1e-9)) longest = squared_norm(d), u = d;
             }
         u = normalized(u - dot(u, n) * n);
@@ -107,7 +109,7 @@ struct PlaneFrame {
     Point lifted(Vec2 p) const { return origin + p.x * u + p.y * v; }
 };
 
-/// Triangles, of which pairs that form a parallelogram are joined.
+/// Triangulates; pairs of triangles that form a parallelogram are joined.
 std::vector<Patch> triangles(std::span<const Loop> loops, std::span<const std::vector<Vec2>> flat) {
     std::vector<Point> corners;
     for (const Loop& loop : loops) corners.insert(corners.end(), loop.begin(), loop.end());
@@ -159,7 +161,7 @@ std::vector<Patch> tile(std::span<const Loop> loops, const Normal& n) {
             {frame.lifted(lo), (hi.x - lo.x) * frame.u, (hi.y - lo.y) * frame.v, Patch::Shape::parallelogram});
     if (!out.empty()) return out;
     if (Loop rest = loops[0];
-        loops.size() == 1 && rest.size() <= most_peeled && peel_parallelogram(rest, n, tolerance, out)) {
+        loops.size() == 1 && rest.size() <= max_peeled_corners && peel_parallelogram(rest, n, tolerance, out)) {
         const auto others = tile(std::vector<Loop>{std::move(rest)}, n);
         out.insert(out.end(), others.begin(), others.end());
         return out;

@@ -11,7 +11,7 @@ namespace {
 
 using Outline = std::vector<Point>;
 
-/// A convex outline in a plane of any direction: corners on an ellipse at random angles.
+/// A convex outline in a plane of any orientation: corners on an ellipse at random angles.
 Outline random_outline(const Frame& frame) {
     const int corners = *rc::gen::inRange(3, 9);
     std::vector<double> angles;
@@ -22,7 +22,8 @@ Outline random_outline(const Frame& frame) {
     return out;
 }
 
-/// Cuts every outline by a random line through the middle of the first: faces that meet in T-vertices.
+/// Cuts every outline along a random line through the middle of the first one, which makes faces that meet in
+/// T-vertices.
 std::vector<Outline> cut_up(Outline whole, const Normal& n, int cuts) {
     std::vector<Outline> parts = {std::move(whole)};
     for (int i = 0; i < cuts; ++i) {
@@ -76,12 +77,12 @@ RC_GTEST_PROP(Regions, HowAPolygonIsCutDoesNotShow, ()) {
     RC_ASSERT(cut.regions().size() == 1u);
     const Region &a = once.regions()[RegionId(0)], &b = cut.regions()[RegionId(0)];
     RC_ASSERT(b.loops.size() == 1u);
-    RC_ASSERT(a.loops == b.loops);  // to the last bit: cuts leave the whole's corners as they are
+    RC_ASSERT(a.loops == b.loops);  // bitwise: cuts do not change the corners of the whole
     RC_ASSERT(a.area == b.area);
     RC_ASSERT(std::abs(area_of_pieces(cut) - b.area) <= 1e-12 * b.area);
 }
 
-/// A union of cells of a grid, as one face a cell: any rectilinear shape, with holes and touching corners.
+/// A union of grid cells, one face per cell: any rectilinear shape, with holes and touching corners.
 RC_GTEST_PROP(Regions, PiecesOfAnyRectilinearShapeCoverIt, ()) {
     const int n = 6;
     std::vector<Outline> cells;
@@ -98,7 +99,7 @@ RC_GTEST_PROP(Regions, PiecesOfAnyRectilinearShapeCoverIt, ()) {
     for (const Piece& piece : cut_into_pieces(scene)) {
         RC_ASSERT(!piece.patch.is_triangle());
         pieces += piece.patch.area();
-        // No piece lies on another one's place: its middle lies in one cell of its own region.
+        // Pieces do not overlap: the centre of each is in one cell of its own region.
         const Point c = piece.patch.centre();
         RC_ASSERT(std::any_of(cells.begin(), cells.end(), [&](const Outline& o) {
             return o[0].x <= c.x && c.x <= o[2].x && o[0].y <= c.y && c.y <= o[2].y;

@@ -21,7 +21,7 @@ std::size_t triangles(const std::vector<Patch>& patches) {
         std::count_if(patches.begin(), patches.end(), [](const Patch& p) { return p.is_triangle(); }));
 }
 
-/// Height over longest side, times two for triangles: 1 is a square.
+/// Height over longest side (twice that for triangles): 1 for a square.
 double worst_shape(const std::vector<Patch>& patches) {
     double worst = 1;
     for (const Patch& p : patches) {
@@ -52,7 +52,7 @@ TEST(Pieces, AWallWithADoorIsThreeRectanglesCutOnTheShortSide) {
     ASSERT_EQ(wall.size(), 3u);
     EXPECT_EQ(triangles(wall), 0u);
     EXPECT_NEAR(area(wall), 4 * 2.8 - 0.9 * 2.1, 1e-12 * 9.31);
-    EXPECT_GT(worst_shape(wall), 0.15);  // 0.45 by 2.8; cutting at the lintel gives a strip of 4 by 0.7
+    EXPECT_GT(worst_shape(wall), 0.15);  // 0.45 by 2.8; a cut at the lintel would give a strip of 4 by 0.7
 }
 
 TEST(Pieces, AFrameIsFourRectanglesAndAnEmptyOneNothing) {
@@ -110,7 +110,7 @@ TEST(Pieces, ACombWithManyTeethIsRectanglesOnly) {
     }
     const auto pieces = tile_one(comb);
     EXPECT_EQ(triangles(pieces), 0u);
-    EXPECT_LE(pieces.size(), 41u + 10);  // cut into blocks first, each tooth and each block's back a piece
+    EXPECT_LE(pieces.size(), 41u + 10);  // divided into blocks first: one piece per tooth and per block's back
     EXPECT_GT(worst_shape(pieces), 0.05);
     EXPECT_NEAR(area(pieces), 80 + 40, 1e-10);
 }

@@ -20,7 +20,7 @@ struct Number {
     std::uint32_t value = unnumbered;
 };
 struct Depth {
-    int value = -1;  ///< How many loops lie between the face and infinity; odd: inside.
+    int value = -1;  ///< Number of loops between the face and infinity; odd: inside.
 };
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Number, Kernel>;
 using FaceBase =
@@ -29,7 +29,7 @@ using Triangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
                                                CGAL::Exact_predicates_tag>;
 
-/// Gives every face the number of loops around it, going inwards from the infinite face.
+/// Assigns to every face the number of loops around it, proceeding inwards from the infinite face.
 template <class AnyTriangulation, class IsBorder>
 void count_loops_around(AnyTriangulation& t, const IsBorder& is_border) {
     std::deque<typename AnyTriangulation::Face_handle> open{t.infinite_face()};
@@ -81,7 +81,7 @@ std::vector<std::array<std::uint32_t, 3>> delaunay_triangles(std::span<const std
 
 namespace {
 
-/// What a face of the labelled triangulation carries: depth, number, labels of the edges opposite its vertices.
+/// Data of a face of the labelled triangulation: depth, number, and the labels of the edges opposite its vertices.
 struct FaceNote {
     int value = -1;
     std::uint32_t number = LabelledTriangles::none;
@@ -102,7 +102,7 @@ void insert_line(Lines& t, Vec2 a, Vec2 b, std::uint8_t label,
     if (id != Lines::Constraint_id()) lines.emplace_back(id, label);
 }
 
-/// Writes the least label of each line onto the faces beside its edges.
+/// Assigns to each edge the smallest label of the lines that contain it.
 void label_edges(Lines& t, const std::vector<std::pair<Lines::Constraint_id, std::uint8_t>>& lines) {
     for (const auto& [id, label] : lines) {
         auto at = t.vertices_in_constraint_begin(id);
@@ -167,7 +167,7 @@ LabelledTriangles labelled_triangles(std::span<const std::vector<Vec2>> loops,
         });
         return take_inside(t);
     } catch (const std::exception&) {
-        return {};  // CGAL's assertions
+        return {};  // a CGAL assertion failed
     }
 }
 
@@ -200,13 +200,14 @@ class DelaunayRefinement {
             }
         given_ = count_;
         const double mean_edge = std::sqrt(2 * area_of(coarse) / static_cast<double>(coarse.corners.size()));
-        constexpr double nearest_share = 0.25;  // more triangles than shape is worth come of less
-        nearest_ = nearest_share * mean_edge;
+        // Smaller distances give more triangles than better shapes are worth.
+        constexpr double min_distance_share = 0.25;
+        nearest_ = min_distance_share * mean_edge;
     }
 
     LabelledTriangles run() {
-        constexpr int most_passes = 100;
-        for (int pass = 0; pass < most_passes && improve_all(); ++pass) {
+        constexpr int max_passes = 100;
+        for (int pass = 0; pass < max_passes && improve_all(); ++pass) {
         }
         find_inside();
         for (const auto face : faces_.finite_face_handles())
@@ -241,7 +242,7 @@ class DelaunayRefinement {
         });
     }
 
-    /// Goes once through the triangles that are too sharp. False when nothing could be done for any.
+    /// Processes all triangles with a small angle once. Returns false if none could be improved.
     bool improve_all() {
         find_inside();
         std::vector<std::array<Vertex, 3>> sharp;
@@ -256,9 +257,9 @@ class DelaunayRefinement {
         return is_better;
     }
 
-    /// Is an angle too small that is not one between labelled edges?
+    /// Returns whether the triangle has a small angle that is not between two labelled edges.
     bool is_sharp(Handle face) const {
-        constexpr double sine = 0.3535;  // of 20.7 degrees: the shortest edge over twice the circle's radius
+        constexpr double sine = 0.3535;  // of 20.7 degrees: the shortest edge over twice the circumradius
         double length[3];
         for (int i = 0; i < 3; ++i) {
             const Vec2 d = place(face->vertex(Faces::ccw(i))) - place(face->vertex(Faces::cw(i)));
@@ -276,8 +277,8 @@ class DelaunayRefinement {
         const Kernel::Point_2 middle = faces_.circumcenter(face);
         const Vec2 m{middle.x(), middle.y()}, way = m - place(face->vertex(0));
         if (!(dot(way, way) >= nearest_ * nearest_) || !std::isfinite(dot(way, way))) return false;
-        constexpr int most_steps = 1'000;
-        for (int step = 0; step < most_steps; ++step) {
+        constexpr int max_steps = 1'000;
+        for (int step = 0; step < max_steps; ++step) {
             int beyond = -1;
             for (int i = 0; i < 3 && beyond < 0; ++i)
                 if (CGAL::orientation(face->vertex(Faces::ccw(i))->point(), face->vertex(Faces::cw(i))->point(),
@@ -291,7 +292,7 @@ class DelaunayRefinement {
         return false;
     }
 
-    /// Inserts a circle's middle, or halves an edge in whose circle it lies.
+    /// Inserts a circumcentre, or splits an edge whose diametral circle contains it.
     bool insert(const Kernel::Point_2& p, Handle face) {
         std::vector<Handle> conflicts;
         std::vector<Faces::Edge> rim;
@@ -310,8 +311,8 @@ class DelaunayRefinement {
         return true;
     }
 
-    /// Cuts a labelled edge in two: in the middle, or, where it begins at a corner of others, at a power of two from
-    /// there, so that the edges of a sharp corner are cut at the same distances.
+    /// Splits a labelled edge: at its middle, or if it starts at an original vertex, at a power-of-two distance from
+    /// there, so that the edges of a sharp corner are split at equal distances.
     bool halve(const Faces::Edge& edge) {
         const auto [face, i] = edge;
         const Vertex a = face->vertex(Faces::ccw(i)), b = face->vertex(Faces::cw(i));
@@ -346,9 +347,9 @@ class DelaunayRefinement {
     bool is_given(Vertex v) const { return v->info().value < given_; }
 
     Faces faces_;
-    std::unordered_map<std::uint64_t, std::uint8_t> labels_;  ///< Of constrained edges, by their ends.
-    std::uint32_t count_ = 0, given_ = 0;                     ///< Vertices so far, and those of the coarse triangles.
-    double nearest_ = 0;                                      ///< How near added points may come to others.
+    std::unordered_map<std::uint64_t, std::uint8_t> labels_;  ///< Labels of constrained edges, by their end points.
+    std::uint32_t count_ = 0, given_ = 0;  ///< Number of vertices so far, and of the coarse triangles.
+    double nearest_ = 0;                   ///< Minimum distance of added points from others.
 };
 
 }  // namespace
@@ -357,10 +358,10 @@ LabelledTriangles refined_triangles(const LabelledTriangles& coarse) {
     if (coarse.corners.empty()) return coarse;
     try {
         LabelledTriangles out = DelaunayRefinement(coarse).run();
-        constexpr double lost = 1e-10;
-        if (std::abs(area_of(out) - area_of(coarse)) <= lost * area_of(coarse)) return out;
+        constexpr double max_area_error = 1e-10;
+        if (std::abs(area_of(out) - area_of(coarse)) <= max_area_error * area_of(coarse)) return out;
     } catch (const std::exception&) {
-        // CGAL's assertions: the triangles stay as they are
+        // a CGAL assertion failed: return the input
     }
     return coarse;
 }

@@ -29,7 +29,7 @@ double labelled_length(const LabelledTriangles& t, std::uint8_t label) {
     return sum;
 }
 
-/// Radians.
+/// Smallest angle, radians.
 double least_angle(const LabelledTriangles& t) {
     double least = std::numbers::pi;
     for (const auto& c : t.corners)
@@ -40,7 +40,7 @@ double least_angle(const LabelledTriangles& t) {
     return least;
 }
 
-TEST(RefinedTriangles, HaveNoSharpAnglesWhereTheLinesHaveNone) {
+TEST(RefinedTriangles, HaveNoSmallAnglesIfTheLinesHaveNone) {
     const std::vector<LabelledSegment> lines{{{0.1, 0.2}, {0.15, 0.6}, 2}, {{0.7, 0.3}, {0.5, 0.35}, 3}};
     const LabelledTriangles coarse = labelled_triangles(square, lines), fine = refined_triangles(coarse);
     constexpr double bound = 20.7 * std::numbers::pi / 180;
@@ -51,7 +51,7 @@ TEST(RefinedTriangles, HaveNoSharpAnglesWhereTheLinesHaveNone) {
 
 TEST(RefinedTriangles, LoseNeitherAreaNorLinesInAnyPlane) {
     const Loops with_hole{square[0], {{0.3, 0.3}, {0.3, 0.6}, {0.6, 0.6}, {0.6, 0.3}}};
-    // A line through the hole, two nearly alike, and two that meet at a degree.
+    // A line through the hole, two nearly equal ones, and two that meet at one degree.
     const std::vector<LabelledSegment> lines{{{0.2, 0.5}, {0.9, 0.4}, 1},
                                              {{0, 0.8}, {1, 0.8}, 2},
                                              {{0, 0.8 + 1e-9}, {1, 0.8 - 2e-9}, 2},
@@ -71,7 +71,7 @@ TEST(RefinedTriangles, LoseNeitherAreaNorLinesInAnyPlane) {
         }
 }
 
-TEST(RefinedTriangles, OfNothingAreNothing) {
+TEST(RefinedTriangles, OfAnEmptyMeshAreEmpty) {
     EXPECT_TRUE(refined_triangles({}).corners.empty());
 }
 

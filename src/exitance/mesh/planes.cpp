@@ -8,7 +8,7 @@
 namespace exitance {
 
 Field<RegionId, std::uint32_t> plane_of_regions(const Scene& scene) {
-    constexpr double same_direction = 1e-7, same_plane = 1e-7;  // the latter of the scene's size
+    constexpr double same_direction = 1e-7, same_plane = 1e-7;  // the latter as a share of the scene's size
     std::vector<Point> normals;
     for (const Region& region : scene.regions()) normals.push_back(Point{} + region.plane.n);
     const std::vector<std::uint32_t> direction = weld(normals, same_direction);
@@ -18,7 +18,7 @@ Field<RegionId, std::uint32_t> plane_of_regions(const Scene& scene) {
         return std::tuple(direction[r.value], region.level, region.plane.offset, r.value);
     };
     std::sort(order.begin(), order.end(), [&](RegionId a, RegionId b) { return key(a) < key(b); });
-    std::vector<std::uint32_t> first(order.size());  // of each plane, its first region
+    std::vector<std::uint32_t> first(order.size());  // per region: the first region of its plane
     for (std::size_t i = 0; i < order.size(); ++i) {
         const bool apart = i == 0 || direction[order[i].value] != direction[order[i - 1].value] ||
                            scene.regions()[order[i]].level != scene.regions()[order[i - 1]].level ||

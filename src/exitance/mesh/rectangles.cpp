@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// The plane cut along all coordinates of the corners: which cells are inside.
+/// Grid of the plane along all coordinates of corners, with a flag per cell: inside or outside the polygon.
 class CellGrid {
   public:
     CellGrid(std::vector<double> xs, std::vector<double> ys)
@@ -20,7 +20,7 @@ class CellGrid {
     double y(std::size_t j) const { return ys_[j]; }
     bool inside(std::size_t i, std::size_t j) const { return inside_[j * columns() + i] != 0; }
 
-    /// Notes a vertical edge; resolve() then turns over every cell to its left, which leaves the insides.
+    /// Records a vertical edge. resolve() then inverts all cells to its left; cells inside are set after that.
     void add_edge(std::size_t i, std::size_t j0, std::size_t j1) {
         for (std::size_t j = j0; i > 0 && j < j1; ++j) inside_[j * columns() + i - 1] ^= 1;
     }
@@ -29,7 +29,7 @@ class CellGrid {
             for (std::size_t i = columns() - 1; i-- > 0;) inside_[j * columns() + i] ^= inside_[j * columns() + i + 1];
     }
 
-    /// A block of cells by itself.
+    /// A block of cells as a grid of its own.
     CellGrid block(std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) const {
         const auto part = [](const std::vector<double>& v, std::size_t first, std::size_t last) {
             return std::vector<double>(&v[first], &v[last] + 1);
@@ -39,7 +39,7 @@ class CellGrid {
             std::copy_n(&inside_[j * columns() + i0], i1 - i0, &out.inside_[(j - j0) * (i1 - i0)]);
         return out;
     }
-    /// How much of the line between two columns (rows) lies inside.
+    /// Length of the part inside the polygon of the line between two columns (or rows).
     double length_between_columns(std::size_t i, std::size_t j0, std::size_t j1) const {
         double length = 0;
         for (std::size_t j = j0; j < j1; ++j)
@@ -72,7 +72,8 @@ std::size_t nearest(const std::vector<double>& values, double v) {
     return above > 0 && v - values[above - 1] < values[above] - v ? above - 1 : above;
 }
 
-/// The cuts of least length through blocks of cells, each block's best kept in a table.
+/// Finds the shortest cuts through blocks of cells by dynamic programming; the best cut of each block is stored in a
+/// table.
 class ShortestCuts {
   public:
     explicit ShortestCuts(const CellGrid& grid)
@@ -123,15 +124,15 @@ class ShortestCuts {
 
     const CellGrid& g_;
     std::vector<Choice> best_;
-    std::vector<int> count_;  ///< Inside cells left of and below a grid point.
+    std::vector<int> count_;  ///< Number of inside cells left of and below a grid point.
 };
 
-/// Tiles a grid of any size: one too large for the table is cut in two first, along the shortest line in its middle
+/// Tiles a grid of any size. A grid too large for the table is first divided along the shortest line in its middle
 /// half.
 void tile(const CellGrid& g, std::vector<AxisRectangle>& out) {
-    constexpr std::size_t most = 12;  // columns and rows; the table takes a time of most^5
+    constexpr std::size_t max_table_cells = 12;  // columns and rows; the table takes O(max_table_cells^5) time
     const std::size_t m = g.columns(), n = g.rows();
-    if (m <= most && n <= most) return ShortestCuts(g).rectangles(0, m, 0, n, out);
+    if (m <= max_table_cells && n <= max_table_cells) return ShortestCuts(g).rectangles(0, m, 0, n, out);
     const bool across = m >= n;
     const std::size_t count = across ? m : n;
     std::size_t where = 0;
@@ -147,7 +148,7 @@ void tile(const CellGrid& g, std::vector<AxisRectangle>& out) {
 }  // namespace
 
 std::vector<AxisRectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance) {
-    constexpr std::size_t most_cells = 4'000'000;
+    constexpr std::size_t max_cells = 4'000'000;
     std::vector<double> xs, ys;
     for (const auto& loop : loops)
         for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -156,7 +157,7 @@ std::vector<AxisRectangle> tile_by_rectangles(std::span<const std::vector<Vec2>>
             xs.push_back(loop[i].x), ys.push_back(loop[i].y);
         }
     xs = different(std::move(xs), tolerance), ys = different(std::move(ys), tolerance);
-    if (xs.size() < 2 || ys.size() < 2 || xs.size() * ys.size() > most_cells) return {};
+    if (xs.size() < 2 || ys.size() < 2 || xs.size() * ys.size() > max_cells) return {};
     CellGrid grid(xs, ys);
     for (const auto& loop : loops)
         for (std::size_t i = 0; i < loop.size(); ++i) {

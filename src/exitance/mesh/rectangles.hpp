@@ -7,16 +7,16 @@
 
 namespace exitance {
 
-/// A rectangle along the axes.
+/// An axis-aligned rectangle.
 struct AxisRectangle {
     Vec2 lo, hi;
 };
 
-/// Tiles a polygon whose edges are all parallel to the axes by rectangles.
-/// Up to 12 cells between different coordinates an axis: the guillotine cuts of least total length, by dynamic
-/// programming (O(k^5) for k coordinates an axis). Larger ones are cut in two first, where the cut is short.
+/// Tiles a polygon whose edges are all parallel to the axes with rectangles. For up to 12 cells between distinct
+/// coordinates per axis, finds the guillotine cuts of minimal total length by dynamic programming (O(k^5) for k
+/// coordinates per axis). Larger polygons are first divided along a short cut.
 /// loops      any order and direction; their union by parity is tiled
-/// tolerance  coordinates nearer than this are one; an edge that is tilted by more makes the result empty
+/// tolerance  coordinates nearer than this are equal; the result is empty if an edge is tilted by more
 std::vector<AxisRectangle> tile_by_rectangles(std::span<const std::vector<Vec2>> loops, double tolerance);
 
 }  // namespace exitance

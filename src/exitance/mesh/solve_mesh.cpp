@@ -6,14 +6,14 @@
 namespace exitance {
 namespace {
 
-/// True if a length is above a limit by more than coordinates in files are rounded by, so that a scene is cut alike
-/// however it is turned where lengths are multiples of the mesh size.
+/// Returns whether a length exceeds a limit by more than the rounding of coordinates in files. Scenes whose lengths are
+/// multiples of the mesh size are then split the same way in every orientation.
 bool exceeds(double length, double limit) {
-    constexpr double rounding = 1e-6;  // of the limit
+    constexpr double rounding = 1e-6;  // share of the limit
     return length > (1 + rounding) * limit;
 }
 
-/// Cuts every leaf below `root` that a line, given in the root's coordinates, runs through.
+/// Splits every leaf below `root` that a line crosses. The line is given in the root's coordinates.
 void cut_leaves(ElementTree& tree, ElementId root, const CutLine& line) {
     const Patch frame = tree.patch(root);
     std::vector<ElementId> open = {root};
@@ -31,13 +31,13 @@ void cut_leaves(ElementTree& tree, ElementId root, const CutLine& line) {
     }
 }
 
-/// Cuts one piece and what comes of it until the size is met.
+/// Splits one piece and its parts until the size is met.
 class Cutter {
   public:
     Cutter(ElementTree& tree, MeshSize size)
         : tree_(tree), size_(size), strip_(size.edge / std::pow(2.0, size.grading_levels)) {}
 
-    /// `touches` tells which borders of the element lie on a concave border of its piece.
+    /// touches  which borders of the element are on a concave border of its piece
     void refine(ElementId e, std::array<bool, 4> touches) {
         if (!tree_.patch(e).is_triangle()) {
             std::array<bool, 4> open;
@@ -51,7 +51,7 @@ class Cutter {
     }
 
   private:
-    /// `open`: which of its borders lie on other borders of its piece whose corners are to be graded, too.
+    /// open  which borders of the element are on other borders of its piece, whose ends are graded, too
     void refine_parallelogram(ElementId e, std::array<bool, 4> touches, std::array<bool, 4> open) {
         const double a = norm(tree_.patch(e).a), b = norm(tree_.patch(e).b);
         const bool along_u = touches[0] || touches[2], along_v = touches[1] || touches[3];
@@ -82,7 +82,7 @@ class Cutter {
         for (ElementId child : tree_.children(e)) refine_triangle(child);
     }
 
-    /// Strips along the concave borders, each twice as wide as the one before it; then all cells to size.
+    /// Cuts strips along the concave borders, each twice as wide as the previous one; then splits all cells to size.
     void grade_triangle(ElementId e, std::array<bool, 4> touches) {
         const Patch p = tree_.patch(e);
         const double edge[3] = {norm(p.a), norm(p.b - p.a), norm(p.b)};
@@ -90,7 +90,7 @@ class Cutter {
             if (!touches[border]) continue;
             const double height = 2 * p.area() / edge[border];
             for (double d = strip_; d <= std::min(0.5 * size_.edge, 0.4 * height); d *= 2) {
-                const double t = d / height;  // the coordinate that is 0 on the border and 1 at the corner opposite
+                const double t = d / height;  // the coordinate that is 0 on the border and 1 at the opposite corner
                 const CutLine lines[3] = {{{0, 1}, t}, {{-1, -1}, t - 1}, {{1, 0}, t}};
                 cut_leaves(tree_, e, lines[border]);
             }
@@ -120,7 +120,8 @@ double distance_to_segment(const Point& p, const Point& a, const Point& b) {
     return norm(p - (a + t * d));
 }
 
-/// Does a surface, seen from a piece with the given plane, hold `p` or touch it within `tolerance`, and rise in front?
+/// Returns whether a surface contains `p` or touches it within `tolerance` (metres), extends in front of `plane`, and
+/// faces the point `inside`.
 bool rises_at(const Scene& scene, SurfaceId s, const Point& p, const Plane& plane, const Point& inside,
               double tolerance) {
     const Surface& surface = scene.surfaces()[s];
@@ -205,7 +206,8 @@ double edge_for_elements(const std::vector<Piece>& pieces, std::size_t count) {
     double longest = 0;
     for (const auto& [region, patch] : pieces) longest = std::max({longest, norm(patch.a), norm(patch.b)});
     double edge = 1.0001 * longest;
-    while (predict_elements(pieces, edge) < count) edge *= 0.84;  // a quarter more elements a square root of two
+    // Each step makes about sqrt(2) times as many elements.
+    while (predict_elements(pieces, edge) < count) edge *= 0.84;
     return edge;
 }
 

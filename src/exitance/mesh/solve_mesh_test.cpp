@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-TEST(SolveMesh, IsTheSameHoweverASceneLiesWhoseLengthsAreMultiplesOfTheEdge) {
+TEST(SolveMesh, IsIndependentOfOrientationIfLengthsAreMultiplesOfTheEdge) {
     const Scene table = built_scene("table");
     const std::vector<Piece> pieces = Stage(table).pieces;
     const auto leaves = [](const Scene& scene, double edge) {
@@ -27,7 +27,7 @@ TEST(SolveMesh, IsTheSameHoweverASceneLiesWhoseLengthsAreMultiplesOfTheEdge) {
     EXPECT_EQ(leaves(built_scene("table", {{"rot", "31.7,0.3,0.5,1"}, {"scale", "0.001"}}), 0.0004), as_it_is);
 }
 
-TEST(RefineElement, CutsAParallelogramOfThreeToTwoAlikeHoweverItIsTurned) {
+TEST(RefineElement, SplitsAThreeToTwoParallelogramTheSameInEveryOrientation) {
     const double rounding = 1e-12;
     for (const double length : {3 - rounding, 3.0, 3 + rounding}) {
         ElementTree tree;

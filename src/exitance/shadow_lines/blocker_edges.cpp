@@ -54,7 +54,8 @@ void BlockerEdges::find_sheets(const Occluders& occluders) {
     }
 }
 
-/// A piece that holds the edge's middle lies on one side of the edge where the edge is on its border, else on both.
+/// A piece that contains the edge's middle is on one side of the edge if the edge is on its border, and on both
+/// otherwise.
 void BlockerEdges::add_sheets(const ConvexPiece& piece, std::span<const Point> corners, Edge& edge) {
     const Point middle = 0.5 * (edge.a + edge.b);
     const Vec3 along = edge.b - edge.a;

@@ -10,30 +10,30 @@
 
 namespace exitance {
 
-/// Where what blocks light ends: the border edges of all regions, those that several regions share only once, with the
-/// sheets that meet there. Cuts within a region are no edges. O(n log n) to make.
+/// Edges at which occluders end: the border edges of all regions, with the surfaces (sheets) that meet at each. An edge
+/// shared by several regions appears once. Cuts inside a region are not edges. Construction: O(n log n).
 class BlockerEdges {
   public:
     explicit BlockerEdges(const Occluders& occluders);
 
     struct Edge {
         Point a, b;
-        std::uint32_t ends[2];  ///< Numbers of its corners: edges that meet have one in common.
+        std::uint32_t ends[2];  ///< Indices of the two corners. Edges that meet share a corner index.
         std::uint32_t first_sheet = 0, sheet_count = 0;
     };
     std::span<const Edge> edges() const { return edges_; }
     std::size_t corner_count() const { return corner_count_; }
-    /// Edges on the border of a region.
+    /// Indices into edges() of the border edges of region r.
     std::span<const std::uint32_t> of_region(RegionId r) const {
         return std::span(of_region_).subspan(first_[r.value], first_[r.value + 1] - first_[r.value]);
     }
-    /// Seen from p, is there free sight on one side of the edge at least? Else what lies on both of its sides hides
-    /// whatever happens there.
+    /// Returns whether at least one side of the edge, as seen from p, is not covered by a sheet at the edge. Otherwise
+    /// sheets on both sides of the edge hide any visibility change there.
     bool is_outline(const Edge& edge, const Point& p) const;
-    /// The side on which sight is free: 1 where cross(a - p, b - p) points to, -1 on the other, 0 where it is on both
-    /// or on neither.
+    /// Returns which side of the edge, as seen from p, no sheet at the edge covers: 1 for the side that cross(a - p, b
+    /// - p) points to, -1 for the other, 0 if both or neither are uncovered.
     int free_side(const Edge& edge, const Point& p) const;
-    /// Do the corners lie within rounding of a piece's plane?
+    /// Distance within which corners coincide and points are in a plane, metres (1e-8 of the scene's size).
     double tolerance() const { return tolerance_; }
 
   private:
@@ -42,7 +42,7 @@ class BlockerEdges {
     void add_sheets(const ConvexPiece& piece, std::span<const Point> corners, Edge& edge);
 
     std::vector<Edge> edges_;
-    std::vector<Vec3> sheets_;  ///< Of each sheet at an edge: the direction into it, across the edge.
+    std::vector<Vec3> sheets_;  ///< Per sheet at an edge: the direction from the edge into the sheet.
     std::vector<std::uint32_t> of_region_, first_;
     std::size_t corner_count_ = 0;
     double tolerance_;

@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// Is an edge that ends in the corner an outline as seen from a point?
+/// Returns whether any edge that ends in the corner is an outline as seen from a point.
 bool ShadowEventFinder::is_near_outline(std::uint32_t corner, const Point& from) const {
     auto at = std::lower_bound(edges_at_.begin(), edges_at_.end(), std::pair{corner, 0u});
     for (; at != edges_at_.end() && at->first == corner; ++at)
@@ -13,8 +13,8 @@ bool ShadowEventFinder::is_near_outline(std::uint32_t corner, const Point& from)
     return false;
 }
 
-/// Narrows the wedge to lines of sight that come from the source. The wedge's plane cuts the source in a segment, whose
-/// ends limit the parameter; of a source that is not convex, in the stretch from its first cut to its last.
+/// Restricts the wedge to lines of sight from the source. The wedge's plane cuts the source in a segment whose ends
+/// limit the parameter; for a non-convex source, the stretch from the first to the last cut is used.
 bool ShadowEventFinder::clip_to_source(Wedge& wedge, const Vec3& normal) const {
     const Vec3 b = wedge.base - wedge.apex;
     const double area = dot(cross(b, wedge.along), normal);
@@ -36,7 +36,7 @@ bool ShadowEventFinder::clip_to_source(Wedge& wedge, const Vec3& normal) const {
     return wedge.first < wedge.last;
 }
 
-/// `beyond`: the edge is nearer to the source than the corner.
+/// Adds the event of a blocker's corner w over an edge. `beyond`: the edge is nearer to the source than the corner.
 void ShadowEventFinder::add_corner_before_edge(std::uint32_t corner, const Point& w, const BlockerEdges::Edge& edge,
                                                bool beyond, std::vector<ShadowEvent>& events) {
     const double height = frame_->height(w), ha = frame_->height(edge.a), hb = frame_->height(edge.b);

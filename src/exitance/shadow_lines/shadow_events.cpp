@@ -6,9 +6,10 @@
 namespace exitance {
 namespace {
 
-constexpr double coplanar_sine = 1e-7;  // below it an edge lies in a wedge's plane
+constexpr double coplanar_sine = 1e-7;  // below this, an edge counts as parallel to a wedge's plane
 
-/// Ends of the segment in which a convex polygon crosses a plane; false where it misses or only touches it.
+/// Computes the ends of the segment in which a convex polygon crosses a plane. Returns false if it misses or only
+/// touches the plane.
 bool crossing(std::span<const Point> corners, const Point& on, const Vec3& normal, double slack, Point& from,
               Point& to) {
     double highest = -HUGE_VAL, lowest = HUGE_VAL;
@@ -27,7 +28,7 @@ bool crossing(std::span<const Point> corners, const Point& on, const Vec3& norma
     return found >= 2;
 }
 
-/// Cuts the segment to where a function that is linear along it exceeds `least`.
+/// Reduces the segment to where a function that is linear along it exceeds `least`. Returns false if nothing is left.
 bool cut(Point& a, Point& b, double at_a, double at_b, double least) {
     if (at_a <= least && at_b <= least) return false;
     if (at_a < least) a = a + ((least - at_a) / (at_b - at_a)) * (b - a);
@@ -37,7 +38,7 @@ bool cut(Point& a, Point& b, double at_a, double at_b, double least) {
 
 }  // namespace
 
-/// Narrows [first, last] to where at_zero + t rate >= 0.
+/// Reduces [first, last] to where at_zero + t rate >= 0. Returns false if nothing is left.
 bool ShadowEventFinder::limit(double at_zero, double rate, double& first, double& last) const {
     if (rate == 0) return at_zero >= 0;
     const double t = -at_zero / rate;
@@ -48,7 +49,7 @@ bool ShadowEventFinder::limit(double at_zero, double rate, double& first, double
     return first < last;
 }
 
-/// Where the sight line of parameter t meets the receiver's plane.
+/// Point in the receiver's plane that the sight line of parameter t reaches.
 Vec2 ShadowEventFinder::shadow(const Wedge& wedge, double t) const {
     const Point through = wedge.base + t * wedge.along;
     const double ha = frame_->height(wedge.apex), hb = frame_->height(through);
@@ -56,8 +57,8 @@ Vec2 ShadowEventFinder::shadow(const Wedge& wedge, double t) const {
     return a + (ha / (ha - hb)) * (b - a);
 }
 
-/// The wedge's line on the receiver is a projective function of t, so that every side of the box is a linear condition
-/// on t, and so is that the lines reach the plane at all.
+/// Restricts the wedge to sight lines that reach the box on the receiver. The wedge's line on the receiver is a
+/// projective function of t, so each side of the box is a linear condition on t, and so is reaching the plane at all.
 bool ShadowEventFinder::clip_to_box(Wedge& wedge, double height) const {
     const Vec2 a = frame_->flat(wedge.apex), b = frame_->flat(wedge.base);
     const Vec2 d = {dot(frame_->u, wedge.along), dot(frame_->v, wedge.along)};
@@ -74,7 +75,8 @@ bool ShadowEventFinder::clip_to_box(Wedge& wedge, double height) const {
            side(a.y, b.y, d.y, hi_.y, -1);
 }
 
-/// Adds to hidden_ the parameters of sight lines that a piece stands in. True where it stands in all of them.
+/// Appends to hidden_ the parameter intervals of the sight lines that a piece blocks. Returns whether it blocks all of
+/// them.
 bool ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId number) {
     const ConvexPiece& piece = occluders_->pieces()[number];
     if (occluders_->is_own(piece.region, own_) || piece.region == source_->region) return false;
@@ -83,7 +85,7 @@ bool ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId nu
     const bool holds_base = std::abs(piece.plane.signed_distance(wedge.base)) <= tolerance &&
                             std::abs(piece.plane.signed_distance(wedge.base + wedge.along)) <= tolerance;
     if (holds_base || (holds_apex && (wedge.beyond || wedge.passes_apex)))
-        return false;  // it meets the wedge in the sight lines' own corner or edge
+        return false;  // it touches the sight lines only in their own corner or edge
     Point c, d;
     if (!crossing(occluders_->corners(number), wedge.apex, normal, tolerance, c, d)) return false;
     if (!cut(c, d, frame_->height(c), frame_->height(d), least_)) return false;
@@ -107,8 +109,8 @@ bool ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId nu
     return all;
 }
 
-/// The part of a wedge's plane, as thick as what is one, between its outermost sight lines: on the base's side of the
-/// apex (1) or on the other (-1), before the receiver and the source.
+/// The part of a wedge's plane (as thick as the tolerance) between its outermost sight lines, in front of the receiver
+/// and the source. side: 1 on the base's side of the apex, -1 on the other.
 ConvexRegion ShadowEventFinder::fan(const Wedge& wedge, const Vec3& normal, double side) const {
     const Point p = wedge.base + wedge.first * wedge.along, q = wedge.base + wedge.last * wedge.along;
     const double slack = edges_->tolerance(), at = dot(normal, wedge.apex);
@@ -134,7 +136,7 @@ void ShadowEventFinder::keep_visible(const Wedge& wedge, ShadowEvent event, std:
     hidden_.clear();
     bool all = false;
     const auto visit = [&](PieceId piece) { return all = blank(wedge, normal, piece); };
-    // Sight lines that go on beyond the apex have a fan on either side of it.
+    // Sight lines that continue past the apex have a fan on each side of it.
     const bool both = wedge.beyond || wedge.passes_apex;
     for (const std::span<const PieceId>& list : lists_)
         for (std::size_t i = 0; i < list.size() && !all; ++i) ++plane_tests, visit(list[i]);
@@ -247,7 +249,7 @@ void ShadowEventFinder::set(const PlaneFrame& receiver, RegionId own, Vec2 lo, V
 void ShadowEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
                              std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events) {
     set(receiver, own, lo, hi, source, among);
-    std::size_t first = 0;  // number of the loop's first corner
+    std::size_t first = 0;  // index of the loop's first corner
     const auto list = [&](std::size_t corner) {
         return bounds_.lists ? std::span<const PieceId>(bounds_.lists->of_corner[corner]) : std::span<const PieceId>();
     };

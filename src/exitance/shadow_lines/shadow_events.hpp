@@ -13,80 +13,85 @@
 
 namespace exitance {
 
-/// Where on a receiver the visible part of one source changes its corners: a stretch of a straight line in the
-/// receiver's own coordinates, metres.
+/// A segment on a receiver across which the set of corners of a source's visible part changes. In the receiver's plane
+/// coordinates, metres.
 struct ShadowEvent {
     Vec2 a, b;
-    bool is_kink = false;            ///< The light's slope breaks (D1), not only its curvature (D2).
-    bool by_edge_of_source = false;  ///< An edge of the source over a blocker's corner (EV), not a corner over an edge.
-    bool by_blockers_alone = false;  ///< A corner of a blocker over another edge of one (NEV), before the source.
-    double width = 0;                ///< Of the half-shadow that begins here, metres.
-    double gain = HUGE_VAL;          ///< What the source may bring beyond the edge at most, as EventBounds tells.
+    bool is_kink = false;  ///< Discontinuity of the slope of irradiance (D1); otherwise of its curvature (D2).
+    /// EV event: an edge of the source over a blocker's corner. Otherwise VE: a corner of the source over an edge.
+    bool by_edge_of_source = false;
+    /// NEV event: a corner of a blocker over another blocker's edge, in front of the source.
+    bool by_blockers_alone = false;
+    double width = 0;        ///< Width of the penumbra that begins here, metres.
+    double gain = HUGE_VAL;  ///< Upper bound of the source's contribution beyond the edge; see EventBounds::gains.
 };
 
-/// What may stand in the lines of sight to a source from its corners, in place of a search: the minimum candidate lists
-/// of a receiver (bsp/minimum_lists.hpp), in front of others first.
+/// Possible occluders between a receiver and a source, used instead of a search: the minimum candidate lists of the
+/// receiver (bsp/minimum_lists.hpp), front to back.
 struct WedgeLists {
-    std::vector<std::vector<PieceId>> of_corner;  ///< From each corner of the source; an edge has those of its ends.
+    /// Per corner of the source. An edge of the source uses the lists of both ends.
+    std::vector<std::vector<PieceId>> of_corner;
     std::vector<PieceId> of_all;
 };
 
-/// What the source may bring at most beyond each edge of a blocker, and what an event must bring to be looked for.
+/// Upper bounds of the source's contribution beyond each blocker edge, and the contribution below which events are
+/// skipped.
 struct EventBounds {
-    std::span<const double> gains = {};  ///< By edge, as they are numbered in `among`; empty: any.
-    double least_bend = 0;               ///< Of events that bend light only (D2),
-    /// or where these are eight times as long as the half-shadow is wide, which bisection would follow by more
-    /// triangles than lines cost.
+    std::span<const double> gains = {};  ///< Per edge, in the order of `among`; empty: unbounded.
+    double least_bend = 0;               ///< Minimum gain of events that change only the curvature (D2),
+    /// Minimum gain of D2 events more than eight times as long as their penumbra is wide, if below `least_bend`:
+    /// bisection would need more triangles for such events than cutting along the line.
     double least_narrow_bend = HUGE_VAL;
-    const StopRequest* stop = nullptr;  ///< Once it is requested, what is found is not complete.
-    const WedgeLists* lists = nullptr;  ///< By what wedges are clipped; none: by what a tree of boxes finds.
+    const StopRequest* stop = nullptr;  ///< Once a stop is requested, the result is incomplete.
+    const WedgeLists* lists = nullptr;  ///< Occluders that wedges are clipped by; null: those that the box tree finds.
 };
 
-/// The corners and edges of a source, the front of whose plane it shines into. A point alone is a source, too: then
-/// its events are where light jumps.
+/// Corners and edges of a source that emits into the front of its plane. A point source is a single point; its events
+/// are discontinuities of irradiance itself.
 struct EventSource {
     std::vector<std::vector<Point>> loops;
     Plane plane;
     RegionId region;
     bool is_point = false;
-    double size = 0;  ///< Metres across.
+    double size = 0;  ///< Diameter, metres.
 };
 
-/// Vertex-edge and edge-vertex events of discontinuity meshing [Heckbert92]; those of a blocker's corner over another
-/// edge of a blocker in front of the source [Drettakis94]. Those of three edges: three_edge_events.hpp.
+/// Finds the vertex-edge (VE) and edge-vertex (EV) events of discontinuity meshing [Heckbert92], and those of a
+/// blocker's corner over a blocker's edge in front of the source (NEV) [Drettakis94]. For three-edge events see
+/// three_edge_events.hpp.
 ///
-/// A corner of the source and an edge of a blocker span a wedge; an edge of the source and a corner of a blocker span
-/// two, on either side of the corner. Each meets the receiver's plane in a line. What lies within the wedge hides
-/// stretches of it: it is found in a tree of boxes, and what remains of the line is an event. O(corners (log n + hits))
-/// a blocker's edge.
+/// A corner of the source and an edge of a blocker span a wedge. An edge of the source and a corner of a blocker span
+/// two, one on each side of the corner. Each wedge meets the receiver's plane in a line. Occluders inside the wedge,
+/// found in a bounding volume hierarchy, hide stretches of the line; the rest are events. O(corners (log n + hits)) per
+/// blocker edge.
 class ShadowEventFinder {
   public:
     ShadowEventFinder(const Occluders& occluders, const BlockerEdges& edges, const EventBounds& bounds = {})
         : occluders_(&occluders), edges_(&edges), bounds_(bounds) {}
 
-    /// Appends the events of the blockers' edges numbered `among`, as far as they reach into the box lo..hi of the
-    /// receiver. `own` is the receiver's region.
+    /// Appends the events of the blocker edges numbered `among` inside the box lo..hi of the receiver (plane
+    /// coordinates, metres). `own`: the receiver's region.
     void find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
               std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events);
 
-    /// The same for corners of blockers over blockers' edges, in front of the source. O(corners edges), of which few
+    /// Like find(), for corners of blockers over blocker edges in front of the source. O(corners edges), of which few
     /// reach the source.
     void find_non_emitter(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
                           std::span<const std::uint32_t> among, std::vector<ShadowEvent>& events);
 
-    std::size_t wedges = 0;       ///< Looked at so far.
-    std::size_t plane_tests = 0;  ///< Pieces of lists that a wedge's plane was held against.
-    std::size_t too_weak = 0;     ///< Wedges of D2 events that were left out for what they may bring.
+    std::size_t wedges = 0;       ///< Number of wedges examined so far.
+    std::size_t plane_tests = 0;  ///< Number of listed pieces tested against a wedge's plane.
+    std::size_t too_weak = 0;     ///< Number of wedges of D2 events, and of their stretches, skipped as too weak.
 
   private:
-    /// A fan of sight lines: from `apex` through base + t along, t in [first, last]; `beyond`: lines end behind the
-    /// apex (EV), else behind the base (VE).
+    /// A fan of sight lines from `apex` through base + t along, t in [first, last]. `beyond`: the lines end behind the
+    /// apex (EV); otherwise behind the base (VE).
     struct Wedge {
         Point apex, base;
         Vec3 along;
         double first = 0, last = 1;
         bool beyond = false;
-        bool passes_apex = false;  ///< The apex is a blocker's corner: lines come from beyond it.
+        bool passes_apex = false;  ///< The apex is a blocker's corner, and the lines start beyond it.
     };
     void set(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
              std::span<const std::uint32_t> among);
@@ -103,12 +108,13 @@ class ShadowEventFinder {
     bool blank(const Wedge& wedge, const Vec3& normal, PieceId piece);
     Vec2 shadow(const Wedge& wedge, double t) const;
     bool limit(double at_zero, double rate, double& first, double& last) const;
-    /// The clock is looked at for every so many wedges only.
+    /// Checks the stop request only once every 64 wedges.
     bool is_stopped() {
         constexpr std::size_t wedges_a_look = 64;
         return bounds_.stop && ++asked_ % wedges_a_look == 0 && bounds_.stop->requested();
     }
-    /// Does an event of so much light count? Those that only bend it count from a limit on.
+    /// Returns whether an event's gain is large enough: D2 events need `least_bend`, or `least_narrow_bend` if they
+    /// turn out to be long enough (is_long_enough).
     bool counts(const ShadowEvent& event) {
         const bool weak = is_weak(event) && event.gain < bounds_.least_narrow_bend;
         too_weak += weak;
@@ -117,7 +123,8 @@ class ShadowEventFinder {
     bool is_weak(const ShadowEvent& event) const {
         return !source_->is_point && !event.is_kink && !event.by_blockers_alone && event.gain < bounds_.least_bend;
     }
-    /// The same of a stretch of it.
+    /// Returns whether an event is long enough to keep: any event that is not weak, or one more than eight times as
+    /// long as its penumbra is wide.
     bool is_long_enough(const ShadowEvent& event) const {
         constexpr double narrow = 8;
         const Vec2 d = event.b - event.a;
@@ -131,13 +138,13 @@ class ShadowEventFinder {
     std::span<const std::uint32_t> among_;
     RegionId own_;
     Vec2 lo_, hi_;
-    double least_ = 0;  ///< Metres: what is lower over a plane lies in it.
+    double least_ = 0;  ///< Metres: points nearer to a plane than this are in it.
     std::vector<std::pair<double, double>> hidden_;
     EventBounds bounds_;
-    std::array<std::span<const PieceId>, 2> lists_;  ///< Of the wedge at hand.
-    std::size_t asked_ = 0;                          ///< How often whether to stop.
+    std::array<std::span<const PieceId>, 2> lists_;  ///< Candidate lists for the current wedge.
+    std::size_t asked_ = 0;                          ///< Number of calls of is_stopped().
     std::vector<std::pair<std::uint32_t, Point>> corners_;
-    std::vector<double> corner_gains_;                               ///< The most of the edges that end there.
+    std::vector<double> corner_gains_;  ///< Per corner: the largest gain of the edges that end there.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_at_;  ///< Corner, edge; sorted.
 };
 

@@ -6,14 +6,14 @@
 namespace exitance {
 namespace {
 
-/// A function a + b s.
+/// The function a + b s.
 struct Linear {
     double a = 0, b = 0;
     double operator()(double s) const { return a + b * s; }
 };
 
-/// Numerator and denominator of the place along `far`, from 0 to 1, that the plane through q0 + s (q1 - q0) and `near`
-/// meets.
+/// Numerator and denominator of the position on `far` (0 to 1 along the edge) at which the plane through q0 + s (q1 -
+/// q0) and `near` meets it.
 struct Ratio {
     Linear up, down;
 
@@ -27,7 +27,7 @@ struct Ratio {
     double at(double s) const { return up(s) / down(s); }
 };
 
-/// Narrows to where f(s) >= 0; false where nothing is left.
+/// Reduces [first, last] to where f(s) >= 0. Returns false if nothing is left.
 bool limit(const Linear& f, double& first, double& last) {
     if (f.b == 0) return f.a >= 0 && first < last;
     const double s = -f.a / f.b;
@@ -38,8 +38,8 @@ bool limit(const Linear& f, double& first, double& last) {
     return first < last;
 }
 
-/// Where within [first, last] does the ratio lie from 0 to 1? At most two parts: where the denominator changes its sign
-/// the ratio is infinite, so that each part has a sign of its own.
+/// Parts of [first, last] in which the ratio is between 0 and 1: at most two, one for each sign of the denominator,
+/// since the ratio is infinite where the denominator changes sign.
 std::vector<std::pair<double, double>> within(const Ratio& r, double first, double last) {
     std::vector<std::pair<double, double>> out;
     for (const double sign : {1.0, -1.0}) {
@@ -69,7 +69,7 @@ ThreeEdgeEventFinder::Sight ThreeEdgeEventFinder::sight(double s, const Point& q
     out.q = q0 + s * (q1 - q0);
     out.p = e.a + Ratio(q0, q1, f, e).at(s) * line_along(e);
     out.r = f.a + Ratio(q0, q1, e, f).at(s) * line_along(f);
-    // The two lie on one line with q: the farther one fixes it best.
+    // Both points are on one line with q; the farther one defines the line more accurately.
     const Point& through = squared_norm(out.p - out.q) > squared_norm(out.r - out.q) ? out.p : out.r;
     const double hq = frame_->height(out.q), ht = frame_->height(through);
     if (!(hq > ht + 1e-9 * std::abs(hq))) return out;
@@ -83,7 +83,8 @@ ThreeEdgeEventFinder::Sight ThreeEdgeEventFinder::sight(double s, const Point& q
     return out;
 }
 
-/// Does the inside of a piece stand in the line of sight? Those that it only grazes are the edges' own.
+/// Returns whether the interior of a piece blocks the line of sight. Pieces that it only grazes belong to the edges
+/// themselves.
 bool ThreeEdgeEventFinder::is_hidden(const Sight& sight, const Point& end) const {
     const Vec3 d = end - sight.q;
     const double slack = 8 * edges_->tolerance();
@@ -107,16 +108,17 @@ bool ThreeEdgeEventFinder::is_hidden(const Sight& sight, const Point& end) const
     return hidden;
 }
 
-/// Seen along the line of sight the source's edge and the two others are lines through one point, each with the side on
-/// which the source is not cut off. Where three half-planes have only that point in common, a step to one side of the
-/// conic leaves a small triangle of the source, a step to the other side nothing.
+/// Returns whether the event may bound an umbra. Seen along the line of sight, the three edges are lines through one
+/// point, each with a side on which the source is not cut off. Suppose these three half-planes have only that point in
+/// common. Then a step to one side of the conic leaves a small triangle of the source visible, and a step to the other
+/// side nothing.
 bool ThreeEdgeEventFinder::bounds_umbra(const Sight& sight, const Point& q0, const Point& q1,
                                         const BlockerEdges::Edge& e, const BlockerEdges::Edge& f) const {
     const Vec3 view = sight.r - sight.q + (sight.p - sight.q);
     const Frame frame{Normal(normalized(view))};
     const auto flat = [&](const Vec3& v) { return Vec2{dot(frame.u, v), dot(frame.v, v)}; };
     std::array<Vec2, 3> sides;
-    // Loops run counter-clockwise about the front: the inside lies to the left.
+    // Loops are counter-clockwise about the front, so the inside is to the left.
     sides[0] = flat(cross(source_->plane.n, q1 - q0));
     const std::array<const BlockerEdges::Edge*, 2> edges{&e, &f};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -129,7 +131,7 @@ bool ThreeEdgeEventFinder::bounds_umbra(const Sight& sight, const Point& q0, con
         if (!(l > 0)) return false;
         v = (1 / l) * v;
     }
-    // The normals go round the point: each two turn to the same hand.
+    // True if the normals surround the point: each pair of consecutive ones turns in the same direction.
     const double a = cross(sides[0], sides[1]), b = cross(sides[1], sides[2]), c = cross(sides[2], sides[0]);
     return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
 }
@@ -137,14 +139,15 @@ bool ThreeEdgeEventFinder::bounds_umbra(const Sight& sight, const Point& q0, con
 void ThreeEdgeEventFinder::follow(const Point& q0, const Point& q1, const BlockerEdges::Edge& e,
                                   const BlockerEdges::Edge& f, Interval part,
                                   std::vector<ThreeEdgeEvent>& events) const {
-    constexpr std::size_t looks = 16;  // along a part, for what hides some of it
+    constexpr std::size_t samples = 16;  // along a part, to find where it is hidden
     std::vector<Sight> sights;
-    for (std::size_t i = 0; i <= looks; ++i) {
-        // The ends are lines of sight through corners, which rounding may put to either side.
-        const double at = std::clamp(static_cast<double>(i) / looks, 1e-6, 1 - 1e-6);
+    for (std::size_t i = 0; i <= samples; ++i) {
+        // At the ends the lines of sight pass through corners, which rounding may put on either side.
+        const double at = std::clamp(static_cast<double>(i) / samples, 1e-6, 1 - 1e-6);
         sights.push_back(sight(part.first + at * (part.last - part.first), q0, q1, e, f));
     }
-    const auto cut = [&](double from, double to) {  // from: free; to: not; the last that is
+    const auto cut = [&](double from,
+                         double to) {  // bisects between a visible and a hidden parameter; returns the last visible one
         constexpr int halvings = 30;
         for (int i = 0; i < halvings; ++i) {
             const double middle = 0.5 * (from + to);
@@ -153,14 +156,14 @@ void ThreeEdgeEventFinder::follow(const Point& q0, const Point& q1, const Blocke
         return from;
     };
     const auto parameter = [&](std::size_t i) {
-        return part.first + static_cast<double>(i) / looks * (part.last - part.first);
+        return part.first + static_cast<double>(i) / samples * (part.last - part.first);
     };
-    for (std::size_t i = 0; i <= looks; ++i) {
+    for (std::size_t i = 0; i <= samples; ++i) {
         if (!sights[i].is_free) continue;
         std::size_t end = i;
-        while (end < looks && sights[end + 1].is_free) ++end;
+        while (end < samples && sights[end + 1].is_free) ++end;
         const double from = i > 0 ? cut(parameter(i), parameter(i - 1)) : part.first;
-        const double to = end < looks ? cut(parameter(end), parameter(end + 1)) : part.last;
+        const double to = end < samples ? cut(parameter(end), parameter(end + 1)) : part.last;
         ThreeEdgeEvent event;
         event.may_bound_umbra = bounds_umbra(sights[(i + end) / 2], q0, q1, e, f);
         i = end;
@@ -170,7 +173,7 @@ void ThreeEdgeEventFinder::follow(const Point& q0, const Point& q1, const Blocke
         const Vec2 chord = b - a;
         const double length = std::hypot(chord.x, chord.y);
         if (!(length > 4 * sagitta_)) continue;
-        // A chord of half the parameter is off by a quarter.
+        // The distance to the conic is quadratic in the chord's parameter range.
         const double off = std::abs(cross(chord, m - a)) / length;
         constexpr double most = 32;
         const auto count = static_cast<int>(std::clamp(std::ceil(std::sqrt(off / sagitta_)), 1.0, most));
@@ -200,8 +203,8 @@ void ThreeEdgeEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 l
                     const BlockerEdges::Edge &e = edges_->edges()[outlines[j]], &f = edges_->edges()[outlines[k]];
                     const bool meet = e.ends[0] == f.ends[0] || e.ends[0] == f.ends[1] || e.ends[1] == f.ends[0] ||
                                       e.ends[1] == f.ends[1];
-                    if (meet) continue;  // seen in one line with their corner
-                    // Lines in one plane with the source's edge, or with one another, span no quadric.
+                    if (meet) continue;  // these events are those of their common corner
+                    // Lines in one plane with the source's edge or with each other do not span a quadric.
                     constexpr double coplanar = 1e-9;
                     const Vec3 de = line_along(e), df = line_along(f), dq = q1 - q0;
                     const double skew = std::abs(dot(f.a - e.a, cross(de, df)));

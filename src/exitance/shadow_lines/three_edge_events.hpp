@@ -10,34 +10,35 @@
 
 namespace exitance {
 
-/// A line.
+/// An infinite straight line.
 struct SightLine {
     Point at;
     Vec3 along;
 };
 
-/// Places on a receiver from which an edge of the source and two edges of blockers are seen in one line: a stretch of a
-/// conic as a polyline, in the receiver's own coordinates, metres.
+/// Points of a receiver from which an edge of the source and two blocker edges appear to meet in one point. They form a
+/// section of a conic, stored as a polyline in the receiver's plane coordinates, metres.
 struct ThreeEdgeEvent {
     std::vector<Vec2> places;
-    /// Next to the place where the three meet nothing of the source is seen on one side of it, so that an umbra may end
-    /// there.
+    /// True if none of the source is visible on one side of the curve near that point, so that an umbra may end there.
     bool may_bound_umbra = false;
 };
 
-/// Events of an edge of the source and two of blockers (EEE). From a point q of the source's edge there is one line
-/// through both others; it meets each where a ratio of two functions linear in q's place says, so that the part of the
-/// source's edge from which both are met, in front of the receiver, is known without a search. What else stands in such
-/// a line of sight hides that part of the conic. O(source's edges x pairs of edges) tests of a few operations, of which
-/// what remains is O(log n) each. Source: [Heckbert92], [Drettakis94].
+/// Finds the events of one source edge and two blocker edges (EEE). From each point q of the source's edge one line
+/// passes through both blocker edges. Its position on each is a ratio of two functions linear in q. The part of the
+/// source's edge whose lines meet both edges, in front of the receiver, therefore has a closed form. Other occluders on
+/// such a line of sight hide that part of the conic. O(source edges x pairs of edges) tests of a few operations each;
+/// the remaining pairs take O(log n) each. Source: [Heckbert92], [Drettakis94].
 class ThreeEdgeEventFinder {
   public:
-    /// Once `stop` is requested, what is found is not complete.
+    /// Once `stop` is requested, the result is incomplete.
     ThreeEdgeEventFinder(const Occluders& occluders, const BlockerEdges& edges, const StopRequest* stop = nullptr)
         : occluders_(&occluders), edges_(&edges), stop_(stop) {}
 
-    /// Appends events of the edges numbered `among` within the box lo..hi of the receiver. With `umbra_only` those that
-    /// may bound an umbra. `sagitta`: how far a polyline may be off its conic, metres.
+    /// Appends the events of the edges numbered `among` inside the box lo..hi of the receiver (plane coordinates,
+    /// metres).
+    /// umbra_only  only events that may bound an umbra
+    /// sagitta  maximum distance of a polyline from its conic, metres
     void find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
               std::span<const std::uint32_t> among, bool umbra_only, double sagitta,
               std::vector<ThreeEdgeEvent>& events);
@@ -47,8 +48,8 @@ class ThreeEdgeEventFinder {
         double first = 0, last = 1;
     };
     struct Sight {
-        Point q, p, r;  ///< On the source, on each edge.
-        Vec2 place;     ///< On the receiver.
+        Point q, p, r;  ///< The points on the source's edge and on each blocker edge.
+        Vec2 place;     ///< The point on the receiver.
         bool is_free = false;
     };
     Sight sight(double s, const Point& q0, const Point& q1, const BlockerEdges::Edge& e,
@@ -70,8 +71,8 @@ class ThreeEdgeEventFinder {
     double sagitta_ = 0, least_ = 0;
 };
 
-/// The determinant of the three planes through x and each line: 0 where one line of sight from x meets all three. It is
-/// quadratic in x, its cubic part vanishes.
+/// Determinant of the three planes through x and each line; 0 if one line of sight from x meets all three lines. It is
+/// quadratic in x, since its cubic part vanishes.
 double three_line_determinant(const Point& x, const std::array<SightLine, 3>& lines);
 
 }  // namespace exitance

@@ -9,13 +9,13 @@
 
 namespace exitance {
 
-/// How the faces between curves become triangles. Source: [Gatenby95]; the last one is ours, without construction
-/// edges.
+/// Triangulation of the faces between curves. Source: [Gatenby95], except for the last scheme, which needs no
+/// construction edges.
 enum class TriangulationScheme {
-    longest,    ///< The middle of the longest diagonal is joined to all corners.
-    shortest,   ///< The shortest diagonal cuts, again and again.
-    heuristic,  ///< The diagonal cuts that splits the angles at its ends best.
-    delaunay,   ///< Of the curves alone, with the largest smallest angle.
+    longest,    ///< Joins the middle of the longest diagonal to all corners.
+    shortest,   ///< Repeatedly cuts along the shortest diagonal.
+    heuristic,  ///< Cuts along the diagonal that divides the angles at its ends best.
+    delaunay,   ///< Constrained Delaunay triangulation of the curves: maximizes the smallest angle.
 };
 /// Lines of three edges: where they may bound an umbra, everywhere, nowhere.
 enum class ThreeEdgeEvents { automatic, on, off };

@@ -23,9 +23,9 @@ class Bodies {
         match_edges();
     }
 
-    /// Groups of regions that close a convex body, in the order of their first regions. One that is open on one side,
-    /// as houses stand on the ground, blocks as if it were closed, as long as nothing stands within: what enters by the
-    /// opening meets a face from behind.
+    /// Groups of regions that form a convex body, in the order of their first regions. A body that is open on one side,
+    /// such as a house on the ground, blocks as if it were closed if nothing is inside: whatever enters through the
+    /// opening hits a face from behind.
     std::vector<ConvexBlocker> solids(std::vector<bool>& used) {
         std::map<std::uint32_t, std::vector<RegionId>> groups;
         for (std::uint32_t r = 0; r < parent_.size(); ++r) groups[root(r)].push_back(RegionId(r));
@@ -67,7 +67,8 @@ class Bodies {
             sides_.push_back({place(loop[i]), place(loop[(i + 1) % loop.size()]), r.value});
     }
 
-    /// Every edge of a closed body is run through once each way; a region with any other edge spoils its group.
+    /// Every edge of a closed body occurs exactly once in each direction. A region with any other edge disqualifies its
+    /// group.
     void match_edges() {
         std::map<std::pair<Place, Place>, std::vector<std::uint32_t>> by_ends;
         for (const Side& side : sides_) by_ends[{side.from, side.to}].push_back(side.region);
@@ -85,8 +86,8 @@ class Bodies {
             if (!by_ends.contains({side.to, side.from})) open_[root(side.region)].push_back(side);
     }
 
-    /// Adds the face that closes a body whose edges `open` have a face on one side only. False unless they are one loop
-    /// in a plane.
+    /// Adds the face that closes a body. `open`: the body's edges with a face on one side only. Returns false unless
+    /// they form one planar loop.
     bool add_cap(const std::vector<Side>& open, std::map<Place, std::uint32_t>& numbers, ConvexBlocker& body) const {
         std::map<std::uint32_t, std::uint32_t> next;
         for (const Side& side : open)
@@ -110,7 +111,7 @@ class Bodies {
         return true;
     }
 
-    /// Does any face of the scene but those of the group reach into a body?
+    /// Returns whether any face of the scene outside the group reaches into a body.
     bool holds_a_face(const ConvexBlocker& body, const std::vector<RegionId>& group) const {
         const Scene& scene = occluders_.scene();
         Box inner;
@@ -141,7 +142,8 @@ class Bodies {
         return r;
     }
 
-    /// The body that regions close, with one more face where edges are open; no points when these close nothing.
+    /// The body that is bounded by the regions of a group, with one more face if edges are open; no points if that face
+    /// does not exist.
     ConvexBlocker make_body(const std::vector<RegionId>& group, const std::vector<Side>& open) const {
         ConvexBlocker body;
         std::map<Place, std::uint32_t> numbers;
@@ -190,10 +192,10 @@ class Bodies {
     std::map<std::uint32_t, std::vector<Side>> open_;  ///< Edges with a face on one side only, by group.
 };
 
-/// Of a face's side: a corner, and the one after it.
+/// A side of a face: a corner and the next one.
 using Ends = std::pair<std::uint32_t, std::uint32_t>;
 
-/// The corners of a face, in order, by which comes after each; none unless they make one loop.
+/// The corners of a face in order, from the map of each corner to the next; empty unless they form one loop.
 std::vector<std::uint32_t> one_loop(const std::map<std::uint32_t, std::uint32_t>& next) {
     if (next.size() < 3) return {};
     std::vector<std::uint32_t> loop;
@@ -204,7 +206,8 @@ std::vector<std::uint32_t> one_loop(const std::map<std::uint32_t, std::uint32_t>
     return next.at(loop.back()) == loop.front() ? loop : std::vector<std::uint32_t>();
 }
 
-/// Makes the body's edges of its faces' sides; false unless every side has one that goes back, and all of them close.
+/// Builds the body's edges from the sides of its faces. Returns false unless every side has a reverse and the body is
+/// closed.
 bool join_sides(const std::map<Ends, std::int32_t>& left_of, ConvexBlocker& body) {
     std::size_t sides = 0;
     for (const auto& loop : body.loops) sides += loop.size();
@@ -244,7 +247,8 @@ bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, Conv
     if (!any_out) return part = body, true;
     if (body.faces.size() + 1 >= ConvexBlocker::most_faces) return false;
 
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;  // of a corner, or where an edge is cut
+    // Key: a corner of the body (twice), or the ends of a cut edge.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;
     const auto number = [&](std::uint32_t a, std::uint32_t b) {
         const auto [known, is_new] =
             numbers.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(part.points.size()));
@@ -255,7 +259,7 @@ bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, Conv
         }
         return known->second;
     };
-    std::map<std::uint32_t, std::uint32_t> border;  // of the new face: from each of its corners to the next
+    std::map<std::uint32_t, std::uint32_t> border;  // border of the new face: from each corner to the next
     std::map<Ends, std::int32_t> left_of;
     const auto add_face = [&](const Plane& face, const std::vector<std::uint32_t>& loop) {
         for (std::size_t i = 0; i < loop.size(); ++i)

@@ -8,13 +8,13 @@
 
 namespace exitance {
 
-/// A convex thing that blocks light: a sheet (one face, seen and blocking from both sides) or a closed solid with its
-/// faces outwards. A solid is worth finding: as seen from a point it hides what lies in the one pyramid over its
-/// silhouette, where its faces by themselves would hide as many pyramids as there are faces.
+/// A convex occluder: either a sheet (one face that blocks light from both sides) or a closed solid whose faces point
+/// outwards. From any point, a solid hides one pyramid, that over its silhouette; treated as separate faces it would
+/// need one pyramid per face.
 struct ConvexBlocker {
     struct Edge {
-        std::uint32_t a = 0, b = 0;              ///< Corners, along the border of face `left`.
-        std::int32_t left = 0, right = no_face;  ///< The faces beside it.
+        std::uint32_t a = 0, b = 0;              ///< Corners, in the direction of the border of face `left`.
+        std::int32_t left = 0, right = no_face;  ///< The two faces that share the edge.
     };
     static constexpr std::int32_t no_face = -1;
     static constexpr std::size_t most_faces = 32;
@@ -27,21 +27,25 @@ struct ConvexBlocker {
     bool is_solid() const { return faces.size() > 1; }
 };
 
-/// A sheet of its own: one convex outline.
+/// Makes a sheet from one convex outline (metres).
 ConvexBlocker make_sheet(std::span<const Point> outline, const Plane& plane);
 
-/// The part of a closed body in front of a plane, closed by a face in that plane; nothing (no points) when there is
-/// none. What lies nearer to the plane than `slack` (metres) lies in it. False, and `part` of no use, when rounding
-/// leaves no closed body, or one of too many faces.
+/// Clips a closed body by a plane.
+/// plane  its front is kept; the cut is closed by a new face in it
+/// slack  metres: points nearer to the plane than this are in it
+/// part  receives the clipped body; no points if nothing of the body is in front
+/// Returns false if rounding leaves no closed body, or if it has too many faces; `part` is then unusable.
 bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, ConvexBlocker& part);
 
-/// What can block light in a scene: closed convex bodies, then the pieces of everything else. Sheets that have the
-/// whole scene on one side (the walls of a convex room) can block nothing and are left out. O(n log n).
-/// slack  metres: points nearer to a plane than this lie in it
+/// Everything in a scene that can block light: closed convex bodies first, then the pieces of all other regions as
+/// sheets. Sheets with the whole scene on one side (the walls of a convex room) block nothing and are omitted. O(n log
+/// n).
+/// slack  metres: points nearer to a plane than this are in it
 std::vector<ConvexBlocker> make_convex_blockers(const Occluders& occluders, double slack);
 
-/// Which faces of a blocker have a polygon wholly in front of them, a bit each; of a sheet the second bit says wholly
-/// behind. Two polygons that share a bit see each other past the blocker: its plane keeps it apart from both.
+/// Bit mask of the faces of a blocker that have a polygon entirely in front of them. For a sheet, bit 1 is set if the
+/// polygon is entirely behind it. The blocker hides nothing between two polygons that share a bit: the plane of that
+/// face separates it from both.
 std::uint32_t sides(const ConvexBlocker& blocker, std::span<const Point> polygon, double slack);
 
 }  // namespace exitance

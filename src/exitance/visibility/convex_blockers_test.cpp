@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Adds the six faces of a box, outwards or inwards.
+/// Adds the six faces of a box, facing outwards or inwards.
 void add_box(SceneDescription& scene, const Point& lo, const Point& hi, bool outwards) {
     const auto first = static_cast<std::uint32_t>(scene.points.size());
     for (int i = 0; i < 8; ++i) scene.points.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
@@ -67,13 +67,13 @@ TEST(ConvexBlockers, AreClosedAgainWhenAPlaneCutsThem) {
         const Plane plane = {n, dot(n, Point{1.4, 1.6, 0.7})};
         ASSERT_TRUE(clip_body(box, plane, 1e-7, front));
         ASSERT_TRUE(clip_body(box, {-n, -plane.offset}, 1e-7, back));
-        EXPECT_NEAR(volume(front) + volume(back), 0.5, 1e-14);  // outlines run outwards, the new ones too
+        EXPECT_NEAR(volume(front) + volume(back), 0.5, 1e-14);  // outlines point outwards, including the new faces
         EXPECT_EQ(front.points.size() + front.faces.size(), front.edges.size() + 2);
         for (const ConvexBlocker* part : {&front, &back})
             for (const Plane& face : part->faces)
                 for (const Point& p : part->points) EXPECT_LE(face.signed_distance(p), 1e-14);
     }
-    // Along a diagonal through four corners, and beside it.
+    // Along a diagonal through four corners, and next to it.
     const Normal n = normalized(Vec3{1, -1, 0});
     ASSERT_TRUE(clip_body(box, {n, 0}, 1e-7, front));
     EXPECT_EQ(front.points.size(), 6u);
@@ -90,7 +90,7 @@ SceneDescription room_with_a_house() {
     d.groups.push_back("all");
     add_box(d, {0, 0, 0}, {4, 4, 3}, false);
     add_box(d, {1, 1, 0}, {2, 2, 1}, true);
-    d.faces.erase(d.faces.begin() + 6);  // it stands on the ground without a bottom
+    d.faces.erase(d.faces.begin() + 6);  // a box on the ground without a bottom
     return d;
 }
 

@@ -14,7 +14,8 @@ void CriticalLineFinder::find_corners(const SeenEdges& blocker) {
             if (!std::exchange(is_seen_[c], 1)) corners_.push_back(c);
 }
 
-/// Corners seen over edges of another blocker, in front of the source: the gap between the two closes there.
+/// Adds lines on which a corner of one blocker appears on an edge of another, in front of the source: the gap between
+/// the two closes there.
 void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& far,
                                   const SeenEdges& near, std::vector<CriticalLine>& lines) {
     find_corners(far);
@@ -39,7 +40,7 @@ void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point
                 const double d = dot(plane, s - w);
                 over |= d > 0, under |= d < 0;
             }
-            if (!over || !under) continue;  // that sight meets no source
+            if (!over || !under) continue;  // this line of sight misses the source
             const Vec2 p = frame.flat(a), q = frame.flat(b);
             add({p.x * high - from.x * low_a, p.y * high - from.y * low_a, high - low_a},
                 {q.x * high - from.x * low_b, q.y * high - from.y * low_b, high - low_b}, lines);
@@ -47,7 +48,8 @@ void CriticalLineFinder::add_gaps(const PlaneFrame& frame, std::span<const Point
     }
 }
 
-/// Where a face is seen edge-on and its plane cuts the source, the silhouette passes from one edge to another.
+/// Adds lines from which a face is seen edge-on, if its plane cuts the source: the silhouette changes from one edge to
+/// another.
 void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& blocker,
                                    std::vector<CriticalLine>& lines) {
     is_seen_.assign(blocker.body->faces.size(), 0);
@@ -79,24 +81,24 @@ bool CriticalLineFinder::crosses_receiver(const CriticalLine& line) const {
     return lowest <= -nearness_ && highest >= nearness_;
 }
 
-/// Keeps the line through two shadows of one edge, if it crosses the receiver where the edge's shadow lies.
+/// Keeps the line through the projections of an edge's ends, if it crosses the receiver within that projection.
 void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<CriticalLine>& lines) const {
     if (lines.size() >= most_ || (a.weight <= 0 && b.weight <= 0)) return;
-    // The line joins them in homogeneous coordinates, wherever they lie.
+    // The line joins them in homogeneous coordinates, even if one is at infinity.
     const double x = a.y * b.weight - a.weight * b.y, y = a.weight * b.x - a.x * b.weight, z = a.x * b.y - a.y * b.x;
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
     for (Vec2 p : receiver_) {
         const double d = x * p.x + y * p.y + z;
         lowest = std::min(lowest, d), highest = std::max(highest, d);
     }
-    if (lowest >= 0 || highest <= 0) return;  // most miss the receiver
+    if (lowest >= 0 || highest <= 0) return;  // the usual case
     const double length = std::sqrt(x * x + y * y);
     if (!(length > 0)) return;
     CriticalLine line{{x / length, y / length}, -z / length, 0, 0};
     if (!crosses_receiver(line)) return;
     const auto place = [&](const Shadow& s, const Shadow& other) {
         if (s.weight > 0) return line.along({s.x / s.weight, s.y / s.weight});
-        // Gone to infinity on the way to it from the other: on which side?
+        // The projection passes through infinity on the way from the other end: on which side?
         const double t = other.weight / (other.weight - s.weight);
         const double dx = other.x + t * (s.x - other.x), dy = other.y + t * (s.y - other.y);
         return line.along({dx, dy}) > 0 ? HUGE_VAL : -HUGE_VAL;
@@ -106,9 +108,9 @@ void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<Criti
     keep(line, lines);
 }
 
-/// Adds a line unless it misses the receiver or is known already.
+/// Adds a line unless it misses the receiver or equals a known one, which is then extended.
 void CriticalLineFinder::keep(CriticalLine line, std::vector<CriticalLine>& lines) const {
-    // Where does it cross the receiver's border?
+    // Find the stretch of the line inside the receiver.
     double enters = HUGE_VAL, leaves = -HUGE_VAL;
     for (std::size_t i = 0; i < receiver_.size(); ++i) {
         const Vec2 p = receiver_[i], q = receiver_[i + 1 == receiver_.size() ? 0 : i + 1];
@@ -131,7 +133,8 @@ void CriticalLineFinder::keep(CriticalLine line, std::vector<CriticalLine>& line
     lines.push_back(line);
 }
 
-/// Corners of the source over edges of a blocker, and the blocker's corners over the source's edges.
+/// Adds lines on which corners of the source appear on edges of a blocker, and corners of the blocker on edges of the
+/// source.
 void CriticalLineFinder::add_sights(const PlaneFrame& frame, std::span<const Point> source, const SeenEdges& seen,
                                     std::vector<CriticalLine>& lines) {
     const ConvexBlocker& body = *seen.body;
@@ -166,7 +169,7 @@ void CriticalLineFinder::add_sights(const PlaneFrame& frame, std::span<const Poi
     for (std::size_t s = 0; s < source.size(); ++s) {
         const std::size_t next = s + 1 == source.size() ? 0 : s + 1;
         if (!(any_edge & SeenEdges::bit(s))) continue;
-        // Faces seen alike from both ends of an edge are seen alike from all of it.
+        // Faces with the same orientation to both ends of an edge have it to the whole edge.
         const bool alike = std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
         const auto ends_outline = [&](std::uint32_t c) {
             return std::any_of(seen.edges.begin(), seen.edges.end(), [&](std::uint32_t k) {

@@ -8,18 +8,18 @@
 
 namespace exitance {
 
-/// A line on a receiver across which the visible part of a source changes its corners, so that the form factor bends.
-/// It matters between two places along it only. In the receiver's own coordinates.
+/// A straight line on a receiver across which the set of corners of a source's visible part changes, so that the form
+/// factor has a kink. Only the stretch between `first` and `last` matters. In the receiver's plane coordinates, metres.
 struct CriticalLine {
-    Vec2 n;  ///< The line is n . p = offset, |n| = 1; along it runs (-n.y, n.x).
+    Vec2 n;  ///< The line is n . p = offset, |n| = 1; its direction is (-n.y, n.x).
     double offset = 0;
-    double first = 0, last = 0;  ///< Where along it something changes.
+    double first = 0, last = 0;  ///< The relevant stretch, as along().
 
     double signed_distance(Vec2 p) const { return dot(n, p) - offset; }
     double along(Vec2 p) const { return -n.y * p.x + n.x * p.y; }
 };
 
-/// A receiver's plane with coordinates of its own.
+/// A receiver's plane with 2D coordinates in it.
 struct PlaneFrame {
     Point origin;
     Vec3 u, v;
@@ -34,31 +34,35 @@ struct PlaneFrame {
     Point at(Vec2 p) const { return origin + p.x * u + p.y * v; }
 };
 
-/// A blocker, and those of its edges that may be seen before the source.
+/// A blocker, with those of its edges that may appear in front of the source.
 struct SeenEdges {
     const ConvexBlocker* body;
-    std::span<const std::uint32_t> edges;  ///< In the blocker's.
-    /// Which corners of the source are seen over an edge from somewhere on the receiver, and not from elsewhere; and
-    /// over which of the source's edges a corner of the blocker is. A bit each, those past the 31st share the last.
+    std::span<const std::uint32_t> edges;  ///< Indices into body->edges.
+    /// Bit masks of visibility changes across the receiver. Per entry of `edges`: the corners of the source that are
+    /// visible over the edge from some points of the receiver and not from others. Per corner of the blocker: the edges
+    /// of the source that it crosses in the same sense. Bit s is corner or edge s; those from 31 on share the last bit.
     std::span<const std::uint32_t> edges_over_corners, corners_over_edges;
 
     static constexpr std::uint32_t bit(std::size_t s) { return 1u << (s < 31 ? s : 31); }
 };
 
-/// The lines that cross a convex receiver on which a corner of the source is seen over an edge of a blocker's
-/// silhouette, an edge of the source over a blocker's corner (the VE and EV events of discontinuity meshing), or a
-/// blocker's corner over another's edge in front of the source, or over its own body's (NEV). Events of three edges are
-/// left out.
-/// Source: [Heckbert92]. Lines nearer than `nearness` (metres) to each other are one; at most `most` are given, in an
-/// order that depends on the input alone. Blockers lie in front of the source's plane. O(corners^2) a blocker, of edges
-/// that are seen.
+/// Finds the critical lines that cross a convex receiver:
+///  - VE: a corner of the source appears on an edge of a blocker's silhouette;
+///  - EV: an edge of the source appears on a blocker's corner;
+///  - NEV: a blocker's corner appears on an edge of another blocker in front of the source, or on an edge of its own
+///  body (a face of which is then seen edge-on).
+/// Three-edge events of discontinuity meshing are omitted.
+/// nearness  metres: lines closer to each other than this are merged
+/// most  limit on the number of lines; their order depends on the input only
+/// Blockers must be in front of the source's plane. O(corners^2) per blocker, counting visible edges only. Source:
+/// [Heckbert92].
 class CriticalLineFinder {
   public:
     void find(const PlaneFrame& frame, std::span<const Vec2> receiver, std::span<const Point> source,
               std::span<const SeenEdges> blockers, double nearness, std::size_t most, std::vector<CriticalLine>& lines);
 
   private:
-    /// A point of the plane times its weight; a place at infinity or beyond has weight <= 0.
+    /// Projection of a point onto the receiver's plane, in homogeneous coordinates. Weight <= 0: at infinity or beyond.
     struct Shadow {
         double x, y, weight;
     };
@@ -77,7 +81,7 @@ class CriticalLineFinder {
     double nearness_ = 0;
     std::size_t most_ = 0;
     std::vector<std::uint8_t> in_front_, is_seen_;
-    std::vector<std::uint32_t> corners_;  ///< Ends of the edges at hand.
+    std::vector<std::uint32_t> corners_;  ///< End points of the edges of the current blocker.
 };
 
 }  // namespace exitance

@@ -31,9 +31,9 @@ std::vector<CriticalLine> lines_of(const Outline& receiver, const Outline& sourc
 const Outline floor_square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 const Outline ceiling = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
 
-TEST(CriticalLines, AStripHalfWayThrowsThePenumbraOfItsTwoEdges) {
-    // A strip x in [0.4, 0.7], beyond the receiver in y: the ends of the source at x = 0 and 1 are seen over its edges
-    // from x = 0.8 and 0.4 (over 0.4, 0.7); -0.2 and 1.4 lie outside.
+TEST(CriticalLines, AStripYieldsThePenumbraLinesOfItsTwoEdges) {
+    // A strip x in [0.4, 0.7], longer than the receiver in y. The ends of the source at x = 0 and 1 appear on its edges
+    // at x = 0.8 and 0.4 (edges 0.4 and 0.7); -0.2 and 1.4 are outside.
     const ConvexBlocker strip =
         make_sheet(Outline{{0.4, -2, 0.5}, {0.7, -2, 0.5}, {0.7, 3, 0.5}, {0.4, 3, 0.5}}, {{0, 0, 1}, 0.5});
     const std::vector<CriticalLine> lines = lines_of(floor_square, ceiling, {&strip});
@@ -41,7 +41,7 @@ TEST(CriticalLines, AStripHalfWayThrowsThePenumbraOfItsTwoEdges) {
     std::vector<double> places;
     for (const CriticalLine& line : lines) {
         const Point foot = frame.at(line.offset * line.n);
-        EXPECT_NEAR(foot.y, 0, 1e-12);  // all run along y
+        EXPECT_NEAR(foot.y, 0, 1e-12);  // all lines are parallel to y
         places.push_back(foot.x);
     }
     std::sort(places.begin(), places.end());
@@ -50,7 +50,7 @@ TEST(CriticalLines, AStripHalfWayThrowsThePenumbraOfItsTwoEdges) {
     EXPECT_NEAR(places[1], 0.8, 1e-12);
 }
 
-TEST(CriticalLines, AFinOnTheReceiverBendsTheLightAlongItsFoot) {
+TEST(CriticalLines, AFinOnTheReceiverYieldsALineAlongItsFoot) {
     const ConvexBlocker fin =
         make_sheet(Outline{{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 0.6}, {0.5, 0, 0.6}}, {{1, 0, 0}, 0.5});
     const PlaneFrame frame(floor_square[0], {0, 0, 1});
@@ -60,14 +60,14 @@ TEST(CriticalLines, AFinOnTheReceiverBendsTheLightAlongItsFoot) {
     EXPECT_TRUE(foot);
 }
 
-TEST(CriticalLines, ABlockerBesideThePairThrowsNone) {
+TEST(CriticalLines, ABlockerOutsideTheShaftYieldsNoLine) {
     const ConvexBlocker aside = make_sheet(Outline{{3, 0, 0.5}, {4, 0, 0.5}, {4, 1, 0.5}}, {{0, 0, 1}, 0.5});
     EXPECT_TRUE(lines_of(floor_square, ceiling, {&aside}).empty());
 }
 
 TEST(CriticalLines, TheGapBetweenTwoPlatesClosesOnALine) {
-    // Plates with edges x = 0.5 at heights 0.3 (to the left) and 0.6 (to the right, from 0.6): seen along both, x =
-    // 0.4.
+    // Plates with edges x = 0.5 at height 0.3 (on the left) and x = 0.6 at height 0.6 (on the right): the line of sight
+    // along both edges ends at x = 0.4.
     const ConvexBlocker low =
         make_sheet(Outline{{-3, -3, 0.3}, {0.5, -3, 0.3}, {0.5, 4, 0.3}, {-3, 4, 0.3}}, {{0, 0, 1}, 0.3});
     const ConvexBlocker high =

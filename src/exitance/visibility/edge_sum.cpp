@@ -12,10 +12,10 @@ namespace {
 
 using Workspace = VisibilityWorkspace;
 
-constexpr double on_plane = 1e-13;  ///< Sine of an angle below which an edge lies in a plane through x.
-constexpr double open_loop = 1e-9;  ///< Gap between pieces that rounding cannot make.
+constexpr double on_plane = 1e-13;  ///< Sine of an angle below which an edge counts as contained in a plane through x.
+constexpr double max_rounding_gap = 1e-9;  ///< Gap between pieces that is too large for rounding.
 
-/// One edge of the source or of an occluder, counter-clockwise about its polygon as seen from x.
+/// An edge of the source or of an occluder, counter-clockwise around its polygon as seen from x.
 struct Edge {
     Vec3 a, b;
     Vec3 inward;  ///< Unit normal of its plane through x.
@@ -27,7 +27,7 @@ double noise(const Vec3& r) {
     return on_plane * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
 }
 
-/// Keeps the part of [from, to] of an edge on the inner side of a plane through x that does not hold the edge.
+/// Reduces [from, to] to the part of an edge on the inner side of a plane through x that does not contain the edge.
 void clip_interval(double ha, double hb, double& from, double& to) {
     if (ha <= 0 && hb <= 0) {
         to = from;
@@ -38,12 +38,12 @@ void clip_interval(double ha, double hb, double& from, double& to) {
     }
 }
 
-/// The part of an edge that an occluder hides from its visible side, as [from, to].
+/// Reduces [from, to] to the part of an edge whose visible side an occluder hides.
 void hidden_interval(const Edge& edge, int occluder, std::span<const Vec3> planes, double& from, double& to) {
     for (const Vec3& plane : planes) {
         const double ha = dot(plane, edge.a), hb = dot(plane, edge.b);
         if (std::abs(ha) <= edge.noise_a &&
-            std::abs(hb) <= edge.noise_b) {  // in the plane: which of the two sides is the visible one?
+            std::abs(hb) <= edge.noise_b) {  // in the plane: which of the two sides is visible?
             const bool same_side = dot(plane, edge.inward) > 0;
             const bool hidden = edge.owner < 0 ? same_side : same_side ? occluder < edge.owner : true;
             if (!hidden) to = from;
@@ -76,7 +76,7 @@ class Boundary {
             for (const Vec3& plane : scratch_.source_pyramid) {
                 const double ha = dot(plane, edge.a), hb = dot(plane, edge.b);
                 if (std::abs(ha) <= edge.noise_a && std::abs(hb) <= edge.noise_b)
-                    return;  // the source's own edge speaks
+                    return;  // the source's own edge is counted instead
                 clip_interval(ha, hb, from, to);
                 if (to <= from) return;
             }
@@ -99,7 +99,9 @@ class Boundary {
         if (to > from) add_piece(edge, from, to);
     }
 
-    double total() const { return norm(gap_) > open_loop ? std::numeric_limits<double>::quiet_NaN() : sum_.total(); }
+    double total() const {
+        return norm(gap_) > max_rounding_gap ? std::numeric_limits<double>::quiet_NaN() : sum_.total();
+    }
 
   private:
     Vec3 on_source(const Vec3& r) const { return (source_height_ / dot(source_normal_, r)) * r; }
@@ -128,7 +130,7 @@ void add_polygon(std::span<const Vec3> corners, int owner, bool reversed, Bounda
         if (reversed) std::swap(edge.a, edge.b);
         const Vec3 inward = cross(edge.b - edge.a, edge.a);
         const double length = norm(inward);
-        if (length <= 1e-13 * norm(edge.a) * norm(edge.b)) continue;  // seen as a point
+        if (length <= 1e-13 * norm(edge.a) * norm(edge.b)) continue;  // seen end-on
         edge.inward = inward / length;
         edge.noise_a = noise(edge.a), edge.noise_b = noise(edge.b);
         boundary.add_edge(edge);

@@ -15,7 +15,7 @@ struct Tally {
     double worst = 0;
 };
 
-/// Both ways from points below the light of a scene.
+/// Compares both methods at random points below the light of a scene.
 void compare(std::vector<Face> occluding, std::uint64_t seed, Tally& tally) {
     occluding.push_back({{{-0.5, -0.5, 1.2}, {-0.5, 0.5, 1.2}, {0.5, 0.5, 1.2}, {0.5, -0.5, 1.2}}, 1});
     const Scene scene = test::make(occluding);
@@ -37,7 +37,7 @@ void compare(std::vector<Face> occluding, std::uint64_t seed, Tally& tally) {
     }
 }
 
-TEST(EdgeSum, IsWhatSubtractionGivesInTriangleSoups) {
+TEST(EdgeSum, EqualsSubtractionInTriangleSoups) {
     Tally tally;
     for (int trial = 0; trial < 60; ++trial)
         compare(test::triangle_soup(1 + trial, trial % 2 ? 0.3 : 0.9, 400 + trial, {0, 0, 0.5}), trial, tally);
@@ -46,7 +46,7 @@ TEST(EdgeSum, IsWhatSubtractionGivesInTriangleSoups) {
     EXPECT_LT(tally.worst, 1e-13);
 }
 
-TEST(EdgeSum, IsWhatSubtractionGivesForSolidsWhoseFacesShareEdges) {
+TEST(EdgeSum, EqualsSubtractionForSolidsWithSharedEdges) {
     RandomStream random(31, Stream::mesh);
     Tally tally;
     for (int trial = 0; trial < 60; ++trial) {
@@ -66,10 +66,10 @@ TEST(EdgeSum, IsWhatSubtractionGivesForSolidsWhoseFacesShareEdges) {
     EXPECT_LT(tally.worst, 1e-13);
 }
 
-TEST(EdgeSum, TakesMeshesOfCoplanarPiecesWhoseEdgesCoincide) {
+TEST(EdgeSum, EqualsSubtractionForCoplanarPiecesWithCoincidentEdges) {
     Tally tally;
     for (int trial = 0; trial < 20; ++trial) {
-        std::vector<Face> tiles;  // a plate of tiles of different material, some with a second tile upon them
+        std::vector<Face> tiles;  // tiles of different materials, some with a second tile on top
         for (int i = 0; i < 16; ++i) {
             const double x = 0.1 * (i % 4) - 0.2, y = 0.1 * (i / 4) - 0.2, z = 0.3 + 0.02 * trial;
             if ((i * 7 + trial) % 5 == 0) continue;

@@ -21,12 +21,12 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t width = 16;  ///< Rays a packet; Embree cuts it down where the machine is narrower.
-constexpr double lift = 0x1p-20;   ///< Of the scene's size: 16 roundings of a coordinate in single precision.
+constexpr std::size_t width = 16;  ///< Rays per packet; Embree splits it on machines with narrower vectors.
+constexpr double lift = 0x1p-20;   ///< Share of the scene's size: 16 roundings of a coordinate in single precision.
 constexpr double stack_step = lift / 2;
-constexpr int retries = 8;  ///< Ways past a ray's own region; one is rarely needed.
+constexpr int retries = 8;  ///< Maximum number of restarts past a ray's own region; one is rarely needed.
 
-/// Releases what Embree counts references to.
+/// Owns a reference-counted Embree object and releases it.
 template <class Handle, void (*release)(Handle)>
 class Owned {
   public:
@@ -44,14 +44,15 @@ struct Float3 {
     float x, y, z;
 };
 
-/// Embree takes no coordinates beyond 1.8e18: what is farther away than `far` sizes of the scene stands there.
+/// Converts to single precision. Embree accepts no coordinates beyond 1.8e18, so anything farther away than `far` sizes
+/// of the scene is clamped to that distance.
 Float3 to_float(const Vec3& v) {
     const double far = 1e15;
     const auto within = [far](double c) { return static_cast<float>(std::clamp(c, -far, far)); };
     return {within(v.x), within(v.y), within(v.z)};
 }
 
-/// What a ray needs to know of a surface that it hits, side by side in memory.
+/// The data of a surface that a hit needs, contiguous in memory.
 struct Face {
     Normal normal;
     Point corner;
@@ -67,13 +68,13 @@ RTCIntersectContext make_context() {
     return context;
 }
 
-/// Traces the rays whose entry of `valid` is -1 to their nearest hits.
+/// Traces the rays whose entry of `valid` is -1 to their first hits.
 void trace_nearest(std::span<const int, width> valid, RTCScene scene, RTCRayHit16& packet) {
     RTCIntersectContext context = make_context();
     rtcIntersect16(valid.data(), scene, &context, &packet);
 }
 
-/// Sets the far end of each ray that is blocked to minus infinity; rays whose entry of `valid` is 0 are left out.
+/// Sets the far end of each blocked ray to minus infinity; rays whose entry of `valid` is 0 are skipped.
 void trace_occluded(std::span<const int, width> valid, RTCScene scene, RTCRay16& packet) {
     RTCIntersectContext context = make_context();
     rtcOccluded16(valid.data(), scene, &context, &packet);
@@ -81,7 +82,7 @@ void trace_occluded(std::span<const int, width> valid, RTCScene scene, RTCRay16&
 
 #else
 
-/// Traces the rays whose entry of `valid` is -1 to their nearest hits.
+/// Traces the rays whose entry of `valid` is -1 to their first hits.
 void trace_nearest(std::span<const int, width> valid, RTCScene scene, RTCRayHit16& packet) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
@@ -89,7 +90,7 @@ void trace_nearest(std::span<const int, width> valid, RTCScene scene, RTCRayHit1
     rtcIntersect16(valid.data(), scene, &packet, &arguments);
 }
 
-/// Sets the far end of each ray that is blocked to minus infinity; rays whose entry of `valid` is 0 are left out.
+/// Sets the far end of each blocked ray to minus infinity; rays whose entry of `valid` is 0 are skipped.
 void trace_occluded(std::span<const int, width> valid, RTCScene scene, RTCRay16& packet) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
@@ -107,10 +108,10 @@ void set_ray(Rays& rays, std::size_t lane, const Float3& origin, const Float3& d
     rays.time[lane] = 0, rays.mask[lane] = 0xffffffffu, rays.id[lane] = 0, rays.flags[lane] = 0;
 }
 
-/// Glass as Embree asks about it, triangle by triangle.
+/// Data of the panes for Embree's filter function, which is called per triangle.
 struct Glass {
     RayFates fates;
-    std::vector<std::uint32_t> pane_of = {};  ///< Of every triangle.
+    std::vector<std::uint32_t> pane_of = {};  ///< Per triangle.
 };
 
 void filter_glass(const RTCFilterFunctionNArguments* arguments) {
@@ -125,7 +126,7 @@ void filter_glass(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
-/// Triangles of a scene's parts as Embree takes them.
+/// Triangle mesh in Embree's layout.
 struct Triangles {
     std::vector<Float3> corners;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -135,15 +136,16 @@ struct Triangles {
 
 struct RayTracer::Content {
     const Scene* scene;
-    Point centre;  ///< Embree's coordinates are relative to it,
-    double scale;  ///< and times this power of two, so that a scene of any size is about 1 wide.
+    Point centre;  ///< Origin of Embree's coordinates.
+    double scale;  ///< Power of two by which they are scaled, so that a scene of any size is about 1 wide.
     double lift_off;
     Owned<RTCDevice, rtcReleaseDevice> device;
     Owned<RTCScene, rtcReleaseScene> rtc;
-    std::vector<SurfaceId> surface_of;  ///< Of every triangle.
+    std::vector<SurfaceId> surface_of;  ///< Per triangle.
     Field<SurfaceId, Face> faces;
-    Field<SurfaceId, SurfaceId> other_side;  ///< Of sheets; empty where there are none.
-    OpposedFaces opposed;                    ///< Of sheets whose two sides have different outlines.
+    /// The surface on the other side of a sheet; empty if there are no sheets.
+    Field<SurfaceId, SurfaceId> other_side;
+    OpposedFaces opposed;  ///< For sheets whose two sides have different outlines.
     Glass glass;
 
     explicit Content(const Scene& s)
@@ -162,9 +164,9 @@ struct RayTracer::Content {
         for (SurfaceId id : s.surfaces().ids()) {
             const std::span<const Point> outline = s.outline(id);
             faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
-            if (is_second_side(s, other_side, id)) continue;  // `read` tells them apart
+            if (is_second_side(s, other_side, id)) continue;  // read() selects the side
             const auto first = static_cast<std::uint32_t>(corners.size());
-            // What lies on others in its plane is met before them.
+            // Stacked coplanar surfaces are separated, so that the upper one is hit first.
             const Vec3 lifted = (stack_step * s.size() * s.regions()[faces[id].region].level) * faces[id].normal;
             for (const Point& p : outline) corners.push_back(local(p + lifted));
             for (const auto& t : triangulate(outline, s.surfaces()[id].normal)) {
@@ -176,8 +178,8 @@ struct RayTracer::Content {
         add_glass();
         rtcSetSceneFlags(rtc, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(rtc, RTC_BUILD_QUALITY_MEDIUM);
-        // The order of a leaf's triangles, and with it which of two equally near ones is met, follows from how many
-        // threads build; one always builds the same.
+        // The order of triangles in a leaf, and so which of two equally near ones is hit, depends on the number of
+        // build threads. A single thread always builds the same tree.
         run_alone([&] { rtcJoinCommitScene(rtc); });
     }
 
@@ -198,7 +200,7 @@ struct RayTracer::Content {
         rtcAttachGeometry(rtc, geometry);
     }
 
-    /// The second geometry, where there are panes.
+    /// Adds the panes as the second geometry, if there are any.
     void add_glass() {
         if (scene->panes().empty()) return;
         Triangles all;
@@ -222,18 +224,18 @@ struct RayTracer::Content {
         return (lift_off + stack_step * scene->size() * own.level) * own.plane.n;
     }
 
-    /// Fills a hit from a lane; false if the ray met its own region and has to go on from there.
+    /// Fills a hit from a lane. Returns false if the ray hit its own region and must be continued from there.
     bool read(const RTCRayHit16& packet, std::size_t lane, const Point& origin, const Vec3& direction, RegionId own,
               RayHit& hit) const {
         hit = RayHit();
         if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return true;
-        if (packet.hit.geomID[lane] != 0) {  // stopped by glass: as good as a back, wherever
+        if (packet.hit.geomID[lane] != 0) {  // stopped by glass: treated like the back of any surface
             hit.surface = SurfaceId(0), hit.region = faces[hit.surface].region;
             hit.distance = packet.ray.tfar[lane];
             return true;
         }
         hit.surface = surface_of[packet.hit.primID[lane]];
-        // Of a sheet's two sides Embree finds either; a ray meets the one that faces it.
+        // Embree finds either side of a sheet; the hit is the side that faces the ray.
         if (other_side.size() > 0 && !other_side[hit.surface].is_none() &&
             dot(faces[hit.surface].normal, direction) > 0)
             hit.surface = other_side[hit.surface];
@@ -243,14 +245,14 @@ struct RayTracer::Content {
         const double slope = dot(face.normal, direction);
         const double distance = dot(face.normal, face.corner - origin) / slope;
         const double found = packet.ray.tfar[lane];
-        // In the surface's plane the quotient means nothing; there what Embree found is as good as it gets.
+        // Nearly in the surface's plane the quotient is meaningless; use Embree's distance.
         hit.distance = std::abs(distance - found) <= 1e-3 * found ? distance : found;
         hit.front = slope < 0;
         return hit.front || !opposed.has(hit.surface) || turn_over(origin, direction, own, hit);
     }
 
-    /// Where a back was met, and a face that looks towards the ray stands in its place, that one is met. False if it is
-    /// of the ray's own region, so that the ray has to go on from there.
+    /// If a back was hit and an opposed face at the same place faces the ray, replaces the hit by that face. Returns
+    /// false if it belongs to the ray's own region, so that the ray must be continued from there.
     bool turn_over(const Point& origin, const Vec3& direction, RegionId own, RayHit& hit) const {
         const SurfaceId facing = opposed.facing(origin + hit.distance * direction, direction);
         if (facing.is_none()) return true;
@@ -266,7 +268,7 @@ struct RayTracer::Content {
                            glass.pane_of[hit.primID[lane]]) == RayFate::is_mirrored;
     }
 
-    /// Goes on where panes have mirrored rays of a packet; what other panes stop then is stopped.
+    /// Continues the rays of a packet that panes have reflected; another pane stops them.
     template <class Origin>
     void follow_mirrored(const RTCRayHit16& packet, std::size_t count, const Origin& origin, const Vec3* directions,
                          RayHit* hits) const {
@@ -300,7 +302,7 @@ struct RayTracer::Content {
     template <class Ends>
     std::size_t occluded(std::span<bool> blocked, const Ends& ends) const;
 
-    /// Goes on past the ray's own region, where rounding let it be met.
+    /// Restarts a ray just past its own region, which it hit because of rounding.
     void retry(const Point& origin, const Vec3& direction, RegionId own, float past, RayHit& hit) const {
         for (int attempt = 0; attempt < retries; ++attempt) {
             alignas(64) RTCRayHit16 packet;
@@ -339,7 +341,7 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
     alignas(64) RTCRayHit16 packet;
     alignas(64) std::array<int, width> valid;
     valid.fill(-1);
-    // What is alike for all packets is written once: Embree changes the far end and the hit only.
+    // Write once what all packets share: Embree changes only the far end and the hit.
     const Float3 start = shared ? content_->local(origins[0] + lifted) : Float3();
     for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, start, {}, 0, HUGE_VALF);
     for (std::size_t first = 0; first < directions.size(); first += width) {
@@ -381,7 +383,7 @@ std::size_t RayTracer::nearest(std::span<const Vec3> directions, const Point& or
     return nearest(std::span(&origin, 1), directions, own, hits, mirrored);
 }
 
-/// ends(i): where ray i begins and ends, off its surfaces.
+/// ends(i): both ends of ray i, lifted off their surfaces.
 template <class Ends>
 std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& ends) const {
     alignas(64) RTCRay16 packet;

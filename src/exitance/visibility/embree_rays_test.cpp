@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-TEST(RayTracer, MeetsWhatDoublePrecisionMeets) {
+TEST(RayTracer, AgreesWithDoublePrecision) {
     const Scene scene = test::make(test::triangle_soup(200, 0.4, 5));
     const RayTracer tracer(scene);
     RandomStream random(1, Stream::rows);
@@ -38,7 +38,7 @@ TEST(RayTracer, MeetsWhatDoublePrecisionMeets) {
 TEST(RayTracer, NeverMeetsTheRegionThatARayStartsOnNorLeavesAClosedBox) {
     for (const Point& lo : {Point{0, 0, 0}, Point{1e6, -1e6, 3e5}, Point{-0.3, 0.7, 0.1}})
         for (double size : {1e-4, 1.0, 3e3}) {
-            if (size < 1 && lo.x > 1) continue;  // coordinates have no digits left for it
+            if (size < 1 && lo.x > 1) continue;  // its coordinates would have no significant digits left
             const Scene scene = test::make(test::closed_box(lo, {size, 2 * size, 0.7 * size}));
             const RayTracer tracer(scene);
             RandomStream random(2, Stream::rows);
@@ -70,7 +70,7 @@ TEST(RayTracer, NeverMeetsTheRegionThatARayStartsOnNorLeavesAClosedBox) {
         }
 }
 
-/// A floor at z = 0, a ceiling at z = 2, and half-way a plate over x > 0.
+/// A floor at z = 0, a ceiling at z = 2, and between them a plate over x > 0.
 Scene half_a_plate_between() {
     const std::vector<Point> floor = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     const std::vector<Point> ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
@@ -78,7 +78,7 @@ Scene half_a_plate_between() {
     return test::make({{floor}, {ceiling}, {plate}});
 }
 
-TEST(RayTracer, MeetsNothingFromWhereNoNumberOfEmbreesReaches) {
+TEST(RayTracer, HitsNothingFromBeyondEmbreesRange) {
     const Scene scene = test::make(test::triangle_soup(20, 0.4, 5));
     const RayTracer tracer(scene);
     for (const double far : {1e20, 1e200, 1e308}) {
@@ -92,7 +92,7 @@ TEST(RayTracer, MeetsNothingFromWhereNoNumberOfEmbreesReaches) {
     }
 }
 
-TEST(RayTracer, FindsSegmentsBlockedOnlyByWhatStandsBetweenTheirEnds) {
+TEST(RayTracer, OnlyBlockersBetweenItsEndsOccludeASegment) {
     const Scene scene = half_a_plate_between();
     const RayTracer tracer(scene);
     RandomStream random(4, Stream::visibility);
@@ -108,7 +108,7 @@ TEST(RayTracer, FindsSegmentsBlockedOnlyByWhatStandsBetweenTheirEnds) {
         EXPECT_TRUE(std::abs(from[i].x + to[i].x) < 1e-5 || blocked[i] == (from[i].x + to[i].x > 0));
 }
 
-TEST(RayTracer, SaysOfEndsMadeInAdvanceWhatItSaysOfPoints) {
+TEST(RayTracer, PreparedEndsGiveTheSameOcclusionAsPoints) {
     const Scene scene = half_a_plate_between();
     const RayTracer tracer(scene);
     const RegionId receiver = scene.surfaces()[SurfaceId(0)].region, source = scene.surfaces()[SurfaceId(1)].region;
@@ -127,7 +127,7 @@ TEST(RayTracer, SaysOfEndsMadeInAdvanceWhatItSaysOfPoints) {
 
 TEST(RayTracer, GivesTheSameHitsOnAnyNumberOfThreads) {
     const Scene scene = test::make(test::closed_box({0, 0, 0}, {1, 1, 1}));
-    std::vector<Vec3> to_the_edges;  // where two faces are equally near
+    std::vector<Vec3> to_the_edges;  // two faces are equally near there
     for (int i = 1; i < 100; ++i) to_the_edges.push_back({0.5, 0.01 * i - 0.5, 0.5});
     std::vector<SurfaceId> first;
     for (int threads : {1, 2, 5}) {
@@ -144,7 +144,7 @@ TEST(RayTracer, GivesTheSameHitsOnAnyNumberOfThreads) {
 }
 
 TEST(RayTracer, MeetsTheSideOfASheetThatFacesTheRay) {
-    // A horizontal sheet with two sides, of one outline begun at different corners.
+    // A sheet with two sides whose equal outlines start at different corners.
     const Scene scene = test::make(
         {{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {0, 1, 0.2}}}, {{{1, 1, 0.2}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0.2}}}});
     const RayTracer tracer(scene);
@@ -164,8 +164,8 @@ TEST(RayTracer, MeetsTheSideOfASheetThatFacesTheRay) {
     }
 }
 
-/// The sides of a sheet as one parallelogram above and two triangles below it, turned about a skew axis, scaled and
-/// moved.
+/// A sheet with one parallelogram as its upper side and two triangles as its lower side, rotated about a skew axis,
+/// scaled and moved.
 Scene sheet_of_unlike_sides(double scale, const Vec3& shift) {
     const Vec3 u = normalized(Vec3{2, 1, -0.5}), v = normalized(cross(Vec3{0.3, -0.2, 1}, u));
     const auto at = [&](double a, double b) { return scale * (a * u + b * v) + shift; };

@@ -9,9 +9,9 @@
 namespace exitance {
 namespace {
 
-constexpr double noise = 1e-12;  ///< Of a corner's distance: rounding of cuts.
+constexpr double noise = 1e-12;  ///< Share of a corner's distance: rounding errors of clipping.
 
-/// A part of the source, and which panes stand before it.
+/// A part of the source, with the panes in front of it.
 struct Part {
     std::vector<Vec3> corners;
     std::vector<const Pane*> panes;
@@ -30,8 +30,8 @@ std::vector<Vec3> cut_above(std::span<const Vec3> polygon, const Vec3& n, double
     return out;
 }
 
-/// Planes through the receiver and the edges of a pane between it and the source, inwards; none where no way crosses
-/// it.
+/// Planes (pointing inwards) through the receiver and the edges of the part of a pane between the receiver and the
+/// source; empty if no line of sight crosses the pane.
 std::vector<Vec3> pyramid_over(const Pane& pane, const Receiver& at, const Vec3& source_normal, double source_height,
                                double rounding) {
     const double facing = dot(pane.n, pane.corners[0] - at.x);
@@ -51,28 +51,28 @@ std::vector<Vec3> pyramid_over(const Pane& pane, const Receiver& at, const Vec3&
     return planes;
 }
 
-/// Where a convex polygon lies against a pyramid: beside it, within it, or across its sides.
-enum class Lies { beside, within, across };
-Lies lie_of(std::span<const Vec3> corners, std::span<const Vec3> pyramid) {
-    bool within = true;
+/// Position of a convex polygon relative to a pyramid: outside it, inside it, or crossing its sides.
+enum class Position { outside, inside, crossing };
+Position position_of(std::span<const Vec3> corners, std::span<const Vec3> pyramid) {
+    bool is_inside = true;
     for (const Vec3& plane : pyramid) {
         bool any_in = false;
         for (const Vec3& r : corners) {
             const double h = dot(plane, r), rounding = noise * norm(r);
-            any_in |= h > rounding, within &= h >= -rounding;
+            any_in |= h > rounding, is_inside &= h >= -rounding;
         }
-        if (!any_in) return Lies::beside;
+        if (!any_in) return Position::outside;
     }
-    return within ? Lies::within : Lies::across;
+    return is_inside ? Position::inside : Position::crossing;
 }
 
-/// Cuts parts along a pane's outline.
-void put_before(const Pane& pane, std::span<const Vec3> pyramid, std::vector<Part>& parts) {
+/// Cuts the parts along a pane's outline and records the pane for the parts behind it.
+void cut_along(const Pane& pane, std::span<const Vec3> pyramid, std::vector<Part>& parts) {
     std::vector<Part> fresh;
     for (Part& part : parts) {
-        const Lies lies = lie_of(part.corners, pyramid);
-        if (lies == Lies::within) part.panes.push_back(&pane);
-        if (lies != Lies::across) continue;
+        const Position position = position_of(part.corners, pyramid);
+        if (position == Position::inside) part.panes.push_back(&pane);
+        if (position != Position::crossing) continue;
         std::vector<Vec3> inside = part.corners;
         const std::size_t first = fresh.size();
         for (const Vec3& plane : pyramid) {
@@ -84,7 +84,7 @@ void put_before(const Pane& pane, std::span<const Vec3> pyramid, std::vector<Par
             }
             if (inside.empty()) break;
         }
-        if (inside.empty()) {  // beside it after all
+        if (inside.empty()) {  // outside the pyramid after all
             fresh.resize(first);
             continue;
         }
@@ -107,7 +107,7 @@ Vec3 middle_of(std::span<const Vec3> corners) {
     return sum / static_cast<double>(corners.size());
 }
 
-/// Is there nothing of it but rounding?
+/// Returns whether its area is zero except for rounding.
 bool is_sliver(std::span<const Vec3> corners) {
     constexpr double rounding = 1e-14;
     Vec3 area;
@@ -118,14 +118,14 @@ bool is_sliver(std::span<const Vec3> corners) {
     return !(norm(area) > rounding * reach);
 }
 
-/// T p F of parts of a source.
+/// Sums T p F over parts of a source.
 class GlazedSum {
   public:
     GlazedSum(const Normal& n, const RelativeRadiance& radiance) : n_(n), radiance_(radiance) {}
 
     Spectrum of(std::span<const Vec3> corners, std::span<const Pane* const> panes, int depth = 0) const {
-        constexpr int deepest = 7;
-        constexpr double even = 0.04;
+        constexpr int max_depth = 7;
+        constexpr double max_variation = 0.04;
         if (is_sliver(corners)) return {};
         if (panes.empty()) return Spectrum(form_factor(corners));
         const Vec3 middle = middle_of(corners);
@@ -140,9 +140,9 @@ class GlazedSum {
             T += weight * here, of_corners += weight;
         }
         bool is_even = true;
-        for (std::size_t b = 0; b < bands; ++b) is_even = is_even && most[b] - least[b] <= even * most[b];
-        if (is_even || depth == deepest) {
-            // As of a triangle, of whose quadratic functions this is the mean.
+        for (std::size_t b = 0; b < bands; ++b) is_even = is_even && most[b] - least[b] <= max_variation * most[b];
+        if (is_even || depth == max_depth) {
+            // Weights as for a triangle, for which this mean is exact for quadratic functions.
             const double share = 3 * static_cast<double>(corners.size()) * kernel(middle);
             if (!(of_corners + share > 0)) return {};
             return form_factor(corners) * ((T + share * at_middle) / (of_corners + share));
@@ -164,7 +164,7 @@ class GlazedSum {
     }
 
   private:
-    /// What a place of the source's plane weighs, but for a factor.
+    /// Contribution to the form factor per unit of area of the source, except for a constant factor.
     double kernel(const Vec3& r) const {
         const double squared = squared_norm(r), p = radiance_.is_directed() ? radiance_(-r / std::sqrt(squared)) : 1;
         return p * std::max(0.0, dot(n_, r)) / (squared * squared);
@@ -184,7 +184,8 @@ struct PaneInView {
     std::vector<Vec3> pyramid;
 };
 
-/// The panes between a receiver and a source, whose plane lies at `height` from the receiver.
+/// The panes between a receiver and a source. `height`: offset of the source's plane along its normal n, relative to
+/// the receiver.
 std::vector<PaneInView> panes_in_view(const Occluders& occluders, const Receiver& at, const Normal& n, double height) {
     std::vector<PaneInView> out;
     const double slack = occluders.rounding();
@@ -199,7 +200,7 @@ Spectrum through_panes(const Receiver& at, std::span<const PaneInView> panes, st
     if (visible.size() < 3 || is_sliver(visible)) return {};
     std::vector<Part> parts(1);
     parts[0].corners.assign(visible.begin(), visible.end());
-    for (const PaneInView& in_view : panes) put_before(*in_view.pane, in_view.pyramid, parts);
+    for (const PaneInView& in_view : panes) cut_along(*in_view.pane, in_view.pyramid, parts);
     const GlazedSum sum(at.n, radiance);
     Spectrum out;
     for (const Part& part : parts) out += sum.of(part.corners, part.panes);

@@ -6,10 +6,11 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_blockers = 64;
-constexpr std::size_t most_pairs = 256;  ///< Of parts looked at before the question is left open.
-/// Halvings in a row. In four towns of 2,048 faces 6 prove 728,000 entries dark, 9 738,000 and 12 742,000.
-constexpr int deepest = 12;
+constexpr std::size_t max_blockers = 64;
+constexpr std::size_t max_pairs = 256;  ///< Maximum number of pairs of parts to test before giving up.
+/// Maximum depth of bisection. In four towns of 2,048 faces, 6 prove 728,000 entries dark, 9 prove 738,000 and 12 prove
+/// 742,000.
+constexpr int max_depth = 12;
 
 }  // namespace
 
@@ -37,7 +38,7 @@ std::uint32_t JointShadow::add_point(const Point& p) {
     return static_cast<std::uint32_t>(points_.size() - 1);
 }
 
-/// Heights are linear: those of a middle are the mean of its ends'.
+/// Heights are linear, so those of a midpoint are the mean of those of its ends.
 std::uint32_t JointShadow::add_middle(std::uint32_t a, std::uint32_t b) {
     points_.push_back(points_[a] + 0.5 * (points_[b] - points_[a]));
     const std::size_t count = used_.size(), at = heights_.size();
@@ -47,7 +48,7 @@ std::uint32_t JointShadow::add_middle(std::uint32_t a, std::uint32_t b) {
     return static_cast<std::uint32_t>(points_.size() - 1);
 }
 
-/// Some point well within a cell.
+/// Adds a point well inside a cell.
 std::uint32_t JointShadow::add_middle(const Cell& cell) {
     const std::uint32_t one = add_middle(cell.corner[0], cell.corner[1]);
     return add_middle(one, cell.count == 4 ? add_middle(cell.corner[2], cell.corner[3]) : cell.corner[2]);
@@ -80,7 +81,7 @@ bool JointShadow::meets(std::uint32_t p, std::uint32_t q, std::size_t blocker) c
     return enters <= leaves;
 }
 
-/// Which of these blockers the segment between two points meets.
+/// Mask of those blockers in `of` that the segment between two points meets.
 JointShadow::Mask JointShadow::meeting(std::uint32_t p, std::uint32_t q, Mask of) const {
     Mask met = 0;
     for (Mask left = of; left != 0; left &= left - 1)
@@ -88,7 +89,7 @@ JointShadow::Mask JointShadow::meeting(std::uint32_t p, std::uint32_t q, Mask of
     return met;
 }
 
-/// Blockers that hide all of one cell from all of the other by themselves.
+/// Mask of the blockers that each hide all of one cell from all of the other.
 JointShadow::Mask JointShadow::hiding(const CellPair& pair) const {
     Mask hiding = pair.near;
     for (std::uint32_t p : pair.receiver.corners())
@@ -99,7 +100,7 @@ JointShadow::Mask JointShadow::hiding(const CellPair& pair) const {
     return hiding;
 }
 
-/// Blockers that no plane of their own keeps apart from both cells.
+/// Mask of the blockers for which none of their own planes separates them from both cells.
 JointShadow::Mask JointShadow::reaching(const CellPair& pair) const {
     Mask found = 0;
     for (Mask left = pair.near; left != 0; left &= left - 1) {
@@ -124,7 +125,7 @@ double JointShadow::squared_size(const Cell& cell) const {
     return most;
 }
 
-/// Across the longest edge, and for a quadrilateral across the edge opposite to it.
+/// Bisects across the longest edge, and for a quadrilateral also across the opposite edge.
 std::array<JointShadow::Cell, 2> JointShadow::halves(const Cell& cell) {
     std::size_t longest = 0;
     double most = 0;
@@ -143,12 +144,12 @@ bool JointShadow::hides(std::span<const Point> receiver, std::span<const Point> 
                         std::span<const std::uint32_t> blockers) {
     if (blockers.empty()) return false;
     used_.clear(), first_.clear(), points_.clear(), heights_.clear(), stack_.clear();
-    for (std::uint32_t b : blockers.first(std::min(blockers.size(), most_blockers))) {
+    for (std::uint32_t b : blockers.first(std::min(blockers.size(), max_blockers))) {
         first_.push_back(static_cast<std::uint32_t>(used_.size()));
         used_.insert(used_.end(), planes[b].begin(), planes[b].end());
     }
     first_.push_back(static_cast<std::uint32_t>(used_.size()));
-    const Mask all = ~Mask{0} >> (most_blockers - (first_.size() - 1));
+    const Mask all = ~Mask{0} >> (max_blockers - (first_.size() - 1));
     add_cells(receiver, receiver_cells_);
     add_cells(source, source_cells_);
     const auto count_r = static_cast<std::uint32_t>(receiver.size()),
@@ -162,7 +163,7 @@ bool JointShadow::hides(std::span<const Point> receiver, std::span<const Point> 
         const CellPair pair = stack_.back();
         stack_.pop_back();
         if (hiding(pair) != 0) continue;
-        if (looked >= most_pairs || pair.depth >= deepest) return false;
+        if (looked >= max_pairs || pair.depth >= max_depth) return false;
         const Mask near = reaching(pair);
         if (near == 0 || meeting(add_middle(pair.receiver), add_middle(pair.source), near) == 0) return false;
         const bool by_receiver = squared_size(pair.receiver) > squared_size(pair.source);

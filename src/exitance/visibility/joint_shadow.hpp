@@ -9,10 +9,11 @@
 
 namespace exitance {
 
-/// The planes that bound convex blockers, outwards: those of a solid's faces; both sides and the borders of a sheet.
+/// Bounding planes of convex blockers, pointing outwards: the faces of a solid, or both sides and the borders of a
+/// sheet.
 class BlockerPlanes {
   public:
-    /// slack  metres: every blocker counts as thicker by this all around
+    /// slack  metres: every blocker is enlarged by this on all sides
     void add(const ConvexBlocker& blocker, double slack);
     void clear() { planes_.clear(), first_.assign(1, 0); }
 
@@ -26,19 +27,19 @@ class BlockerPlanes {
     std::vector<std::size_t> first_ = {0};
 };
 
-/// Do several convex blockers together hide one convex polygon from another? Both are halved until each pair of parts
-/// has one blocker that all segments between their corners meet: for a fixed point, the points whose segment to it
-/// meets a convex set form a convex set, so that the corners decide for all. One object serves one thread.
+/// Tests whether several convex blockers together hide one convex polygon from another. Both polygons are bisected
+/// until, for each pair of parts, a single blocker meets all segments between their corners. That is sufficient: for a
+/// fixed point, the points whose segment to it meets a convex set form a convex set. One object per thread.
 class JointShadow {
   public:
-    /// Certain when true, up to slivers as thin as the slack. False when some segment is free, or when 256 pairs
-    /// of parts did not decide. Of more than 64 blockers the first 64 are asked.
+    /// True is certain, except for slivers as thin as the slack. Returns false if some segment is unoccluded, or if 256
+    /// pairs of parts did not decide. Uses at most the first 64 blockers.
     bool hides(std::span<const Point> receiver, std::span<const Point> source, const BlockerPlanes& planes,
                std::span<const std::uint32_t> blockers);
 
   private:
-    using Mask = std::uint64_t;  ///< A bit a blocker.
-    /// A triangle or quadrilateral, by the numbers of its corners.
+    using Mask = std::uint64_t;  ///< One bit per blocker.
+    /// A triangle or quadrilateral, by the indices of its corners.
     struct Cell {
         std::array<std::uint32_t, 4> corner;
         std::uint32_t count;
@@ -47,7 +48,7 @@ class JointShadow {
     struct CellPair {
         Cell receiver, source;
         int depth;
-        Mask near;  ///< Blockers that may stand between.
+        Mask near;  ///< Blockers that may be in between.
     };
 
     std::uint32_t add_point(const Point& p);
@@ -61,10 +62,10 @@ class JointShadow {
     double squared_size(const Cell& cell) const;
     std::array<Cell, 2> halves(const Cell& cell);
 
-    std::vector<Plane> used_;           ///< Planes of the blockers at hand.
-    std::vector<std::uint32_t> first_;  ///< Where those of each blocker begin.
+    std::vector<Plane> used_;           ///< Planes of the current blockers.
+    std::vector<std::uint32_t> first_;  ///< Index in `used_` of each blocker's first plane.
     std::vector<Point> points_;
-    std::vector<double> heights_;  ///< Of each point over each plane in use.
+    std::vector<double> heights_;  ///< Signed distance of each point to each plane in use, metres.
     std::vector<Cell> receiver_cells_, source_cells_;
     std::vector<CellPair> stack_;
 };

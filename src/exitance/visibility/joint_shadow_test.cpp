@@ -30,13 +30,13 @@ TEST(JointShadow, OneBlockerHidesAll) {
     EXPECT_FALSE(hides({sheet_at(5, -1, 0.9)}));
 }
 
-TEST(JointShadow, TwoThatOverlapHideTogetherWhatNeitherDoesAlone) {
+TEST(JointShadow, TwoOverlappingBlockersHideASquareTogether) {
     EXPECT_FALSE(hides({sheet_at(4, -1, 0.6)}));
     EXPECT_FALSE(hides({sheet_at(6, 0.4, 2)}));
     EXPECT_TRUE(hides({sheet_at(4, -1, 0.6), sheet_at(6, 0.2, 2)}));
 }
 
-TEST(JointShadow, AGapBetweenThemIsSeen) {
+TEST(JointShadow, NothingIsHiddenThroughAGap) {
     EXPECT_FALSE(hides({sheet_at(5, -1, 0.5), sheet_at(5, 0.51, 2)}));
     EXPECT_FALSE(hides({sheet_at(4, -1, 0.6), sheet_at(6, 0.65, 2)}));
 }

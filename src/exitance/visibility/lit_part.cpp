@@ -9,9 +9,9 @@
 namespace exitance {
 namespace {
 
-constexpr double on_line = 1e-14;  ///< Sine of an angle that rounding alone may make.
+constexpr double on_line = 1e-14;  ///< Sine of an angle that may be due to rounding alone.
 
-/// Adds the part of a convex polygon with sign * heights[i] >= 0; the cut runs through the same place from either side.
+/// Adds the part of a convex polygon with sign * heights[i] >= 0. For either sign the cut points are identical.
 void add_part(std::span<const Vec2> polygon, std::span<const double> heights, double sign, std::vector<Vec2>& out) {
     for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
         const std::size_t j = i + 1 == m ? 0 : i + 1;
@@ -76,7 +76,8 @@ bool LitPart::cut(std::span<const Vec3> pyramid, const Rectangle& bounds) {
     return !fragments_.empty();
 }
 
-/// Adds what the lines' inner side leaves of a fragment to the fresh ones; false if it leaves all of it.
+/// Appends to `fresh_` the parts of a fragment outside the pyramid that `lines_` bound. Returns false, and appends
+/// nothing, if that is the whole fragment.
 bool LitPart::cut_fragment(const Fragment& fragment) {
     const std::span<const Vec2> whole = std::span(corners_).subspan(fragment.first, fragment.count);
     crossing_.clear();
@@ -98,7 +99,7 @@ bool LitPart::cut_fragment(const Fragment& fragment) {
             heights_.push_back(height(line, p));
             any_in |= heights_.back() > 0, any_out |= heights_.back() < 0;
         }
-        if (!any_in) {  // beside the pyramid after all
+        if (!any_in) {  // outside the pyramid after all
             fresh_.resize(fresh);
             corners_.resize(corners);
             return false;

@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-/// Bounds in a plane.
+/// Axis-aligned bounds in a plane.
 struct Rectangle {
     double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
 
@@ -20,24 +20,26 @@ struct Rectangle {
     bool meets(const Rectangle& o) const { return x0 <= o.x1 && o.x0 <= x1 && y0 <= o.y1 && o.y0 <= y1; }
 };
 
-/// What is left of a convex source as occluders are taken from it: convex fragments in coordinates of the source's
-/// plane. All places are relative to the receiver x. Reusable, keeps its memory.
+/// The visible part of a convex source while occluders are subtracted from it, as convex fragments in coordinates of
+/// the source's plane. All 3D points are relative to the receiver x. Can be reused without new allocations.
 class LitPart {
   public:
-    /// The whole source: at least three corners, above the horizon, x in front of it.
+    /// Starts with the whole source: at least three corners, all above the horizon, with x in front of the source.
     void begin(std::span<const Vec3> source);
 
-    /// Bounds of a shape as thrown from x onto the source's plane; the whole plane where a corner is not thrown there.
+    /// Bounds of a shape projected from x onto the source's plane; unbounded if a corner has no projection.
     Rectangle bounds(std::span<const Vec3> corners) const;
 
-    /// Takes away the pyramid given by unit normals of its sides (inwards); `bounds` are those of its shape. Returns
-    /// whether anything is left. O(fragments).
+    /// Subtracts a pyramid with apex x.
+    /// pyramid  unit normals of its sides, pointing inwards
+    /// bounds  of the pyramid's outline, from bounds()
+    /// Returns whether anything is left. O(fragments).
     bool cut(std::span<const Vec3> pyramid, const Rectangle& bounds);
 
-    /// Form factor from x with normal n to the fragments.
+    /// Form factor from x (normal n) to the fragments.
     double form_factor(const Normal& n) const;
 
-    /// The same of a source that does not shine diffusely (directed_form_factor). `corners`: room to work in.
+    /// Like the above, for a source that is not diffuse (directed_form_factor). `corners`: scratch memory.
     double form_factor(const Normal& n, const RelativeRadiance& p, std::vector<Vec3>& corners) const;
 
     std::size_t size() const { return fragments_.size(); }
@@ -50,7 +52,7 @@ class LitPart {
 
   private:
     struct Fragment {
-        std::uint32_t first, count;  ///< Of the corners.
+        std::uint32_t first, count;  ///< Range in `corners_`.
         Rectangle box;
     };
     struct Line {
@@ -67,8 +69,8 @@ class LitPart {
 
     std::vector<Vec3> source_;
     Vec3 origin_, u_, v_, normal_;
-    double depth_ = 0;  ///< normal . r of the plane.
-    double noise_ = 0;  ///< Heights that rounding alone may make.
+    double depth_ = 0;  ///< Distance of the source's plane along its normal: normal . r.
+    double noise_ = 0;  ///< Distances to a line below this may be due to rounding alone.
     std::vector<Vec2> corners_, rest_, inner_;
     std::vector<double> heights_;
     std::vector<Fragment> fragments_, fresh_;

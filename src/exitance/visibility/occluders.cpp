@@ -11,10 +11,10 @@
 namespace exitance {
 namespace {
 
-constexpr double coplanar_share = 1e-6;  ///< Of the scene's size: planes nearer than this are one plane.
+constexpr double coplanar_share = 1e-6;  ///< Share of the scene's size: planes closer than this count as one plane.
 
-/// How far a piece stands off its plane for what lies under it, metres: what lies on one another within the thickness
-/// is one place for everything else.
+/// Distance by which a piece is raised off its plane above the pieces that it covers, metres. All levels stay within
+/// half of the thickness, so that other code treats the stack as one plane.
 double stack_height(std::uint8_t level, double thickness) {
     return level * thickness / (2 * most_stacked);
 }
@@ -37,7 +37,7 @@ Occluders::Occluders(const Scene& scene) : scene_(&scene), other_side_(other_sid
     for (RegionId r : scene.regions().ids()) {
         const Region& region = scene.regions()[r];
         const std::size_t first = pieces_.size();
-        const double tolerance = 1e-12 * region.area;  // collinear corners of coarse input
+        const double tolerance = 1e-12 * region.area;  // allows for collinear corners of coarse input
         if (region.loops.size() == 1 && is_convex(region.loops[0], region.plane.n, tolerance)) {
             add_piece(region.loops[0], r, region.surfaces[0], region.plane);
         } else {
@@ -91,15 +91,15 @@ void Occluders::add_distant_pieces() {
     distant_ = {first, pieces_.size()};
 }
 
-/// Which pieces have all of the scene on one side of their planes, up to rounding. Most have some corner of the
-/// scene's box, or of the large pieces before them, on either side; the others are compared with everything.
+/// For each piece, whether all of the scene is on one side of its plane, up to rounding. Most pieces have far corners
+/// of the scene on both sides; only the others are compared with all corners.
 std::vector<std::uint8_t> Occluders::find_outer() const {
     std::vector<std::uint8_t> outer(pieces_.size(), false);
     if (pieces_.empty()) return outer;
-    // Corners farthest out along many directions: if any two lie on different sides, so does the scene.
+    // The farthest corners in 26 directions: if two of them are on different sides of a plane, so is the scene.
     std::vector<Point> far;
     for (int k = 0; k < 26; ++k) {
-        const int code = k < 13 ? k : k + 1;  // all of {-1, 0, 1}^3 but the middle
+        const int code = k < 13 ? k : k + 1;  // all of {-1, 0, 1}^3 except the middle
         const Vec3 along{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
         far.push_back(*std::max_element(corners_.begin(), corners_.end(),
                                         [&](const Point& p, const Point& q) { return dot(along, p) < dot(along, q); }));
@@ -150,7 +150,7 @@ void Occluders::add_piece(std::span<const Point> corners, RegionId region, Surfa
                       surface,
                       plane,
                       0};
-    // Small things stay apart from what they stand on: the tolerance shrinks with them.
+    // The tolerance shrinks with the piece, so that small objects stay distinct from the surface that supports them.
     piece.thickness = std::max(rounding_, std::min(coplanar_share * scene_->size(), 1e-3 * box_of(corners).diagonal()));
     const Vec3 lifted = stack_height(scene_->regions()[region].level, piece.thickness) * plane.n;
     for (const Point& p : corners) corners_.push_back(p + lifted);

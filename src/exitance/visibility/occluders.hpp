@@ -13,58 +13,59 @@ namespace exitance {
 
 using PieceId = Id<struct PieceTag>;  ///< One convex piece of a region.
 
-/// A convex part of a region: the whole region where its border is one convex loop (however finely it was cut), else
-/// a convex part of one of its faces.
+/// A convex part of a region. It is the whole region if the border is one convex loop (however finely it was
+/// subdivided); otherwise it is a convex part of one of its faces.
 struct ConvexPiece {
     std::uint32_t first_corner = 0, corner_count = 0;
     RegionId region;
-    SurfaceId surface;  ///< A face it lies on (the region's first one where the piece is the whole region).
+    SurfaceId surface;  ///< A face that contains it (the first face of the region if the piece is the whole region).
     Plane plane;
-    double thickness = 0;  ///< Metres; what lies nearer to its plane than this lies in it.
+    double thickness = 0;  ///< Metres: points nearer to its plane than this are in the plane.
 };
 
-/// Everything that blocks light, as convex pieces with a tree of boxes over them. Immutable, shared by all threads.
+/// All occluders of a scene, as convex pieces in bounding volume hierarchies. Immutable; safe to share between threads.
 class Occluders {
   public:
     explicit Occluders(const Scene& scene);
 
     const Scene& scene() const { return *scene_; }
     const Field<PieceId, ConvexPiece>& pieces() const { return pieces_; }
-    /// Counter-clockwise seen from the front, metres.
+    /// Corners of a piece, counter-clockwise seen from its front, metres.
     std::span<const Point> corners(PieceId p) const {
         return std::span(corners_).subspan(pieces_[p].first_corner, pieces_[p].corner_count);
     }
     IdRange<PieceId> pieces(RegionId r) const { return of_region_[r]; }
-    /// Faces of the sky, which block nothing and are no part of any region: `distant_facets` of the scene, about its
-    /// middle, a million times as far away as it is large. Every point of the scene counts as their middle
-    /// (`middle`).
+    /// Facets of the sky (`distant_facets` of the scene). They block nothing and belong to no region. They are centred
+    /// on the middle of the scene, at 1e6 times its size. To every point of the scene they appear as seen from
+    /// middle().
     IdRange<PieceId> distant_pieces() const { return distant_; }
     bool is_distant(PieceId p) const { return pieces_[p].region.is_none(); }
-    /// Panes, which block nothing and are no part of any region either: the sky's light comes from them where the
-    /// `enclosure` holds the receiver.
+    /// Panes through which the sky's light enters, for receivers inside the `enclosure`. They block nothing and belong
+    /// to no region.
     IdRange<PieceId> windows() const { return windows_; }
     bool is_window(PieceId p) const { return !windows_.empty() && p.value >= windows_.front().value; }
     const Enclosure& enclosure() const { return enclosure_; }
-    /// What is to be taken from a corner of a distant piece in place of the point that it is seen from.
+    /// Viewpoint to subtract from the corners of a distant piece, instead of the receiver's position.
     const Point& middle() const { return middle_; }
-    /// How far a region's pieces stand off its plane because they lie on others in it (Region::level), metres.
+    /// Distance by which a region's pieces are raised off its plane because the region is on top of others in that
+    /// plane (Region::level), metres.
     double lift(RegionId r) const;
 
-    /// The pieces in two trees: the largest few (4 sqrt(n) by area: walls, floors, ceilings) and the others. What is
-    /// hidden at all is hidden by a large one as a rule, and these are found at once.
+    /// The pieces are in two trees: the 4 sqrt(n) largest by area (walls, floors, ceilings), and all others. Usually a
+    /// large piece is the occluder, and it is found quickly.
     enum class Size : std::uint8_t { large, small };
 
-    /// Calls visit(piece) for every piece of a size whose box is not wholly outside one plane of the region, roughly
-    /// along `direction`, until visit returns true. Returns whether it did.
+    /// Calls visit(piece) for every piece of a size class whose box is not entirely outside one plane of the region,
+    /// roughly in order along `direction`, until visit returns true. Returns whether it did.
     template <class Visit>
     bool visit_region(Size size, const ConvexRegion& region, const Visit& visit, const Vec3& direction) const {
         return (size == Size::large && walk(outer_, region, visit, direction)) ||
                visit_inner(size, region, visit, direction);
     }
 
-    /// Calls visit(piece) for every piece of a size whose box the segment from `origin` to origin + d meets, nearer
-    /// ones first (those that all of the scene lies on one side of before the other large ones), until visit returns
-    /// true.
+    /// Calls visit(piece) for every piece of a size class whose box meets the segment from `origin` to origin + d,
+    /// nearer ones first, until visit returns true. For large pieces, those with all of the scene on one side come
+    /// first.
     template <class Visit>
     void visit_segment(Size size, const Point& origin, const Vec3& d, const Visit& visit) const {
         bool ended = false;
@@ -78,30 +79,31 @@ class Occluders {
         if (!ended) walk_along(trees_[static_cast<std::size_t>(size)]);
     }
 
-    /// Is a region the one that a receiver lies on, or the other side of the same sheet? Neither can shade it.
+    /// Returns whether a region is the receiver's own, or the other side of the same sheet. Neither can shade the
+    /// receiver.
     bool is_own(RegionId region, RegionId own) const {
         return region == own || (other_side_.size() > 0 && !own.is_none() && other_side_[own] == region);
     }
 
-    /// As visit_region, without the pieces that all of the scene lies on one side of, such as the walls of a single
-    /// room: they stand between no two points of surfaces.
+    /// Like visit_region, without pieces that have all of the scene on one side, such as the walls of a single room:
+    /// they block no segment between surfaces.
     template <class Visit>
     bool visit_inner(Size size, const ConvexRegion& region, const Visit& visit, const Vec3& direction) const {
         return walk(trees_[static_cast<std::size_t>(size)], region, visit, direction);
     }
-    /// Is there no piece but those?
+    /// Returns whether all pieces have all of the scene on one side, so that nothing blocks anything.
     bool has_nothing_inside() const { return outer_.pieces.size() == pieces_.size(); }
 
-    /// How far apart two places may be that are meant to be the same, metres: a few roundings of the coordinates.
+    /// Distance within which two points count as equal, metres: a few roundings of the coordinates.
     double rounding() const { return rounding_; }
 
-    /// Does another surface lie on the point x of region `own`, front to front, so that no light can get there? A sheet
-    /// whose other side is a region of the same outline does not lie on itself. A surface on top of it with its front
-    /// upwards counts when it is above by more than rounding; of two that share a plane neither covers the other.
+    /// Returns whether another surface covers the point x of region `own`, so that no light can reach it. The other
+    /// side of a sheet does not cover it if both outlines are equal. A surface that faces the same way covers x only if
+    /// it is above x by more than rounding; of two surfaces in the same plane neither covers the other.
     bool is_covered(const Point& x, const Normal& n, RegionId own) const;
 
     std::size_t memory_bytes() const;
-    /// Calls visit(span) for the plain arrays that most of it stands in.
+    /// Calls visit(span) for the arrays that hold most of the memory.
     template <class Visit>
     void visit_arrays(const Visit& visit) const {
         visit(pieces_.span()), visit(of_region_.span()), visit(std::span(corners_)), visit(other_side_.span());
@@ -121,7 +123,7 @@ class Occluders {
     Field<PieceId, ConvexPiece> pieces_;
     Field<RegionId, IdRange<PieceId>> of_region_;
     std::vector<Point> corners_;
-    Field<RegionId, RegionId> other_side_;  ///< Empty where no region is one side of a sheet.
+    Field<RegionId, RegionId> other_side_;  ///< Empty if no region is one side of a sheet.
     struct Tree {
         std::vector<PieceId> pieces;
         Bvh bvh;
@@ -132,7 +134,7 @@ class Occluders {
             region, [&](std::uint32_t i) { return visit(tree.pieces[i]); }, direction);
     }
 
-    std::array<Tree, 2> trees_;  ///< Indexed by Size; without the outer ones.
+    std::array<Tree, 2> trees_;  ///< Indexed by Size; without the pieces of `outer_`.
     Tree outer_;                 ///< Pieces with all of the scene on one side.
     IdRange<PieceId> distant_, windows_;
     Enclosure enclosure_;

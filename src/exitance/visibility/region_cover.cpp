@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Convex hull, counter-clockwise (monotone chains [Andrew79]); orders the points.
+/// Convex hull, counter-clockwise (monotone chains [Andrew79]). Sorts the points.
 void make_hull(std::vector<Vec2>& points, std::vector<Vec2>& hull) {
     std::sort(points.begin(), points.end(), [](Vec2 a, Vec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
     hull.clear();
@@ -22,7 +22,7 @@ void make_hull(std::vector<Vec2>& points, std::vector<Vec2>& hull) {
     hull.pop_back();
 }
 
-/// Does a part of the segment a b lie inside a convex polygon by more than `margin`?
+/// Returns whether part of the segment a b is inside a convex polygon by more than `margin`.
 bool enters(Vec2 a, Vec2 b, std::span<const Vec2> polygon, double margin) {
     double from = 0, to = 1;
     for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {

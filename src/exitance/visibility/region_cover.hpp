@@ -7,16 +7,18 @@
 
 namespace exitance {
 
-/// Does a region of any shape, holes included, block all segments between two convex sets? It does if the segments
-/// between their corners all cross its plane and the convex hull of the crossings misses its border: for a fixed end
-/// the segments that meet a convex set have their other ends in a convex set. Reusable, keeps its memory.
+/// Tests whether a region of any shape, holes included, blocks all segments between two convex sets. It does if all
+/// segments between their corners cross its plane and the convex hull of the crossings does not touch its border: for a
+/// fixed end, the segments that meet a convex set have their other ends in a convex set. Can be reused without new
+/// allocations.
 class RegionCover {
   public:
-    /// `margin`: by how much (metres) the border may reach into the hull.
+    /// margin  metres: distance by which the border may reach into the hull
     void begin(const Region& region, double margin);
-    /// Adds the segment between two corners; false if it does not cross the plane from the side of the first one added.
+    /// Adds the segment between two corners. Returns false if it does not cross the plane from the same side as the
+    /// first one.
     bool add(const Point& x, const Point& y);
-    /// After all were added: are all segments between the hulls of the ends blocked?
+    /// Returns whether all segments between the hulls of the end points are blocked. Call after adding all segments.
     bool covers();
 
   private:

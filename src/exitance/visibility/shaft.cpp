@@ -18,8 +18,8 @@ double highest(std::span<const Point> points, const Plane& plane) {
     return h;
 }
 
-/// The corners of a facet. Where several surfaces share a plane, the one that is on top stands off it
-/// (Occluders::lift): seen from the plane itself, what it covers would hide everything.
+/// The corners of a facet. If several surfaces share a plane, those of an upper one are raised (Occluders::lift): as
+/// seen from the plane itself, the covered surfaces would hide everything.
 void take(const Occluders& occluders, const Facet& facet, std::vector<Point>& corners) {
     corners.assign(facet.corners.begin(), facet.corners.end());
     const double lift = facet.region.is_none() ? 0 : occluders.lift(facet.region);
@@ -60,7 +60,7 @@ void Shaft::set(const Occluders& occluders, const Facet& receiver, const Facet& 
     add_supporting_planes(source_, receiver_);
     region_.clear();
     for (Plane& plane : planes_) {
-        plane.offset += slack;  // what only touches the shaft is outside
+        plane.offset += slack;  // occluders that only touch the shaft are outside
         region_.add(plane);
     }
 }
@@ -72,7 +72,7 @@ void Shaft::add_supporting_planes(std::span<const Point> edges, std::span<const 
         for (const Point& c : corners) {
             Vec3 normal = cross(b - a, c - a);
             const double length = norm(normal);
-            if (length <= 1e-12 * norm(b - a) * norm(c - a) || length == 0) continue;  // c stands in line with the edge
+            if (length <= 1e-12 * norm(b - a) * norm(c - a) || length == 0) continue;  // c is collinear with the edge
             normal *= 1 / length;
             double low = 0, high = 0;
             for (const std::span<const Point> side : {edges, corners})
@@ -81,8 +81,9 @@ void Shaft::add_supporting_planes(std::span<const Point> edges, std::span<const 
                     low = std::min(low, h), high = std::max(high, h);
                 }
             if (low < -slack && high > slack) continue;
-            if (low >= -slack && high <= slack) continue;  // both in one plane
-            // A corner in the plane of the edge's polygon, as where the two meet at an edge, gives that plane again.
+            if (low >= -slack && high <= slack) continue;  // both polygons in one plane
+            // A corner in the plane of the edge's polygon, e.g. where the two polygons share an edge, would only give
+            // that plane again.
             if (std::all_of(edges.begin(), edges.end(),
                             [&](const Point& p) { return std::abs(dot(normal, p - a)) <= slack; }))
                 continue;
@@ -128,7 +129,8 @@ bool Shaft::blocks_all(PieceId p) {
     const std::span<const Point> corners = occluders_->corners(p);
     const double slack = slack_;
     const double side = piece.plane.signed_distance(mean(receiver_)) > 0 ? 1 : -1;
-    const auto beyond = [&](const Point& x, const Point& y, double margin) {  // does O hold the crossing of x y?
+    const auto beyond = [&](const Point& x, const Point& y,
+                            double margin) {  // does the piece contain the crossing of x y?
         const double hx = side * piece.plane.signed_distance(x), hy = side * piece.plane.signed_distance(y);
         if (hx < 0 || hy > 0 || hx - hy <= slack) return false;
         const Point at = x + (hx / (hx - hy)) * (y - x);
@@ -138,7 +140,8 @@ bool Shaft::blocks_all(PieceId p) {
         }
         return true;
     };
-    // The middles well inside, so that closed containment of the corners' segments leaves only slivers open.
+    // The segment between the middles must cross well inside: then only slivers can remain unblocked when the corners'
+    // segments cross within the closed piece.
     if (!beyond(mean(receiver_), mean(source_), 100 * slack)) return false;
     for (const Point& x : receiver_)
         for (const Point& y : source_)
@@ -166,7 +169,7 @@ View Shaft::classify(std::vector<PieceId>& candidates, std::size_t most) {
         blocked = blocks_all(p);
         return blocked || candidates.size() > most;
     };
-    const Vec3 direction = source_[0] - receiver_[0];  // from the receiver on: near walls block most
+    const Vec3 direction = source_[0] - receiver_[0];  // front to back from the receiver: near walls block most often
     const bool in_scene = are_in_scene();
     bool ended = false;
     for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})

@@ -20,7 +20,7 @@ Point inside(RandomStream& random, const std::vector<Point>& t) {
     return t[0] + u * (1 - v) * (t[1] - t[0]) + u * v * (t[2] - t[0]);
 }
 
-/// Two walls that meet at an edge: the shaft between them is bounded by their neighbours, too, which only touch it.
+/// Pairs of walls with a common edge: the other walls touch the shaft between them but do not reach into it.
 TEST(Shaft, NothingStandsBetweenTheFacesOfAClosedBox) {
     const Scene scene = test::make(test::closed_box({}, {1, 2, 3}));
     const Occluders occluders(scene);
@@ -71,7 +71,7 @@ TEST(Shaft, CertainClassesAreNeverContradictedByRays) {
     EXPECT_GT(mixed, 50);
 }
 
-TEST(Shaft, SeesThroughNothingButWhatOnlyTouchesIt) {
+TEST(Shaft, IgnoresOccludersThatOnlyTouchIt) {
     const std::vector<Point> light = {{0, 0, 2}, {0, 1, 2}, {1, 1, 2}, {1, 0, 2}},
                              wall = {{1, 0, 0}, {1, 1, 0}, {1, 1, 2}, {1, 0, 2}};
     const std::vector<Point> floor = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -93,7 +93,7 @@ TEST(Shaft, SeesThroughNothingButWhatOnlyTouchesIt) {
     }
 }
 
-TEST(Shaft, IsBlockedByAWallBesideItsDoorAndNotThroughIt) {
+TEST(Shaft, IsBlockedByAWallButNotByItsDoor) {
     const std::vector<Point> wall = {{0, -3, 0}, {0, -1, 0}, {0, -1, 2}, {0, 1, 2},
                                      {0, 1, 0},  {0, 3, 0},  {0, 3, 3},  {0, -3, 3}};
     const Scene scene = test::make({{wall}});
@@ -107,14 +107,14 @@ TEST(Shaft, IsBlockedByAWallBesideItsDoorAndNotThroughIt) {
         return shaft.classify(candidates);
     };
     EXPECT_EQ(look(-2.5, 1), View::none);
-    EXPECT_EQ(look(-2, 1), View::none);  // up to the door's edge
+    EXPECT_EQ(look(-2, 1), View::none);  // exactly to the door's edge
     EXPECT_EQ(look(-2, 1.01), View::mixed);
     EXPECT_EQ(look(-1, 2), View::open);
     EXPECT_EQ(look(-2, 4), View::mixed);  // all around the door
     EXPECT_EQ(look(1, 2), View::none);
 }
 
-TEST(DirectLight, OfAPreparedPolygonIsThatOfItsPoints) {
+TEST(DirectLight, IsTheSameForAPreparedPolygonAndItsPoints) {
     RandomStream random(5, Stream::direct);
     for (int trial = 0; trial < 20; ++trial) {
         std::vector<Face> faces = test::triangle_soup(20, 0.7, 900 + trial, {0, 0, 0.5});
@@ -141,8 +141,8 @@ TEST(DirectLight, OfAPreparedPolygonIsThatOfItsPoints) {
     }
 }
 
-/// Two faces in one plane but for 1e-9: the later one is on top, and lit, though it lies below.
-TEST(DirectLight, OfAPreparedPolygonOnTopOfAnotherIsThatOfItsPoints) {
+/// Two faces in the same plane up to 1e-9. The later one is on top and receives light although it is lower.
+TEST(DirectLight, IsTheSameForAPreparedPolygonOnTopOfAnotherAndItsPoints) {
     const auto lower = [](double x, double y) { return Point{x, y, -1e-9}; };
     const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}},
                                     {{lower(-1, -1), lower(0.7, -1), lower(0.7, 1), lower(-1, 1)}},

@@ -10,10 +10,10 @@ namespace {
 
 using namespace four;
 
-constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as none, as for single points.
+constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as zero, as for single points.
 constexpr std::size_t most_corners = 20, most_planes = 160, most_fragments = 160;
 
-/// A convex polygon as each of the four points sees it.
+/// A convex polygon relative to each of the four points.
 struct Polygon {
     std::size_t count;
     Vec corner[most_corners];
@@ -28,7 +28,7 @@ inline Real absolute(const Real& v) {
 
 }  // namespace
 
-/// The subtraction of VisibleSource, step by step, with every decision taken by all four points.
+/// The subtraction of VisibleSource, step by step. Every decision must be the same for all four points.
 class VisibleFromFour::Work {
   public:
     bool run(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers,
@@ -71,8 +71,9 @@ class VisibleFromFour::Work {
         std::size_t first, last;
     };
 
-    /// Adds the planes of a blocker's silhouette. Where only some of the points have an edge on theirs, the others get
-    /// a plane with all of the source inside. False when only some are inside the blocker, or there is no room.
+    /// Adds the planes of a blocker's silhouette. If an edge is on the silhouette from only some of the points, the
+    /// others get a plane that has all of the source inside. Returns false if only some of the points are inside the
+    /// blocker, or if there is no room.
     bool add_pyramid(const ConvexBlocker& blocker, bool& inside) {
         std::array<int, ConvexBlocker::most_faces + 1> in_front;
         int any_front = 0;
@@ -92,7 +93,7 @@ class VisibleFromFour::Work {
             if (outline == 0) continue;
             const Vec a = spread(blocker.points[e.a]) - x_, b = spread(blocker.points[e.b]) - x_;
             Vec plane = cross(b, a);
-            if ((left & outline) != outline) {  // seen from behind by some
+            if ((left & outline) != outline) {  // seen from behind by some points
                 const Real side = {left & 1 ? 1. : -1., left & 2 ? 1. : -1., left & 4 ? 1. : -1., left & 8 ? 1. : -1.};
                 plane = {side * plane.x, side * plane.y, side * plane.z};
             }
@@ -110,13 +111,14 @@ class VisibleFromFour::Work {
         return true;
     }
 
-    /// Where a polygon stands to a plane. `inside` has a bit for each point that sees some of it inside.
+    /// Position of a polygon relative to a plane. `inside` has a bit for each point for which some of the polygon is
+    /// inside.
     struct Standing {
         int inside = 0;
         bool any_out = false, alike = true;
     };
 
-    /// Heights of the corners over a plane, and as -1, 0 or 1 a corner.
+    /// Computes the heights of the corners over a plane, and their signs (-1, 0 or 1) per corner.
     Standing measure(const Polygon& polygon, const Vec& plane, Real* heights, int* signs) const {
         const Real none = on_plane * size_ * (absolute(plane.x) + absolute(plane.y) + absolute(plane.z));
         Standing standing;
@@ -130,8 +132,8 @@ class VisibleFromFour::Work {
         return standing;
     }
 
-    /// Do all points see the fragment beside a pyramid, each perhaps beyond another side? If none does, `cuts` takes
-    /// the planes that run through it.
+    /// Returns whether the fragment is outside a pyramid for all points, possibly beyond a different side for each. If
+    /// not, `cuts` receives the planes that cross it.
     bool is_beside(const Polygon& fragment, const Pyramid& pyramid, std::array<std::size_t, 40>& cuts,
                    std::size_t& count) {
         Real heights[most_corners];
@@ -149,7 +151,7 @@ class VisibleFromFour::Work {
         return false;
     }
 
-    /// The part where sign * height >= 0.
+    /// The part of a polygon with sign * height >= 0.
     static void cut(const Polygon& polygon, const Real* heights, const int* signs, int sign, Polygon& out) {
         out.count = 0;
         for (std::size_t i = 0; i < polygon.count; ++i) {

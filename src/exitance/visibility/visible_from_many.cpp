@@ -8,17 +8,19 @@
 namespace exitance {
 namespace {
 
-constexpr double rounding = 2e-15;  ///< Of an edge's length times the square of all lengths' bound: a height of none.
-constexpr double one_line = 1e-12;  ///< Edges that fall together from everywhere.
-constexpr double fall_together = 3e-8;  ///< From a point: where such edges meet is lost in rounding.
-constexpr std::size_t most_turning = 64;
+/// Times an edge's length and the square of `reach_`: heights below this count as zero.
+constexpr double rounding = 2e-15;
+constexpr double one_line = 1e-12;  ///< Edges closer than this from everywhere count as one line.
+/// From a point: below this, the intersection of two such edges is lost in rounding.
+constexpr double coincident_from_point = 3e-8;
+constexpr std::size_t max_turning_faces = 64;
 
-/// Is its inner side one or the other, by where it is seen from?
+/// Returns whether the inner side of the line depends on the viewpoint.
 bool runs_either_way(const SightTables::Line& line) {
     return line.outline == SightTables::Outline::between_two || line.outline == SightTables::Outline::of_a_turning_one;
 }
 
-constexpr auto bit = SeenEdges::bit;  // of a corner or edge of the source
+constexpr auto bit = SeenEdges::bit;  // bit of a corner or edge of the source
 
 }  // namespace
 
@@ -27,7 +29,8 @@ Vec3 VisibleFromMany::place(const Point& p) const {
     return {flat.x, flat.y, frame_.height(p)};
 }
 
-/// det(b - x, a - x, p - x) for x in the receiver's plane, b = a + d: it is (d x a) . (p - x) + x . (d x p).
+/// Coefficients of det(b - x, a - x, p - x) for x in the receiver's plane and b = a + d; it equals (d x a) . (p - x) +
+/// x . (d x p).
 VisibleFromMany::Affine VisibleFromMany::Axis::height(const Vec3& p) const {
     return {dot(moment, p), along.y * p.z - along.z * p.y - moment.x, along.z * p.x - along.x * p.z - moment.y};
 }
@@ -41,8 +44,8 @@ VisibleFromMany::Signs VisibleFromMany::signs(const Affine& f, double none, doub
     return {highest > none, lowest<-none, highest> nil || lowest < -nil};
 }
 
-/// Adds a height for each of the source's corners or edges to the tables, `stride` apart from `place` on; `heights`
-/// gives four at a time.
+/// Adds to the tables a height for each corner (or edge) of the source, at indices place, place + stride, ... `heights`
+/// returns four at a time.
 template <class Heights>
 EXITANCE_INLINE VisibleFromMany::Signs VisibleFromMany::add_heights(std::size_t stride, std::size_t place, double none,
                                                                     double nil, const Heights& heights) {
@@ -68,8 +71,8 @@ EXITANCE_INLINE VisibleFromMany::Signs VisibleFromMany::add_heights(std::size_t 
     return out;
 }
 
-/// When is an edge of the silhouette, and which side is inside? `turned` when it runs from b to a. False when it never
-/// is one.
+/// Determines when an edge is part of the silhouette, and which side is inside. Sets `turned` if its direction is from
+/// b to a. Returns false if it is never part of the silhouette.
 bool VisibleFromMany::find_outline(const ConvexBlocker::Edge& e, bool is_sheet, Line& line, bool& turned) const {
     const auto l = static_cast<std::size_t>(e.left), r = static_cast<std::size_t>(e.right);
     const Facing left = facing_[l], right = is_sheet ? Facing::back : facing_[r];
@@ -94,11 +97,12 @@ bool VisibleFromMany::find_outline(const ConvexBlocker::Edge& e, bool is_sheet, 
     const Facing other = left_turns ? right : left;
     line.left = turning_[left_turns ? l : r];
     line.outline = other == Facing::front ? SightTables::Outline::behind_a_face : SightTables::Outline::before_a_face;
-    turned = left_turns == (other == Facing::front);  // inside is the side of the face that is seen
+    turned = left_turns == (other == Facing::front);  // the inside is the side of the visible face
     return true;
 }
 
-/// Adds the planes of a blocker's faces that turn. False when it is a sheet that all of the receiver sees edge-on.
+/// Adds the planes of those faces of a blocker that are front-facing from some points only. Returns false for a sheet
+/// that is edge-on to the whole receiver.
 bool VisibleFromMany::add_faces(const ConvexBlocker& shape, SightTables::Blocker& blocker) {
     facing_.clear();
     turning_.assign(shape.faces.size(), 0);
@@ -119,14 +123,15 @@ bool VisibleFromMany::add_faces(const ConvexBlocker& shape, SightTables::Blocker
     return true;
 }
 
-/// Adds an edge of a silhouette, unless it never crosses the source. Tells whether all of the source is always outside.
+/// Adds an edge of a silhouette, unless it never crosses the source. Returns whether the whole source is always outside
+/// it.
 bool VisibleFromMany::add_line(Line line, const ConvexBlocker::Edge& e, bool turned, std::uint32_t edge) {
     const std::size_t corners = tables_.corners.size();
     const std::uint32_t from = turned ? e.b : e.a, to = turned ? e.a : e.b;
     const Vec3 &a = points_[from], &b = points_[to];
     line.a = a, line.along = b - a;
     const double scale = norm(line.along) * reach_ * reach_;
-    line.none = rounding * scale, line.tie = fall_together * scale;
+    line.none = rounding * scale, line.tie = coincident_from_point * scale;
     line.over = static_cast<std::uint32_t>(tables_.heights.size());
     const auto column = [&](std::size_t i, std::size_t k) { return four::load(&source_columns_[i][k]); };
     const Axis axis(a, line.along);
@@ -145,7 +150,7 @@ bool VisibleFromMany::add_line(Line line, const ConvexBlocker::Edge& e, bool tur
         tables_.heights.resize(line.over);
         return all_out;
     }
-    const std::uint32_t nil = all & ~over.away;  // corners on the line wherever it is seen from
+    const std::uint32_t nil = all & ~over.away;  // corners that are on the line from everywhere
     for (std::size_t s = 0; nil != 0 && s < corners; ++s)
         if (nil & bit(s)) tables_.heights[line.over + s] = {};
     tables_.heights.resize(line.over + 3 * corners);
@@ -164,7 +169,7 @@ bool VisibleFromMany::add_line(Line line, const ConvexBlocker::Edge& e, bool tur
     std::uint32_t* const of_corner = &corners_crossed_[corners_crossed_.size() - points_.size()];
     of_corner[from] |= of_ends[0].above & of_ends[0].below;
     of_corner[to] |= of_ends[1].above & of_ends[1].below;
-    // Outside, or on one line with the source's edge, which is counted then.
+    // The edge is not drawn if it is outside, or coincides with an edge of the source, which is counted instead.
     line.is_drawn = (of_ends[0].above | of_ends[1].above) == all;
     for (std::size_t s = 0; nil != 0 && s < corners; ++s)
         if ((nil & bit(s)) != 0 && (nil & bit(s + 1 == corners ? 0 : s + 1)) != 0) line.is_drawn = false;
@@ -205,7 +210,7 @@ VisibleFromMany::Kept VisibleFromMany::add_blocker(const ConvexBlocker& shape) {
     return Kept::some;
 }
 
-/// Heights of the ends of one blocker's lines over the other's.
+/// Adds the heights of the ends of blocker k's lines over the lines of blocker j.
 void VisibleFromMany::join(std::size_t k, std::size_t j) {
     const SightTables::Blocker &mine = tables_.blockers[k], &other = tables_.blockers[j];
     tables_.between[k * SightTables::most_blockers + j] = static_cast<std::uint32_t>(tables_.heights.size());
@@ -264,14 +269,14 @@ VisibleFromMany::Outlook VisibleFromMany::set(const PlaneFrame& frame, std::span
         seen.corners_over_edges = std::span(corners_crossed_).subspan(corners, seen.body->points.size());
         corners += seen.body->points.size();
     }
-    is_crowded_ |= tables_.blockers.size() > SightTables::most_blockers || tables_.faces.size() > most_turning;
+    is_crowded_ |= tables_.blockers.size() > SightTables::most_blockers || tables_.faces.size() > max_turning_faces;
     for (std::size_t k = 0; !is_crowded_ && k < tables_.blockers.size(); ++k)
         for (std::size_t j = 0; j < tables_.blockers.size(); ++j)
             if (j != k) join(k, j);
     return Outlook::partly;
 }
 
-/// Up to four points, by cutting.
+/// Evaluates up to four points by clipping the source.
 void VisibleFromMany::look_otherwise(std::span<const Vec2> points, std::span<double> F, std::span<Seen> seen) {
     std::array<Point, 4> x;
     for (std::size_t i = 0; i < 4; ++i) x[i] = frame_.at(points[std::min(i, points.size() - 1)]);

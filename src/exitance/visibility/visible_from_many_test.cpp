@@ -17,7 +17,7 @@ using test::sheet;
 
 using Outline = std::vector<Point>;
 
-/// Looks down from z = 2 on the plane z = 0.
+/// Faces down from z = 2 to the plane z = 0.
 const Outline ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
 const PlaneFrame floor_frame({0.3, -0.2, 0}, {0, 0, 1});
 
@@ -30,7 +30,7 @@ Outline floor_square(double x, double y, double half) {
     return {{x - half, y - half, 0}, {x + half, y - half, 0}, {x + half, y + half, 0}, {x - half, y + half, 0}};
 }
 
-/// Compares points of a square of the floor with points by themselves.
+/// Compares the results at points of a square of the floor with those of single points.
 void compare(double x, double y, double half, std::span<const ConvexBlocker* const> blockers, RandomStream& random,
              const std::string& what, const Outline& source = ceiling) {
     const std::vector<Vec2> receiver = corners_of(floor_square(x, y, half));
@@ -56,7 +56,7 @@ void compare(double x, double y, double half, std::span<const ConvexBlocker* con
             EXPECT_NEAR(F[k], exact, 2e-14) << what << ' ' << x << ' ' << y << ' ' << half;
             EXPECT_EQ(seen[k], how) << what << ' ' << F[k];
             if (blockers.size() > SightTables::most_blockers || source.size() > SightTables::most_corners) continue;
-            // Fewer than five points take registers of four: the same bits, whatever the others are.
+            // Groups of fewer than five points use registers of four; the result must be bitwise the same.
             double by_itself = 0;
             many(std::span(points).subspan(k, 1), std::array{std::size_t{1}}, std::span(&by_itself, 1),
                  std::span(&how, 1));
@@ -67,7 +67,8 @@ void compare(double x, double y, double half, std::span<const ConvexBlocker* con
 }
 
 TEST(VisibleFromMany, SeesTheSameAtAnyScale) {
-    // Millimetres of a town are millions: faces of the box turn as the points move, so that its edges come and go.
+    // Coordinates of a town in millimetres exceed a million. Faces of the box turn as the points move, so its edges
+    // appear and disappear.
     std::vector<double> expected;
     for (const double scale : {1.0, 1e-4, 1e3, 1e6}) {
         const auto scaled = [&](Outline outline) {
@@ -124,8 +125,8 @@ TEST(VisibleFromMany, AgreesWithSinglePoints) {
         }
 }
 
-TEST(VisibleFromMany, IsSureOfEdgesThatFallTogether) {
-    // A block that hangs from the ceiling's border, two that touch, and one beside another of equal height.
+TEST(VisibleFromMany, IsExactForCoincidentEdges) {
+    // A block that hangs from the ceiling's border, two that touch, and one beside another of the same height.
     const ConvexBlocker hanging = box({0.4, -0.5, 1.2}, {1, 0.5, 2}), left = box({-0.4, -0.3, 0.6}, {0, 0.3, 1});
     const ConvexBlocker right = box({0, -0.3, 0.6}, {0.4, 0.3, 1}), above = box({-0.4, -0.3, 1}, {0, 0.3, 1.3});
     const std::vector<std::vector<const ConvexBlocker*>> cases = {
@@ -137,7 +138,7 @@ TEST(VisibleFromMany, IsSureOfEdgesThatFallTogether) {
                     "case " + std::to_string(i));
 }
 
-TEST(VisibleFromMany, TakesSourcesOfManyCorners) {
+TEST(VisibleFromMany, SupportsSourcesWithManyCorners) {
     Outline disc;
     constexpr int corners = 40;
     for (int k = corners; k-- > 0;) {
@@ -151,7 +152,7 @@ TEST(VisibleFromMany, TakesSourcesOfManyCorners) {
         compare(2 * random.uniform() - 1, 2 * random.uniform() - 1, 0.5 * random.uniform(), both, random, "disc", disc);
 }
 
-TEST(VisibleFromMany, KnowsWhenOneBlockerHidesAllAndWhenNoneHidesAny) {
+TEST(VisibleFromMany, DetectsOneBlockerHidingAllAndNoneHidingAny) {
     const ConvexBlocker body = box({-2, -2, 0.9}, {2, 2, 1.1});
     const std::array<const ConvexBlocker*, 1> blockers = {&body};
     VisibleFromMany many;

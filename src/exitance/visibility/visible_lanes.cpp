@@ -41,7 +41,7 @@ constexpr int all_lanes = 255;
 using Real = double __attribute__((vector_size(64)));
 using Vec = lanes_of::VecOf<Real>;
 
-/// A bit a lane: vectors of eight comparisons GCC 12 takes apart.
+/// One bit per lane: GCC 12 splits vectors of eight comparisons.
 struct Mask {
     __mmask8 lanes;
 };

@@ -13,12 +13,12 @@
 namespace exitance {
 namespace {
 
-constexpr double on_plane = 1e-14;  ///< Sine of an angle that rounding alone may make.
-constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle are points.
+constexpr double on_plane = 1e-14;  ///< Sine of an angle that may be due to rounding alone.
+constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle count as points.
 
 using Workspace = VisibilityWorkspace;
 
-/// The part of a convex polygon with heights[i] >= 0; the cut runs through the same place from either side.
+/// Appends the part of a convex polygon with heights[i] >= 0. For either sign the cut points are identical.
 void cut_above(std::span<const Vec3> polygon, std::span<const double> heights, std::vector<Vec3>& out) {
     for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
         const std::size_t j = i + 1 == m ? 0 : i + 1;
@@ -33,7 +33,7 @@ void cut_above(std::span<const Vec3> polygon, std::span<const double> heights, s
     }
 }
 
-/// Keeps the part of `polygon` where n . R >= offset.
+/// Keeps the part of `polygon` with n . r >= offset.
 void clip_in_place(std::vector<Vec3>& polygon, const Normal& n, double offset, Workspace& scratch) {
     bool any_below = false;
     scratch.heights.clear();
@@ -48,7 +48,7 @@ void clip_in_place(std::vector<Vec3>& polygon, const Normal& n, double offset, W
     std::swap(polygon, scratch.side);
 }
 
-/// The source as seen from x and above its horizon, in scratch.source; empty when nothing of it can be seen.
+/// Stores in scratch.source the source relative to x, clipped to x's horizon; empty if none of it can be visible.
 void look_at_source(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
     scratch.source.clear();
     const ConvexPiece& piece = occluders.pieces()[source];
@@ -60,7 +60,7 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     clip_in_place(scratch.source, at.n, 0, scratch);
 }
 
-/// The planes of the pyramid from x over the source, in scratch.source_pyramid.
+/// Stores in scratch.source_pyramid the side planes of the pyramid from x over the source.
 void make_pyramid(Workspace& scratch) {
     scratch.source_pyramid.clear();
     for (std::size_t i = 0, m = scratch.source.size(); i < m; ++i) {
@@ -71,7 +71,8 @@ void make_pyramid(Workspace& scratch) {
     }
 }
 
-/// The pyramid from x over the source, between the planes of both, in scratch.region; of a window, all the way out.
+/// Stores in scratch.region the pyramid from x over the source, bounded by the receiver's and the source's planes. For
+/// a window with faces outside it continues past the pane.
 void make_region(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
     const double slack = occluders.rounding();
     const auto above = [&](const Vec3& n, double height) { return Plane{n, dot(n, at.x) + height}; };
@@ -82,7 +83,7 @@ void make_region(const Occluders& occluders, const Receiver& at, PieceId source,
     for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
 }
 
-/// Adds the planes of the pyramid over a convex polygon (relative to x); false if the polygon is seen edge-on.
+/// Adds the planes of the pyramid over a convex polygon (relative to x). Returns false if the polygon is seen edge-on.
 bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratch) {
     const std::size_t first = scratch.planes.size();
     for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
@@ -99,7 +100,7 @@ bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratc
     return true;
 }
 
-/// Does the pyramid over an occluder miss the source, or hide all of it?
+/// How much of the source an occluder's pyramid hides.
 enum class Hides { nothing, some, everything };
 Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
     bool everything = true;
@@ -115,7 +116,8 @@ Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
     return everything ? Hides::everything : Hides::some;
 }
 
-/// The solid angle of a small polygon (relative to x) whose plane passes x at the given distance; rough for large ones.
+/// Approximate solid angle of a polygon (relative to x), accurate if it is small. distance_of_plane: distance of x from
+/// the polygon's plane, metres, with either sign.
 double rough_solid_angle(std::span<const Vec3> polygon, double distance_of_plane) {
     Vec3 twice_area, sum;
     for (std::size_t i = 2; i < polygon.size(); ++i)
@@ -125,7 +127,7 @@ double rough_solid_angle(std::span<const Vec3> polygon, double distance_of_plane
     return 0.5 * std::abs(distance_of_plane) * norm(twice_area) / (distance * distance * distance);
 }
 
-/// Does a region of several pieces (a wall with a door, say) hide all of the source by itself?
+/// Returns whether a region of several pieces (such as a wall with a door) hides the whole source.
 bool region_hides_everything(const Occluders& occluders, const Receiver& at, RegionId region, Workspace& scratch) {
     if (std::find(scratch.uncovering.begin(), scratch.uncovering.end(), region) != scratch.uncovering.end())
         return false;
@@ -137,8 +139,9 @@ bool region_hides_everything(const Occluders& occluders, const Receiver& at, Reg
     return false;
 }
 
-/// What a candidate hides: the pyramid over its part between the planes of the source and the receiver, added to the
-/// shadows if it hides some of the source. `all_the_way`: of a window, what lies beyond hides it, too.
+/// Returns how much of the source a candidate hides. If it is some of it, adds the pyramid over the part of the
+/// candidate between the planes of the source and the receiver to the shadows. `all_the_way`: the source is a window,
+/// and pieces behind its pane hide it, too.
 Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, bool all_the_way,
                  PieceId candidate, Workspace& scratch) {
     const ConvexPiece& piece = occluders.pieces()[candidate];
@@ -181,9 +184,10 @@ Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPie
     return hides;
 }
 
-/// Cuts what is lit by the shadows from the given one on; false if nothing is left.
+/// Subtracts the shadows from index `first` on from the lit part. Returns false if nothing is left.
 bool cut_lit(std::size_t first, Workspace& scratch) {
-    // Large ones first: they may leave nothing for the others to cut. Ties by position keep the order the same always.
+    // Large shadows first: they may leave nothing for the others to cut. Ties are resolved by position, so that the
+    // order is reproducible.
     std::sort(scratch.shadows.begin() + static_cast<std::ptrdiff_t>(first), scratch.shadows.end(),
               [](const Workspace::Shadow& a, const Workspace::Shadow& b) {
                   return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.first_plane < b.first_plane;
@@ -197,8 +201,8 @@ bool cut_lit(std::size_t first, Workspace& scratch) {
     return true;
 }
 
-/// The form factor of the source with nothing before it, weighted by its radiance. Of a part of the sky it depends on
-/// the normal alone.
+/// Form factor of the unoccluded source, weighted by its radiance. For a part of the sky it depends only on the normal
+/// and is cached.
 double whole_form_factor(const Occluders& occluders, PieceId source, const Normal& n, const Workspace& scratch,
                          const RelativeRadiance& radiance) {
     if (!occluders.is_distant(source) || occluders.is_window(source))
@@ -208,8 +212,8 @@ double whole_form_factor(const Occluders& occluders, PieceId source, const Norma
     return known;
 }
 
-/// The form factor to what the shadows leave, the first `cut` of which have cut the source already. With `fragments`
-/// given these are taken, and nothing is summed.
+/// Form factor to the visible part after all shadows. The first `cut` shadows have been subtracted already. If
+/// `fragments` is given, appends the visible fragments to it instead and returns 0.
 double finish(const Occluders& occluders, PieceId source, const Normal& n, std::size_t cut, Workspace& scratch,
               const PartLight& light, Fragments* fragments) {
     if (fragments) {
@@ -240,14 +244,13 @@ void clear_shadows(Workspace& scratch) {
     scratch.uncovering.clear();
 }
 
-/// Of what is in scratch.source, among all occluders.
+/// Form factor to the visible part of scratch.source, with occluders from the tree.
 double part_among_all(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
                       const PartLight& light, Fragments* fragments = nullptr) {
     clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
-    const bool in_scene =
-        !at.own.is_none() &&
-        !occluders.is_distant(source);  // what lies on the scene's hull stands between none of its points
+    // Surfaces on the scene's hull never occlude.
+    const bool in_scene = !at.own.is_none() && !occluders.is_distant(source);
     if (in_scene && occluders.has_nothing_inside())
         return finish(occluders, source, at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
@@ -266,13 +269,13 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
         scratch.outlines.clear();
     }
     make_region(occluders, at, source, scratch);
-    const auto visit = [&](Occluders::Size size) {  // from the receiver on: near walls hide most
+    const auto visit = [&](Occluders::Size size) {  // front to back from the receiver: near walls hide most
         return in_scene ? occluders.visit_inner(size, scratch.region, hides_everything, scratch.source[0])
                         : occluders.visit_region(size, scratch.region, hides_everything, scratch.source[0]);
     };
     if (visit(Occluders::Size::large)) return 0;
     const std::size_t large = scratch.shadows.size();
-    if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: no need to look at the small ones
+    if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: small pieces are irrelevant
     if (visit(Occluders::Size::small)) return 0;
     return finish(occluders, source, at.n, large > 1 ? large : 0, scratch, light, fragments);
 }

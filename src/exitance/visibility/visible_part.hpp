@@ -13,14 +13,14 @@
 
 namespace exitance {
 
-/// A place that light arrives at: its surface's plane group neither shades it nor counts as in its way.
+/// A point that receives light. Its own region neither shades it nor counts as an occluder.
 struct Receiver {
     Point x;       ///< Metres.
-    Normal n;      ///< Of length 1.
-    RegionId own;  ///< The region it lies on, or none (free space).
+    Normal n;      ///< Unit length.
+    RegionId own;  ///< The region that contains it, or none (free space).
 };
 
-/// Scratch memory of the functions below: one a thread, used again and again, so that no query allocates.
+/// Scratch memory of the functions below. Use one object per thread and reuse it, so that queries do not allocate.
 class VisibilityWorkspace {
   public:
     /// Convex polygons in one array of corners, grown and cut without freeing. Corners are relative to the receiver.
@@ -36,12 +36,12 @@ class VisibilityWorkspace {
             return std::span(corners).subspan(first, ends[i] - first);
         }
     };
-    /// An occluder's pyramid: the unit normals (pointing inwards) of the planes through the receiver and its edges.
+    /// The pyramid over an occluder: unit normals (pointing inwards) of the planes through the receiver and its edges.
     struct Shadow {
         std::uint32_t first_plane = 0, plane_count = 0;
-        double solid_angle = 0;     ///< Roughly; orders the occluders.
-        std::uint32_t outline = 0;  ///< Its polygon among the outlines,
-        bool reversed = false;      ///< which runs clockwise as seen from the receiver.
+        double solid_angle = 0;     ///< Approximate; used for sorting the occluders.
+        std::uint32_t outline = 0;  ///< Index of its polygon in `outlines`.
+        bool reversed = false;      ///< True if that polygon is clockwise as seen from the receiver.
     };
 
     std::vector<Vec3> source, source_pyramid, clipped, side;
@@ -53,15 +53,15 @@ class VisibilityWorkspace {
     std::vector<std::pair<double, double>> intervals;
     std::vector<PieceId> candidates;
     std::vector<double> heights;
-    std::vector<double> factors;  ///< Of sources that are all visible.
+    std::vector<double> factors;  ///< Form factors of fully visible sources.
     ConvexRegion region;
     RegionCover cover;
-    std::vector<RegionId> uncovering;  ///< Regions of several pieces that do not hide all of the source.
+    std::vector<RegionId> uncovering;  ///< Regions of several pieces already found not to hide the whole source.
     Shaft shaft;
 
-    /// What hid a source last, and is likely to hide it again: asked first, it saves the search. What it does not hide
-    /// is searched for as ever, so the answer does not depend on it; nor does it when the workspace comes from another
-    /// scene, since only pieces that there are are remembered.
+    /// The last piece that hid a source completely. It is tested first because it will probably hide the source again.
+    /// If it does not, the usual search follows, so the result does not depend on it. A workspace may be reused with
+    /// another scene, because indices that are out of range are discarded.
     PieceId& last_blocker(const Occluders& occluders, PieceId source) {
         Blocker& entry = blockers_[source.value % blockers_.size()];
         const bool known = entry.source == source && entry.blocker.value < occluders.pieces().size();
@@ -76,29 +76,31 @@ class VisibilityWorkspace {
     std::array<Blocker, 1024> blockers_;
 };
 
-/// How the visible part is found: by cutting the source, or by its boundary (edge_sum.hpp). Both are exact, and test
-/// each other; cutting is faster (10 occluders in view 10 and 12 microseconds, 72 of them 104 and 162).
+/// Method for the visible part: clipping the source (subtraction), or summing over its boundary (edge_sum.hpp). Both
+/// are exact and are tested against each other. Clipping is faster: 10 us against 12 us with 10 occluders in view, 104
+/// us against 162 us with 72.
 enum class VisiblePartMethod : std::uint8_t { subtraction, edge_sums };
 
-/// How light leaves the source, and how its visible part is found.
+/// Directional distribution of the source, and the method for its visible part.
 struct PartLight {
     PartLight(VisiblePartMethod m = VisiblePartMethod::subtraction) : method(m) {}
     PartLight(const RelativeRadiance& r) : radiance(r) {}
     VisiblePartMethod method = VisiblePartMethod::subtraction;
-    RelativeRadiance radiance;  ///< Where it is directed, form factors are weighted by it; parts are subtracted then.
+    RelativeRadiance radiance;  ///< If directed, form factors are weighted by it, and `subtraction` is used.
 };
 
-/// Form factor from a receiver to the visible part of one convex piece of a source: exact but for rounding, occluders
-/// taken from the tree. What lies in the plane of the source or on the receiver's own region never blocks; everything
-/// else blocks from both sides. 0 behind the source.
+/// Form factor from a receiver to the visible part of one convex piece of a source, exact except for rounding.
+/// Occluders are searched in the tree. Pieces in the plane of the source and the receiver's own region never block;
+/// everything else blocks from both sides. Returns 0 behind the source.
 ///
-/// The source is cut by the planes through x and the occluders' edges; what falls inside an occluder's pyramid goes.
-/// Source: [Nishita85], as polygon subtraction. O(f k) for k occluders in the pyramid over the source and f fragments.
+/// The source is clipped by the planes through x and the occluders' edges, and the parts inside an occluder's pyramid
+/// are removed. Source: [Nishita85], as polygon subtraction. O(f k) for k occluders in the pyramid over the source and
+/// f fragments.
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
                            const PartLight& light = {});
 
-/// The same with occluders given by the caller: all pieces that may reach into the pyramid, in any order, harmless ones
-/// included. Pieces of the receiver's and of the source's own region may be among them.
+/// Like the above, with given occluders: all pieces that may reach into the pyramid, in any order. Other pieces,
+/// including those of the receiver's and the source's own regions, do no harm.
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
                            std::span<const PieceId> candidates, VisibilityWorkspace& scratch,
                            const PartLight& light = {});

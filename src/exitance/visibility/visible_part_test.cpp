@@ -18,11 +18,11 @@ namespace {
 
 using test::Face;
 
-std::vector<Point> rectangle(double x0, double y0, double x1, double y1, double z) {  // front down
+std::vector<Point> rectangle(double x0, double y0, double x1, double y1, double z) {  // front faces down
     return {{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}};
 }
 
-/// Form factor from x to what is visible of the faces that emit.
+/// Form factor from x to the visible part of the emitting faces.
 double visible(const std::vector<Face>& faces, const Point& x, const Normal& n, RegionId own = {}) {
     const Scene scene = test::make(faces);
     const Occluders occluders(scene);
@@ -59,8 +59,8 @@ TEST(VisiblePart, UnderABlockerIsTheSourceLessTheBlockersShadow) {
     }
 }
 
-/// The irradiance (first band) at the points of a reference file against this, as the largest difference over the
-/// largest value; negative when the files are not there.
+/// Largest difference from the irradiance (first band) in a reference file, relative to the largest value; negative if
+/// the files are missing.
 double largest_difference(const std::string& scene_name, const std::string& reference_name) {
     const std::string shared = test::shared_folder();
     std::ifstream reference(shared + "/reference/" + reference_name);
@@ -89,7 +89,7 @@ double largest_difference(const std::string& scene_name, const std::string& refe
 
 TEST(VisiblePart, MeetsTheAnalyticBlockerReferences) {
     for (const std::string height : {"0p7", "1p4"})
-        for (const std::string points : {"", "_grid"})  // printed with nine digits
+        for (const std::string points : {"", "_grid"})  // reference values have nine digits
             EXPECT_LT(largest_difference("blocker_h" + height + ".obj", "blocker_h" + height + points + ".csv"), 5e-9);
 }
 
@@ -113,15 +113,15 @@ TEST(VisiblePart, AgreesWithThirtyDigitValues) {
         0);
 }
 
-TEST(VisiblePart, IgnoresWhatSharesThePlaneOfTheSourceOrOfTheReceiver) {
+TEST(VisiblePart, IgnoresOccludersInThePlaneOfTheSourceOrTheReceiver) {
     const std::vector<Point> light = rectangle(-1, -1, 1, 1, 2);
     const double open = point_to_polygon({0, 0, 0}, {0, 0, 1}, light);
     const std::vector<Point> floor = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}};
     const std::vector<Point> foot_up = {{0.5, -5, 0}, {0.5, 5, 0}, {0.5, 5, 1e-3}, {0.5, -5, 1e-3}};
     EXPECT_EQ(visible({{light, 1}, {rectangle(-5, -5, 5, 5, 2)}}, {0, 0, 0}, {0, 0, 1}), open);  // light in the ceiling
     EXPECT_EQ(visible({{light, 1}, {floor}}, {0, 0, 0}, {0, 0, 1}), open);
-    EXPECT_EQ(visible({{light, 1}, {foot_up}}, {0, 0, 0}, {0, 0, 1}), open);  // too low to reach in
-    // walls that end at the light's edges, and one that the point leans on
+    EXPECT_EQ(visible({{light, 1}, {foot_up}}, {0, 0, 0}, {0, 0, 1}), open);  // too low to reach above the horizon
+    // walls that end at the light's edges, and one that contains the point
     EXPECT_EQ(visible({{light, 1}, {{{1, -5, 0}, {1, 5, 0}, {1, 5, 2}, {1, -5, 2}}}}, {0, 0, 0}, {0, 0, 1}), open);
     EXPECT_EQ(visible({{light, 1}, {{{0, -5, 0}, {0, 5, 0}, {0, 5, 2}, {0, -5, 2}}}}, {0, 0, 0}, {0, 0, 1}), open);
 }
@@ -131,7 +131,7 @@ TEST(VisiblePart, StaysTheSameWhenOccludersAndSourcesAreCut) {
     const std::vector<Point> light = rectangle(-1, -1, 1, 1, 1.5);
     for (int trial = 0; trial < 20; ++trial) {
         std::vector<Face> whole = test::triangle_soup(12, 1.0, 50 + trial, {0, 0, 0.7}), cut;
-        for (const Face& face : whole) {  // of different material, so that the pieces do not join again
+        for (const Face& face : whole) {  // different materials, so that the pieces are not joined again
             const auto& c = face.corners;
             const Point m = c[0] + random.uniform() * (c[1] - c[0]);
             cut.push_back({{c[0], m, c[2]}});
@@ -196,7 +196,7 @@ TEST(VisiblePart, OfAConcaveLightWithATableInFront) {
     EXPECT_GT(f, 0.001);
 }
 
-TEST(Occluders, KnowWhatIsCovered) {
+TEST(Occluders, DetectCoveredPoints) {
     const std::vector<Point> floor = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}};
     const std::vector<Point> bottom = rectangle(0, 0, 1, 1, 0),
                              rug = {{-2, -2, 2e-6}, {-1, -2, 2e-6}, {-1, -1, 2e-6}, {-2, -1, 2e-6}};
@@ -212,7 +212,7 @@ TEST(Occluders, KnowWhatIsCovered) {
     EXPECT_FALSE(Occluders(sheet).is_covered({0.5, 0.5, 0}, {0, 0, 1}, sheet.surfaces()[SurfaceId(0)].region));
 }
 
-TEST(Occluders, KnowThatTheWallsOfARoomStandBetweenNoneOfItsPoints) {
+TEST(Occluders, TheWallsOfAConvexRoomOccludeNothing) {
     std::vector<Face> faces = test::closed_box({}, {2, 3, 1});
     const Scene box = test::make(faces);
     EXPECT_TRUE(Occluders(box).has_nothing_inside());
@@ -229,7 +229,7 @@ TEST(Occluders, KnowThatTheWallsOfARoomStandBetweenNoneOfItsPoints) {
     EXPECT_EQ(all, 7u);
 }
 
-TEST(DirectLight, OfManyOpenEmittersIsThatOfEachByItself) {
+TEST(DirectLight, OfManyUnoccludedEmittersIsTheSumOfEach) {
     std::vector<Face> faces = test::closed_box({}, {2, 3, 1});
     for (std::size_t i = 0; i < faces.size(); ++i) faces[i].exitance = 1 + static_cast<double>(i);
     const Scene scene = test::make(faces);
@@ -247,7 +247,7 @@ TEST(DirectLight, OfManyOpenEmittersIsThatOfEachByItself) {
     for (const DirectLight::Emitter& e : direct.emitters())
         by_itself += e.exitance[0] * direct.form_factor({{0.3, 0.2, 0}, n, own}, e, scratch);
     for (const ReceiverLight& l : {light, part})
-        EXPECT_NEAR(direct.irradiance(l, {0.3, 0.2, 0}, scratch)[0], by_itself, 1e-11);  // the batch's 1e-12
+        EXPECT_NEAR(direct.irradiance(l, {0.3, 0.2, 0}, scratch)[0], by_itself, 1e-11);  // accuracy of the batch: 1e-12
 }
 
 }  // namespace

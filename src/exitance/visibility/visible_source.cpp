@@ -8,11 +8,13 @@
 namespace exitance {
 namespace {
 
-constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as none: scenes are full of aligned edges.
-/// Of the point's height over the source: what rises above it is not projected, but taken to reach everywhere.
-constexpr double below = 1 - 1e-9;
-constexpr std::size_t few_shadows = 8;  ///< Cut from the source in turn; more are taken from it one by one.
-constexpr double least_left = 1e-6;     ///< Of the source: the difference of two sums has digits to tell it.
+constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as zero: scenes have many aligned edges.
+/// Share of the point's height over the source: blockers that reach higher are not projected but treated as unbounded.
+constexpr double max_projected_height = 1 - 1e-9;
+/// Up to this many shadows are cut from the source in turn; more are subtracted one by one.
+constexpr std::size_t max_shadows_in_turn = 8;
+/// Share of the source's form factor below which the difference of two sums is too inaccurate.
+constexpr double min_lit_share = 1e-6;
 
 }  // namespace
 
@@ -54,9 +56,10 @@ void VisibleSource::look_from(const Point& x) {
     whole_.close();
 }
 
-/// A box about what the blocker covers of the source's plane; false when that is nothing, or beside the source.
+/// Computes a box around the blocker's projection onto the source's plane. Returns false if that is empty or outside
+/// the source.
 bool VisibleSource::find_box(const Body& body, Pyramid& pyramid) const {
-    const double highest = below * x_.z;
+    const double highest = max_projected_height * x_.z;
     bool any_high = false, all_high = true;
     double low_u = HUGE_VAL, low_v = HUGE_VAL, high_u = -HUGE_VAL, high_v = -HUGE_VAL;
     const Vec3* const points = points_.data() + body.first_point;
@@ -76,8 +79,8 @@ bool VisibleSource::find_box(const Body& body, Pyramid& pyramid) const {
     return across > 0 && along > 0;
 }
 
-/// Adds the lines of a blocker's silhouette as seen from the point. False when it is seen edge-on; `inside` when the
-/// point lies within a body.
+/// Adds the lines of a blocker's silhouette as seen from the point. Returns false if the blocker is seen edge-on. Sets
+/// `inside` if the point is inside a solid.
 bool VisibleSource::add_pyramid(const Body& body, Pyramid& pyramid, bool& inside) {
     const ConvexBlocker& shape = *body.shape;
     const std::size_t count = shape.faces.size();
@@ -97,7 +100,7 @@ bool VisibleSource::add_pyramid(const Body& body, Pyramid& pyramid, bool& inside
             left == static_cast<bool>(in_front_[static_cast<std::size_t>(e.right)]))
             continue;
         const Vec3 a = points_[body.first_point + e.a] - x_, b = points_[body.first_point + e.b] - x_;
-        // A face seen from its front runs counter-clockwise: b x a points inwards.
+        // A face seen from its front is counter-clockwise, so b x a points inwards.
         const Vec3 plane = left ? cross(b, a) : cross(a, b);
         lines_.push_back({plane.x, plane.y, -plane.z * x_.z,
                           on_plane * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z))});
@@ -113,7 +116,7 @@ void VisibleSource::add_edges(const Polygon& polygon, double weight) {
         terms_.add(n_, corner(i), corner(i + 1 == polygon.count ? 0 : i + 1), weight);
 }
 
-/// The part of a convex polygon with sign * height >= 0. Both parts meet in the same points.
+/// The part of a convex polygon with sign * height >= 0. For either sign the cut points are identical.
 void VisibleSource::cut(const Polygon& polygon, const double* heights, double sign, Polygon& out) {
     out.clear();
     for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -141,7 +144,8 @@ VisibleSource::Sides VisibleSource::measure(const Polygon& polygon, const Line& 
     return {any_in, any_out};
 }
 
-/// Has a line of a pyramid all of a fragment outside? The line that had the last one is asked first.
+/// Returns whether some line of a pyramid has the whole fragment outside. Tests the line that succeeded last time
+/// first.
 bool VisibleSource::misses(const Polygon& fragment, Pyramid& pyramid) const {
     const auto is_outside = [&](std::uint32_t k) {
         const Line& line = lines_[k];
@@ -157,15 +161,15 @@ bool VisibleSource::misses(const Polygon& fragment, Pyramid& pyramid) const {
     return false;
 }
 
-/// Adds the lines of a pyramid that run through a fragment to cuts_.
+/// Appends to cuts_ the lines of a pyramid that cross a fragment.
 void VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
     double heights[Polygon::most + Polygon::lanes];
     for (std::uint32_t k = pyramid.first; k < pyramid.last; ++k)
         if (measure(fragment, lines_[k], heights).any_out) cuts_.push_back(k);
 }
 
-/// Adds the edges of what the pyramids named in reaching_[first, last) leave of a fragment. Those that miss it miss all
-/// that is cut from it, too.
+/// Adds the contour of what remains of a fragment after subtracting the pyramids reaching_[first, last). Pyramids that
+/// miss the fragment miss all its parts, too, so they are dropped here.
 void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole) {
     const std::size_t mark = pool_used_, first_cut = cuts_.size(), first_left = reaching_.size();
     for (std::size_t i = first; i < last; ++i) {
@@ -173,7 +177,7 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
         if (pyramids_[p].is_beside(fragment) || misses(fragment, pyramids_[p])) continue;
         if (reaching_.size() == first_left) {
             find_cuts(fragment, pyramids_[p]);
-            if (cuts_.size() == first_cut) {  // it lies within
+            if (cuts_.size() == first_cut) {  // the fragment is inside the pyramid
                 anything_hidden_ = true;
                 hidden_by_one_ |= is_whole;
                 return;
@@ -204,10 +208,10 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     }
     const std::size_t end = pool_used_;
     cuts_.resize(first_cut);
-    if (!hidden) {  // beside the pyramid after all
+    if (!hidden) {  // outside the pyramid after all
         pool_used_ = mark;
         subtract(fragment, first_left + 1, first_left + left, is_whole);
-    } else if (left == 1) {  // nothing more is cut: the hidden part may count negative
+    } else if (left == 1) {  // the last pyramid: subtract the hidden part's contour instead of cutting
         anything_hidden_ = anything_lit_ = true;
         add_edges(fragment, weight_);
         add_edges(*polygon, -weight_);
@@ -223,7 +227,7 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     reaching_.resize(first_left);
 }
 
-/// The part of the source in a pyramid.
+/// Computes the part of the source inside a pyramid. Sets `is_whole` if that is the whole source.
 void VisibleSource::clip_source(const Pyramid& pyramid, Polygon& inside, bool& is_whole) const {
     double heights[Polygon::most + Polygon::lanes];
     Polygon spare;
@@ -239,8 +243,9 @@ void VisibleSource::clip_source(const Pyramid& pyramid, Polygon& inside, bool& i
     }
 }
 
-/// Clips the source to each pyramid in reaching_, whose box shrinks to what it hides of the source: that of a pyramid
-/// over things as high as the point had no end. Drops those that hide nothing. False when one hides everything.
+/// Clips the source to each pyramid in reaching_ and drops those that hide nothing. Each box shrinks to the pyramid's
+/// shadow on the source; boxes of blockers as high as the point were unbounded. Returns false if one pyramid hides
+/// everything.
 bool VisibleSource::find_shadows() {
     if (shadows_.size() < pyramids_.size()) shadows_.resize(pyramids_.size());
     bool is_whole = false;
@@ -257,9 +262,10 @@ bool VisibleSource::find_shadows() {
     return !is_whole;
 }
 
-/// Takes from all of the source what the pyramids in reaching_ hide, of each what none before it does. Where many small
-/// shadows lie on a large source, each meets few others, and what is left of the source would be hundreds of slivers.
-/// False, and nothing done, when next to nothing is left: whether that is dark is for exact cutting to tell.
+/// Subtracts the shadows of the pyramids in reaching_ from the whole source, each without the parts that earlier ones
+/// hide. This is used if many small shadows lie on a large source: each overlaps few others, whereas cutting the source
+/// in turn would leave hundreds of slivers. Returns false, with no effect, if nearly nothing remains visible: exact
+/// cutting must then decide whether anything does.
 bool VisibleSource::take_shadows() {
     if (!find_shadows()) return false;
     put_largest_first();
@@ -272,13 +278,13 @@ bool VisibleSource::take_shadows() {
     }
     weight_ = 1;
     anything_hidden_ = !reaching_.empty();
-    if (terms_.sum() > least_left * all) return anything_lit_ = true;
+    if (terms_.sum() > min_lit_share * all) return anything_lit_ = true;
     terms_.clear();
     anything_lit_ = anything_hidden_ = false;
     return false;
 }
 
-/// What hides much goes first: less is left to be cut.
+/// Sorts by hidden area, largest first, so that less is left to be cut.
 void VisibleSource::put_largest_first() {
     std::sort(reaching_.begin(), reaching_.end(), [&](std::uint32_t a, std::uint32_t b) {
         const double of_a = pyramids_[a].overlap, of_b = pyramids_[b].overlap;
@@ -294,7 +300,7 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
     pool_used_ = 0;
     cuts_.clear();
     for (const Body& body : bodies_) {
-        // What misses the source as a whole would miss every part of it, and most of many blockers do.
+        // A blocker that misses the whole source misses every part of it; most of many blockers do.
         Pyramid pyramid{};
         if (!find_box(body, pyramid)) continue;
         const std::size_t mark = lines_.size();
@@ -309,7 +315,7 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
     reaching_.clear();
     for (std::uint32_t k = 0; k < pyramids_.size(); ++k) reaching_.push_back(k);
     if (reaching_.size() > 2) put_largest_first();
-    if (reaching_.size() <= few_shadows || !take_shadows()) subtract(whole_, 0, reaching_.size(), true);
+    if (reaching_.size() <= max_shadows_in_turn || !take_shadows()) subtract(whole_, 0, reaching_.size(), true);
     seen = !anything_lit_     ? (hidden_by_one_ ? Seen::nothing : Seen::nothing_past_several)
            : anything_hidden_ ? Seen::part
                               : Seen::all;

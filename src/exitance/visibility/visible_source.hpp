@@ -12,34 +12,35 @@
 
 namespace exitance {
 
-/// How much of a source a point sees. What one blocker hides alone stays hidden until one of its critical lines is
-/// crossed; what several hide together may show at an event of three edges.
+/// Visible share of a source. If one blocker hides all of it (`nothing`), this holds until one of the blocker's
+/// critical lines is crossed. If several do so together (`nothing_past_several`), parts may appear at a three-edge
+/// event.
 enum class Seen : std::uint8_t { nothing, nothing_past_several, part, all };
 
-/// The form factor from points to the visible part of one convex source behind given blockers, exact but for rounding.
-/// What lies in a blocker's pyramid is cut away by the planes through the point and the edges of the blocker's
-/// silhouette; Lambert's contour sum does the rest. All is done in the source's plane, where blockers are projected
-/// and most are told apart from a fragment by their boxes. Source: [Nishita85]. One object serves one thread and many
-/// pairs.
+/// Form factor from points to the visible part of one convex source behind given blockers, exact except for rounding.
+/// The parts inside a blocker's pyramid are clipped away by the planes through the point and the blocker's silhouette
+/// edges; Lambert's contour sum gives the form factor of the rest. All computation is in the source's plane, where
+/// blockers are projected and most are separated from a fragment by bounding boxes. Source: [Nishita85]. One object per
+/// thread; can be reused for many pairs.
 class VisibleSource {
   public:
-    /// Takes a source and the blockers that may stand in its light. All of every blocker must lie in front of the
-    /// source's plane, and all of the source in front of the plane of the points to come. Keeps references.
+    /// Sets a source and the blockers that may be in between. Every blocker must be entirely in front of the source's
+    /// plane, and the source entirely in front of the planes of the points passed later. Keeps references.
     void set(std::span<const Point> source, std::span<const ConvexBlocker* const> blockers);
 
-    /// Form factor from x (normal n) to the visible part, and how much that is. O(blockers + fragments): about 0.1 us
-    /// for one body in the way.
+    /// Returns the form factor from x (normal n) to the visible part, and sets `seen`. O(blockers + fragments): about
+    /// 0.1 us for one body in between.
     double operator()(const Point& x, const Normal& n, Seen& seen);
 
-    /// The same as if nothing stood in the way.
+    /// Form factor without occluders.
     double unoccluded(const Point& x, const Normal& n);
 
-    /// Does one blocker alone hide all of the source from all of a convex receiver? Certain when true: segments between
-    /// the corners of both decide for all segments.
+    /// Returns whether one blocker alone hides all of the source from all of a convex receiver. True is certain: the
+    /// segments between the corners of both decide for all segments.
     bool is_hidden_from(std::span<const Point> receiver);
 
   private:
-    /// A convex part of the source, in coordinates of its plane about the foot of the point at hand.
+    /// A convex part of the source, in coordinates of its plane with the origin at the foot of the current point.
     struct Polygon {
         static constexpr std::size_t most = 24, lanes = 4;
         std::size_t count;
@@ -56,23 +57,23 @@ class VisibleSource {
             for (std::size_t i = 0; i + 1 < lanes && count > 0; ++i)
                 u[count + i] = u[count - 1], v[count + i] = v[count - 1];
         }
-        void copy(const Polygon& other);  ///< No more than is used.
+        void copy(const Polygon& other);  ///< Copies only the used entries.
     };
-    /// A blocker in the source's coordinates.
+    /// A blocker in the coordinates of the source.
     struct Body {
         const ConvexBlocker* shape;
         std::uint32_t first_point, first_face;
     };
-    /// Where a plane through the point meets the source's: a u + b v + c > 0 inside the pyramid, by more than `none`.
+    /// Intersection of a plane through the point with the source's plane: a u + b v + c > none inside the pyramid.
     struct Line {
         double a, b, c, none;
     };
     struct Pyramid {
-        std::uint32_t first, last;  ///< Its lines.
-        std::uint32_t likely;       ///< The line that had the last fragment outside.
+        std::uint32_t first, last;  ///< Range in `lines_`.
+        std::uint32_t likely;       ///< The line that separated the last fragment; tested first.
         double low_u, high_u, low_v, high_v;
-        double overlap;                           ///< Of its box with the source's, m^2.
-        bool is_beside(const Polygon& p) const {  ///< By their boxes.
+        double overlap;                           ///< Overlap of its box with the source's, m^2.
+        bool is_beside(const Polygon& p) const {  ///< Tests the bounding boxes.
             return (low_u >= p.high_u) | (high_u <= p.low_u) | (low_v >= p.high_v) | (high_v <= p.low_v);
         }
     };
@@ -96,24 +97,25 @@ class VisibleSource {
     static void cut(const Polygon& polygon, const double* heights, double sign, Polygon& out);
 
     std::span<const Point> source_;
-    PlaneFrame frame_{{}, {0, 0, 1}};  ///< Of the source.
-    std::vector<Vec2> corners_;        ///< Of the source, in that frame.
+    PlaneFrame frame_{{}, {0, 0, 1}};  ///< Frame of the source.
+    std::vector<Vec2> corners_;        ///< Corners of the source, in that frame.
     std::vector<Body> bodies_;
-    std::vector<Vec3> points_;  ///< Of the bodies: two coordinates in the source's plane, and the height over it.
+    /// Corners of the bodies: two coordinates in the source's plane, and the height over it.
+    std::vector<Vec3> points_;
     std::vector<Plane> faces_;
     double size_ = 0;
-    Vec3 x_;    ///< The point at hand.
+    Vec3 x_;    ///< The current point.
     Normal n_;  ///< Its normal.
     Polygon whole_;
     std::vector<Line> lines_;
     std::vector<Pyramid> pyramids_;
-    std::vector<std::uint32_t> reaching_;  ///< A stack: pyramids that may hide some of the fragments at hand.
+    std::vector<std::uint32_t> reaching_;  ///< A stack of pyramids that may hide some of the current fragments.
     std::vector<std::uint8_t> in_front_;
     std::vector<Polygon> pool_;  ///< A stack of fragments.
     std::size_t pool_used_ = 0;
-    std::vector<Polygon> shadows_;     ///< On the source, one a pyramid.
-    std::vector<std::uint32_t> cuts_;  ///< Lines that run through the fragments on the stack.
-    double weight_ = 1;                ///< Of fragments that are left.
+    std::vector<Polygon> shadows_;     ///< Shadows on the source, one per pyramid.
+    std::vector<std::uint32_t> cuts_;  ///< Lines that cross the fragments on the stack.
+    double weight_ = 1;                ///< Weight of the remaining fragments in the sum.
     bool anything_lit_ = false, anything_hidden_ = false, hidden_by_one_ = false;
     EdgeTerms terms_;
 };

@@ -21,7 +21,7 @@ using test::sheet;
 
 using Outline = std::vector<Point>;
 
-/// Looks down from z = 2 on the plane z = 0.
+/// Faces down from z = 2 to the plane z = 0.
 const Outline ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
 constexpr Normal up = {0, 0, 1};
 
@@ -45,7 +45,7 @@ TEST(VisibleSource, ASheetHidesItsShadow) {
     EXPECT_NEAR(F, point_to_polygon({0, 0, 0}, up, ceiling) - point_to_polygon({0, 0, 0}, up, shadow), 1e-15);
 }
 
-TEST(VisibleSource, KnowsWhenOneBlockerHidesAllAndWhenSeveralDo) {
+TEST(VisibleSource, DistinguishesHidingByOneBlockerAndBySeveral) {
     const ConvexBlocker whole = sheet(level_square(0, 0, 1, 0.6));
     const ConvexBlocker left = sheet(level_square(-0.5, 0, 1, 0.55)), right = sheet(level_square(0.5, 0, 1, 0.55));
     const ConvexBlocker aside = sheet(level_square(3, 0, 1, 0.5));

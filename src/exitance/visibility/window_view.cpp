@@ -11,7 +11,8 @@ bool looks_out_on_faces(const Occluders& occluders, PieceId source) {
     const Box& box = occluders.scene().box();
     const Point farthest{plane.n.x > 0 ? box.lo.x : box.hi.x, plane.n.y > 0 ? box.lo.y : box.hi.y,
                          plane.n.z > 0 ? box.lo.z : box.hi.z};
-    constexpr double in_plane = 1e-6;  // of the scene's size, as panes are held to be where their neighbours are
+    // Share of the scene's size, the tolerance for panes being in one plane with their neighbours.
+    constexpr double in_plane = 1e-6;
     return plane.signed_distance(farthest) < -in_plane * occluders.scene().size();
 }
 
@@ -20,7 +21,7 @@ void WindowView::clip_by(const Plane& plane, std::vector<Point>& polygon) {
     std::swap(polygon, buffer_);
 }
 
-/// side: 1 where `edges` are the window's, else -1.
+/// side: 1 if `edges` are the window's, -1 if they are the receiver's.
 void WindowView::add_separating_planes(std::span<const Point> edges, std::span<const Point> corners, double side,
                                        double slack) {
     for (std::size_t i = 0, m = edges.size(); i < m; ++i) {
@@ -28,7 +29,7 @@ void WindowView::add_separating_planes(std::span<const Point> edges, std::span<c
         for (const Point& c : corners) {
             const Vec3 normal = cross(b - a, c - a);
             const double length = norm(normal);
-            if (length <= 1e-12 * norm(b - a) * norm(c - a) || length == 0) continue;  // c stands in line with the edge
+            if (length <= 1e-12 * norm(b - a) * norm(c - a) || length == 0) continue;  // c is collinear with the edge
             Plane plane{normal / length, dot(normal, a) / length};
             const auto is_above = [&](std::span<const Point> points, double sign) {
                 return std::all_of(points.begin(), points.end(),
@@ -43,7 +44,7 @@ void WindowView::add_separating_planes(std::span<const Point> edges, std::span<c
     }
 }
 
-/// False where the two do not face each other.
+/// Sets the planes of the view. Returns false if the receiver and the window do not face each other.
 bool WindowView::set(const Occluders& occluders, const Facet& receiver, PieceId window) {
     const double slack = occluders.rounding();
     const Plane receiver_plane{receiver.n, dot(receiver.n, receiver.corners[0])};

@@ -8,18 +8,18 @@
 
 namespace exitance {
 
-/// Is a source a window (Occluders::windows) beyond which there may be faces: a ground, the outer part of a reveal,
-/// another house? Then what it shows of the sky is what no face hides on the whole way out, before and behind the
-/// pane. By the scene's box: true too often at worst, which costs time alone.
+/// Returns whether a source is a window (Occluders::windows) with possible occluders outside: a ground, the outer part
+/// of a reveal, another house. The sky seen through it is then what no face hides, on either side of the pane. Tested
+/// with the scene's box: may return true unnecessarily, which costs only time.
 bool looks_out_on_faces(const Occluders& occluders, PieceId source);
 
-/// What stands beyond a window, for all points of a convex receiver. A line from the receiver through the window stays,
-/// behind the pane, on the window's side of every plane that separates the two, through an edge of one and a corner of
-/// the other. Reusable, keeps its memory.
+/// Finds the occluders beyond a window for all points of a convex receiver. A line from the receiver through the window
+/// stays, behind the pane, on the window's side of every separating plane through an edge of one and a corner of the
+/// other. Can be reused without new allocations.
 class WindowView {
   public:
-    /// Adds to `candidates` the pieces that may hide sky behind a window, those that are in it left out. With `from`
-    /// given only these are looked at.
+    /// Adds to `candidates` the pieces that may hide sky behind a window, without duplicates of those already in it. If
+    /// `from` is given, only those pieces are tested.
     void add(const Occluders& occluders, const Facet& receiver, PieceId window, std::vector<PieceId>& candidates);
     void add(const Occluders& occluders, const Facet& receiver, PieceId window, std::span<const PieceId> from,
              std::vector<PieceId>& candidates);

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// A convex polygon on its way down.
+/// A convex polygon that is being inserted.
 struct Part {
     std::vector<Point> outline;
     Plane plane;
@@ -30,7 +30,7 @@ Sides sides_of(const Part& part, const Plane& plane, double thickness) {
     return out;
 }
 
-/// The parts of a polygon on both sides of a plane that it crosses. Corners within the thickness belong to both.
+/// Splits a polygon at a plane that it crosses. Corners within the thickness belong to both parts.
 std::pair<Part, Part> cut(const Part& part, const Plane& plane, double thickness) {
     std::pair<Part, Part> out{{{}, part.plane, part.piece}, {{}, part.plane, part.piece}};
     const std::size_t n = part.outline.size();
@@ -69,7 +69,7 @@ struct BspTree::Builder {
                 cuts += sides.is_cut();
                 balance += static_cast<double>(sides.front) - static_cast<double>(sides.behind);
             }
-            constexpr double weight_of_balance = 0.3;  // one cut costs about three places out of balance
+            constexpr double weight_of_balance = 0.3;  // one cut costs as much as an imbalance of about three polygons
             const double cost = cuts + weight_of_balance * std::abs(balance);
             if (cost < least) least = cost, best = i;
         }
@@ -127,7 +127,7 @@ BspTree::BspTree(const Occluders& occluders, std::size_t tries, std::uint64_t se
     std::vector<Part> parts;
     for (PieceId p : occluders.pieces().ids()) {
         const auto corners = occluders.corners(p);
-        // A piece may leave its own plane by rounding; its thickness says by how much.
+        // A piece may deviate from its own plane by its thickness, because of rounding.
         thickness_ = std::max(thickness_, occluders.pieces()[p].thickness);
         parts.push_back({{corners.begin(), corners.end()}, occluders.pieces()[p].plane, p});
     }
@@ -144,7 +144,7 @@ std::size_t BspTree::memory_bytes() const {
     return nodes_.size() * sizeof(Node) + fragments_.size() * sizeof(Fragment) + corners_.size() * sizeof(Point);
 }
 
-/// Does a point of the node's plane lie on the fragment?
+/// Returns whether a point in the node's plane is on the fragment.
 bool BspTree::hits(const Fragment& fragment, const Node& node, const Point& p) const {
     const auto corners = outline(fragment);
     const double sign = fragment.faces_front ? 1 : -1;
@@ -157,9 +157,10 @@ bool BspTree::hits(const Fragment& fragment, const Node& node, const Point& p) c
 
 namespace {
 
-/// How a ray's stretch [first, last] lies to a plane. It begins in front of it, behind it or in it, and from there
-/// leads away, along, or towards it; and then crosses it before the stretch, within it or beyond: thirteen cases, of
-/// which the near side alone, the far side alone, both, or both without the plane between them are to be looked at.
+/// Position of a ray's stretch [first, last] relative to a plane. The ray starts in front of the plane, behind it or in
+/// it, and leads away from it, along it or towards it; in the last case it crosses the plane before, within or beyond
+/// the stretch. In each of the thirteen cases the ray visits the near side, the far side, or both, with or without the
+/// plane in between.
 enum class RayCase : std::uint8_t {
     front_away,
     front_along,
@@ -176,7 +177,8 @@ enum class RayCase : std::uint8_t {
     in_along,
 };
 
-/// `height` of the ray's origin, `rise` a length of its direction; `crossing` is set where there is one.
+/// Classifies a ray. `height`: of its origin over the plane, metres; `rise`: change of height per length of the
+/// direction. Sets `crossing` if the ray crosses the plane.
 RayCase classify(double height, double rise, double thickness, double first, double last, double& crossing) {
     if (std::abs(height) <= thickness)
         return rise > 0 ? RayCase::in_upwards : rise < 0 ? RayCase::in_downwards : RayCase::in_along;
@@ -195,7 +197,7 @@ BspTree::Hit BspTree::nearest(const Point& origin, const Vec3& direction, double
     struct Stretch {
         std::uint32_t node;
         double first, last;
-        bool is_plane;  ///< The node's own fragments, at `first`.
+        bool is_plane;  ///< Visit the node's own fragments, at `first`.
     };
     Hit best;
     if (nodes_.empty()) return best;
@@ -203,7 +205,7 @@ BspTree::Hit BspTree::nearest(const Point& origin, const Vec3& direction, double
     const auto later = [&](std::uint32_t n, double first, double last) {
         if (n != none && first <= last) stack.push_back({n, first, last, false});
     };
-    const double slack = thickness_ / norm(direction);  // fragments reach so far beyond the planes that cut them
+    const double slack = thickness_ / norm(direction);  // fragments extend this far beyond the planes that cut them
     while (!stack.empty()) {
         const Stretch s = stack.back();
         stack.pop_back();
@@ -232,7 +234,7 @@ BspTree::Hit BspTree::nearest(const Point& origin, const Vec3& direction, double
             case RayCase::in_downwards:
                 later(node.behind, s.first, s.last);
                 break;
-            case RayCase::in_along:  // what lies in the plane is met edge on: by no ray
+            case RayCase::in_along:  // polygons in the plane are edge-on: no ray hits them
                 later(node.behind, s.first, s.last);
                 later(node.front, s.first, s.last);
                 break;

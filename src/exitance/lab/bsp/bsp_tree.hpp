@@ -9,11 +9,11 @@
 
 namespace exitance {
 
-/// A binary space partition of a scene's polygons: every node's plane is that of a polygon, which cuts what it crosses
-/// into fragments. A fragment keeps the piece that it is of. From any point the nodes have an order in which nothing
-/// hides what comes before it. Source: [Fuchs80], as the thesis [Gatenby95] uses it.
+/// Binary space partition (BSP) of a scene's polygons. Each node's plane is the plane of a polygon and cuts the
+/// polygons that cross it into fragments. Each fragment records its piece. From any viewpoint, the tree gives an order
+/// of the nodes in which no node hides an earlier one. Source: [Fuchs80], as used in the thesis [Gatenby95].
 ///
-/// Occluders and shafts answer what this answers, faster; it is here so that the thesis's structures can be measured.
+/// Occluders and Shaft answer the same queries faster. This class exists to measure the data structures of the thesis.
 class BspTree {
   public:
     static constexpr std::uint32_t none = 0xffffffffu;
@@ -21,7 +21,7 @@ class BspTree {
     struct Fragment {
         std::uint32_t first_corner = 0, corner_count = 0;
         PieceId piece;
-        bool faces_front = true;  ///< Its front is the front of its node's plane.
+        bool faces_front = true;  ///< True if its front is the front of its node's plane.
     };
     struct Node {
         Plane plane;
@@ -30,9 +30,12 @@ class BspTree {
         std::uint16_t depth = 0;
     };
 
-    /// Of all convex pieces. A node takes, of up to `tries` pieces drawn by lot, the plane that cuts the fewest others,
-    /// and of those the one that leaves both sides most alike. `thickness` (metres): what is nearer to a plane lies in
-    /// it; 0: a few roundings of the scene's size. O(n log n) as a rule, O(n^2) fragments at worst.
+    /// Builds the tree from all convex pieces. For each node, chooses among up to `tries` randomly sampled pieces the
+    /// plane that cuts the fewest others; among equals, the one that divides the rest most evenly.
+    /// tries  number of candidate planes per node
+    /// seed  of the random samples
+    /// thickness  metres: points nearer to a plane than this are in the plane; 0: a few roundings of the scene's size
+    /// Usually O(n log n); O(n^2) fragments in the worst case.
     explicit BspTree(const Occluders& occluders, std::size_t tries = 8, std::uint64_t seed = 1, double thickness = 0);
 
     std::span<const Node> nodes() const { return nodes_; }  ///< Parents before children.
@@ -40,7 +43,7 @@ class BspTree {
         return std::span(fragments_).subspan(node.first_fragment, node.fragment_count);
     }
     std::span<const Fragment> fragments() const { return fragments_; }
-    std::span<const Point> outline(const Fragment& f) const {  ///< In the direction of the piece's.
+    std::span<const Point> outline(const Fragment& f) const {  ///< Same direction as the piece's outline.
         return std::span(corners_).subspan(f.first_corner, f.corner_count);
     }
     double thickness() const { return thickness_; }
@@ -48,14 +51,14 @@ class BspTree {
     std::size_t memory_bytes() const;
     const Occluders& occluders() const { return *occluders_; }
 
-    /// On which side of a node's plane does a point lie: 1, -1, or 0 within the thickness?
+    /// Returns the side of the node's plane that p is on: 1 (front), -1 (behind), or 0 (within the thickness).
     int side(const Node& node, const Point& p) const {
         const double d = node.plane.signed_distance(p);
         return d > thickness_ ? 1 : d < -thickness_ ? -1 : 0;
     }
 
-    /// Calls visit(node, side) for all nodes, those that a point sees in front of others first. `side` is that of the
-    /// point: with 0 it lies in the plane and sees none of the node's fragments. Without recursion.
+    /// Calls visit(node, side) for all nodes, front to back as seen from a point. `side` is the side of the node's
+    /// plane that the point is on; 0: the point is in the plane and sees none of the node's fragments. Not recursive.
     template <class Visit>
     void front_to_back(const Point& from, const Visit& visit) const {
         if (nodes_.empty()) return;
@@ -76,9 +79,9 @@ class BspTree {
         }
     }
 
-    /// The first piece along a ray, whichever of its sides is met, at `least` lengths of the direction or beyond.
+    /// First piece that a ray hits, on either side, at a distance of at least `least` (in lengths of the direction).
     struct Hit {
-        PieceId piece;  ///< None when nothing is met.
+        PieceId piece;  ///< None if nothing is hit.
         double distance = std::numeric_limits<double>::infinity();
         bool front = false;
     };

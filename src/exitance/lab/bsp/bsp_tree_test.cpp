@@ -16,7 +16,7 @@ Vec3 random_vector(RandomStream& random) {
     return {random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
 }
 
-/// Triangles anywhere in a unit cube, which may cross.
+/// Random triangles in a unit cube, which may intersect.
 Scene random_triangles(std::uint64_t seed, std::uint32_t count) {
     RandomStream random(seed, Stream::mesh);
     SceneDescription d;
@@ -37,7 +37,7 @@ double area_of(std::span<const Point> outline) {
     return norm(area_vector(outline));
 }
 
-/// Where a segment meets a convex polygon, as a share of it; infinite when it does not.
+/// Position at which a segment meets a convex polygon, as a fraction of the segment; infinite if it misses.
 double meets(const Point& from, const Vec3& d, std::span<const Point> outline, const Plane& plane) {
     const double height = plane.signed_distance(from), rise = dot(plane.n, d);
     const double t = rise == 0 ? HUGE_VAL : -height / rise;
@@ -63,7 +63,7 @@ TEST(BspTree, FragmentsCoverTheirPiecesAndLieOnTheirSideOfEveryNodeAbove) {
                     EXPECT_NE(tree.side(tree.nodes()[above], p), tree.nodes()[above].front == below ? -1 : 1);
 }
 
-TEST(BspTree, EveryOrderingShowsNearThingsFirst) {
+TEST(BspTree, OrderingsAreFrontToBack) {
     const Scene scene = random_triangles(2, 30);
     const Occluders occluders(scene);
     const BspTree tree(occluders);
@@ -88,7 +88,7 @@ TEST(BspTree, EveryOrderingShowsNearThingsFirst) {
     }
 }
 
-TEST(BspTree, WhatHidesAnyPointOfTheSourceIsACandidate) {  // the theorem of the youngest common ancestor
+TEST(BspTree, EveryBlockerOfASourcePointIsACandidate) {  // the theorem of the youngest common ancestor
     std::size_t hidden = 0, left_out = 0;
     for (std::uint64_t seed = 10; seed < 18; ++seed) {
         const Scene scene = random_triangles(seed, 24);
@@ -123,7 +123,7 @@ TEST(BspTree, WhatHidesAnyPointOfTheSourceIsACandidate) {  // the theorem of the
     EXPECT_GT(left_out, 500u) << "lists are shorter than the scene";
 }
 
-TEST(BspTree, RaysMeetWhatEmbreeMeets) {
+TEST(BspTree, RaysHitTheSameAsEmbree) {
     const Scene scene = built_scene("complex", {{"m", "2"}});
     const Occluders occluders(scene);
     const BspTree tree(occluders);
@@ -148,7 +148,7 @@ TEST(BspTree, RaysMeetWhatEmbreeMeets) {
     EXPECT_GT(met, 0.999 * rays) << other << " differ: beside edges Embree decides in single precision";
 }
 
-TEST(ConvexHull, LeavesOutCornersThatAreDentsOrLieOnItsEdges) {
+TEST(ConvexHull, OmitsReflexCornersAndPointsOnEdges) {
     const std::vector<Point> concave = {{0, 0, 1}, {2, 0, 1}, {4, 0, 1}, {4, 4, 1}, {2, 1, 1}, {0, 4, 1}};
     const std::vector<Point> hull = convex_hull(concave, {0, 0, 1});
     EXPECT_EQ(hull.size(), 4u);

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A square in a plane around the foot of a point, counter-clockwise about the normal.
+/// A square of half width `reach` in a plane around the foot of a point, counter-clockwise about the normal.
 std::vector<Point> square_in(const Plane& plane, const Point& near, double reach) {
     const Frame frame(plane.n);
     const Point foot = near - plane.signed_distance(near) * plane.n;
@@ -20,7 +20,7 @@ std::vector<Point> square_in(const Plane& plane, const Point& near, double reach
 MergedVolumes::MergedVolumes(const Box& space, double thickness, std::size_t most)
     : thickness_(thickness), reach_(2 * space.diagonal() + 4 * thickness), most_(most), nodes_(1) {
     const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const Vec3 margin = Vec3{1, 1, 1} * (0.01 * space.diagonal() + 2 * thickness);  // a flat box has a volume, too
+    const Vec3 margin = Vec3{1, 1, 1} * (0.01 * space.diagonal() + 2 * thickness);  // so that a flat box has a volume
     const Point lo = space.lo - margin, hi = space.hi + margin;
     std::vector<Point> rest;
     for (const Vec3& axis : axes) {
@@ -37,7 +37,7 @@ MergedVolumes::MergedVolumes(const Box& space, double thickness, std::size_t mos
     }
 }
 
-/// The part of a body in front of a plane, with a face in it.
+/// The part of a body in front of a plane, closed by a face in it.
 MergedVolumes::Body MergedVolumes::cut(const Body& body, const Plane& plane, bool is_own) const {
     Body out;
     Point inside;
@@ -45,7 +45,7 @@ MergedVolumes::Body MergedVolumes::cut(const Body& body, const Plane& plane, boo
     for (const Face& face : body) {
         Face part{face.plane, face.is_own, {}};
         clip(face.corners, plane, part.corners);
-        // What only touches the plane from behind it is no face.
+        // A face that only touches the plane from behind is dropped.
         if (part.corners.size() < 3 || (sides(part.corners, plane, thickness_) & 1) == 0) continue;
         for (const Point& p : part.corners) inside += p, ++count;
         out.push_back(std::move(part));
@@ -62,13 +62,13 @@ MergedVolumes::Body MergedVolumes::cut(const Body& body, const Plane& plane, boo
     return out;
 }
 
-/// Labels the part of space that is in front of all planes.
+/// Adds a label to the part of space that is in front of all planes.
 void MergedVolumes::merge(std::span<const Plane> planes, std::uint32_t volume, bool is_umbra) {
     Body body = space_;
     for (const Plane& plane : planes) {
         int side = 0;
         for (const Face& face : body) side |= sides(face.corners, plane, thickness_);
-        if ((side & 1) == 0) return;  // outside of the space
+        if ((side & 1) == 0) return;  // entirely outside of `space_`
         if (side == 3) body = cut(body, plane, true);
     }
     merge_below(0, std::move(body), volume, is_umbra);
@@ -80,7 +80,7 @@ void MergedVolumes::merge_below(std::uint32_t n, Body body, std::uint32_t volume
     int side = 0;
     for (Face& face : body) {
         const int of_face = sides(face.corners, plane, thickness_);
-        if (of_face == 0) face.is_own = false;  // the node is cut there already
+        if (of_face == 0) face.is_own = false;  // the tree already has a cut there
         side |= of_face;
     }
     const std::uint32_t front = nodes_[n].front, back = nodes_[n].back;
@@ -91,7 +91,8 @@ void MergedVolumes::merge_below(std::uint32_t n, Body body, std::uint32_t volume
     merge_below(back, cut(body, turned(plane), false), volume, is_umbra);
 }
 
-/// Cuts a leaf by those of the volume's planes that bound it there: outside all is as it was, inside is one label more.
+/// Splits a leaf by those of the volume's planes that bound it there. Parts outside keep their labels; the inside gets
+/// one more.
 void MergedVolumes::grow_leaf(std::uint32_t leaf, const Body& body, std::uint32_t volume, bool is_umbra) {
     const std::uint32_t labels = nodes_[leaf].labels;
     for (const Face& face : body) {

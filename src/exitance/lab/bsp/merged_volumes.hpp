@@ -8,33 +8,35 @@
 
 namespace exitance {
 
-/// The shadow volumes of many occluders of one source, merged into one SVBSP tree: an inner node holds a plane of one
-/// of the volumes, a leaf the penumbra volumes and umbra volumes that it lies in. A polygon goes down the tree, cut by
-/// the planes that it crosses, and is told at once what may hide the source from it, and whether its parts all lie in
-/// umbrae, be they of different occluders. Classes are those of the volumes one by one, but exact for polygons, of
-/// which ShadowVolume says "partly" where they pass by a corner of a volume. Source: [Chin92], [Gatenby95].
+/// Shadow volumes of many occluders of one source, merged into one SVBSP tree. An inner node holds a plane of one of
+/// the volumes; a leaf holds the penumbra and umbra volumes that contain it. Classifying a polygon filters it down the
+/// tree, splitting it at the planes that it crosses. This yields all occluders that may hide the source from it, and
+/// whether every part of it is in the umbra of some occluder (not necessarily the same one). The classes equal those of
+/// the separate volumes, but are exact for polygons that pass a corner of a volume, for which ShadowVolume returns
+/// `partly`. Source: [Chin92], [Gatenby95].
 ///
-/// Volumes of occluders overlap, so that their planes make up to O(planes^3) leaves: past `most_nodes` no more volumes
-/// are merged, and the rest is asked one by one.
+/// Overlapping volumes make O(planes^3) leaves. Once the tree has `most_nodes` nodes no more volumes are merged; the
+/// remaining ones are tested one by one.
 class MergedVolumes {
   public:
     static constexpr std::size_t most_nodes = 1u << 16;
 
-    /// `space`: what polygons to classify lie in, metres; volumes are cut to it. What is nearer to a plane than
-    /// `thickness` lies in it. `most`: of nodes; one volume more may be begun below it.
+    /// space  bounds of all polygons that will be classified, metres; volumes are clipped to it
+    /// thickness  metres: points nearer to a plane than this are in the plane
+    /// most  limit on the number of nodes; the volume during which it is exceeded is still merged
     MergedVolumes(const Box& space, double thickness, std::size_t most = most_nodes);
 
-    /// Adds a volume, which is the next in order; those that hide nothing have a number, too.
+    /// Adds the next volume. Volumes are numbered in the order of the calls; empty ones get a number, too.
     void add(const ShadowVolume& volume);
 
-    /// What one polygon may be hidden by.
+    /// Occluders that may hide the source from one polygon.
     struct Classes {
-        std::vector<std::uint32_t> reached;  ///< Volumes whose penumbra it reaches into, by number.
-        bool is_hidden = false;              ///< All of it lies in umbrae.
+        std::vector<std::uint32_t> reached;  ///< Numbers of the volumes whose penumbra the polygon reaches into.
+        bool is_hidden = false;              ///< True if every part of the polygon is in an umbra.
     };
 
-    /// Classifies a convex polygon within the space; of a part that lies in a plane of the tree, what is behind it
-    /// counts. `tests` counts looks at a plane. O(depth) of polygons that no plane cuts.
+    /// Classifies a convex polygon inside `space`. A part that is in a plane of the tree is classified as if it were
+    /// behind the plane. Adds the number of plane tests to `tests`. O(depth) for polygons that no plane cuts.
     void classify(std::span<const Point> polygon, Classes& out, std::size_t& tests) const;
 
     std::size_t nodes() const { return nodes_.size(); }  ///< Inner nodes and leaves.
@@ -42,17 +44,17 @@ class MergedVolumes {
 
   private:
     static constexpr std::uint32_t none = 0xffffffffu;
-    /// A part of space with flat faces, each of a plane of the volume at hand or of another cut.
+    /// A face of a convex body. Its plane belongs either to the volume being merged or to an earlier cut.
     struct Face {
-        Plane plane;  ///< Its front is within.
+        Plane plane;  ///< Its front is the inside of the body.
         bool is_own = false;
         std::vector<Point> corners;
     };
     using Body = std::vector<Face>;
     struct Node {
         Plane plane;
-        std::uint32_t front = none, back = none;  ///< Of leaves: none, and
-        std::uint32_t labels = none;              ///< the last of their labels in `labels_`.
+        std::uint32_t front = none, back = none;  ///< `none` in leaves.
+        std::uint32_t labels = none;  ///< Leaves: index into `labels_` of the last label; `before` links to the others.
     };
     struct Label {
         std::uint32_t volume = 0;

@@ -18,7 +18,7 @@ Plane plane_of(std::span<const Point> corners) {
     return {n, dot(n, corners[0])};
 }
 
-/// A lamp at z = 2, and triangles anywhere below it, which may cross.
+/// A lamp at z = 2 and random triangles below it, which may intersect.
 std::vector<ShadowVolume> some_volumes(std::uint64_t seed, int count) {
     RandomStream random(seed, Stream::mesh);
     const std::vector<Point> lamp{{-0.1, 0.1, 2}, {0.1, 0.1, 2}, {0.1, -0.1, 2}, {-0.1, -0.1, 2}};
@@ -44,10 +44,11 @@ Point any_place(RandomStream& random) {
 
 }  // namespace
 
-TEST(MergedVolumes, ClassifyPointsAsTheVolumesOneByOne) {
+TEST(MergedVolumes, ClassifyPointsLikeSeparateVolumes) {
     std::size_t in_umbra = 0, in_penumbra = 0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed)
-        for (const std::size_t most : {MergedVolumes::most_nodes, std::size_t(200)}) {  // the latter leaves some apart
+        for (const std::size_t most :
+             {MergedVolumes::most_nodes, std::size_t(200)}) {  // the second limit leaves some unmerged
             const std::vector<ShadowVolume> volumes = some_volumes(seed, 8);
             const MergedVolumes tree = merged(volumes, most);
             EXPECT_EQ(tree.unmerged() > 0, most == 200);
@@ -75,7 +76,7 @@ TEST(MergedVolumes, ClassifyPointsAsTheVolumesOneByOne) {
     EXPECT_GT(in_penumbra, 1000u);
 }
 
-TEST(MergedVolumes, OfAPolygonTellAllThatItsPointsTellAndNoMoreThanTheVolumesOneByOne) {
+TEST(MergedVolumes, ClassifyPolygonsBetweenTheirPointsAndSeparateVolumes) {
     std::size_t hidden = 0, hidden_apart = 0, reached = 0, reached_apart = 0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         const std::vector<ShadowVolume> volumes = some_volumes(seed, 8);
@@ -113,7 +114,7 @@ TEST(MergedVolumes, OfAPolygonTellAllThatItsPointsTellAndNoMoreThanTheVolumesOne
     EXPECT_LT(reached, reached_apart);
 }
 
-TEST(MergedVolumes, TwoUmbraeHideTogetherWhatNeitherHides) {
+TEST(MergedVolumes, TwoUmbraeTogetherHideAPolygon) {
     const std::vector<Point> lamp{{-0.1, 0.1, 2}, {0.1, 0.1, 2}, {0.1, -0.1, 2}, {-0.1, -0.1, 2}};
     const auto half = [&](double x0, double x1) {
         const std::vector<Point> board{{x0, -1, 1}, {x1, -1, 1}, {x1, 1, 1}, {x0, 1, 1}};

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t most_corners = 64;  // bits of a mask
 
-/// A rectangle in the plane of points that holds them.
+/// A rectangle in the plane of the points that contains all of them.
 std::vector<Point> rectangle_around(std::span<const Point> points, const Normal& n) {
     const Frame frame(n);
     Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
@@ -22,7 +22,8 @@ std::vector<Point> rectangle_around(std::span<const Point> points, const Normal&
     return {corner(lo.x, lo.y), corner(hi.x, lo.y), corner(hi.x, hi.y), corner(lo.x, hi.y)};
 }
 
-/// Do two convex polygons of one plane overlap by more than `slack`? Counter-clockwise about n, or about -n.
+/// Returns whether two convex polygons in one plane overlap by more than `slack` (metres). Each is counter-clockwise
+/// about n or about -n.
 bool overlap(std::span<const Point> a, std::span<const Point> b, const Normal& n, double slack) {
     const auto separates = [&](std::span<const Point> edges, std::span<const Point> others) {
         const double turn = dot(area_vector(edges), n) < 0 ? -1 : 1;

@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// Bit 0: something in front of a plane; bit 1: something behind it.
+/// Returns bit 0 if any point is in front of the plane, bit 1 if any is behind it.
 inline int sides(std::span<const Point> points, const Plane& plane, double thickness) {
     int out = 0;
     for (const Point& p : points) {

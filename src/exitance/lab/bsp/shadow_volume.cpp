@@ -12,7 +12,7 @@ ShadowVolume::ShadowVolume(std::span<const Point> source, const Plane& source_pl
     clip(occluder, source_plane, occluder_);
     if (occluder_.size() < 3 || sides(occluder_, source_plane, thickness) == 0) return;
     const int seen = sides(source_, occluder_plane, thickness);
-    if (seen == 0) return;  // edge on
+    if (seen == 0) return;  // edge-on
     add_planes(occluder_, source_, true);
     add_planes(source_, occluder_, false);
     if (seen == 3) {
@@ -21,14 +21,15 @@ ShadowVolume::ShadowVolume(std::span<const Point> source, const Plane& source_pl
     }
     const Plane behind = seen == 1 ? turned(occluder_plane) : occluder_plane;
     penumbra_.push_back(behind);
-    // A corner of the source in the occluder's plane sees it edge on: nothing of it is hidden.
+    // A corner of the source in the occluder's plane sees it edge-on: from there nothing is hidden, so there is no
+    // umbra.
     const bool touches = std::any_of(source_.begin(), source_.end(), [&](const Point& s) {
         return std::abs(occluder_plane.signed_distance(s)) <= thickness;
     });
     touches ? umbra_.clear() : umbra_.push_back(behind);
 }
 
-/// Aligned edges span one plane several times.
+/// Adds a plane unless it is known: aligned edges span the same plane several times.
 void ShadowVolume::add_once(const Plane& plane, std::vector<Plane>& planes) const {
     constexpr double same_direction = 1e-9;
     if (std::none_of(planes.begin(), planes.end(), [&](const Plane& p) {
@@ -37,7 +38,7 @@ void ShadowVolume::add_once(const Plane& plane, std::vector<Plane>& planes) cons
         planes.push_back(plane);
 }
 
-/// Planes through an edge of one polygon and a corner of the other that have each on one side.
+/// Adds the planes through an edge of one polygon and a corner of the other that have each polygon on one side.
 void ShadowVolume::add_planes(std::span<const Point> edges, std::span<const Point> corners, bool of_occluder) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const Point &a = edges[i], &b = edges[(i + 1) % edges.size()];

@@ -7,28 +7,30 @@
 
 namespace exitance {
 
-/// What one convex polygon hides of a convex source, as two convex volumes behind it: a chain of planes each, the
-/// simplest SVBSP tree. A plane through an edge of one and a corner of the other that has both on different sides
-/// bounds the penumbra (VE and EV planes); one through an edge of the occluder and a corner of the source that has both
-/// on one side, the umbra (VE planes alone). Both end at the occluder's own plane. Source: [Chin89], [Gatenby95].
+/// The shadow of one convex polygon that is lit by a convex source, as two convex volumes behind the polygon. Each
+/// volume is a list of planes, the simplest SVBSP tree. The penumbra is bounded by planes through an edge of one
+/// polygon and a corner of the other that separate the two (VE and EV planes). The umbra is bounded by planes through
+/// an edge of the occluder and a corner of the source that have both on one side (VE planes only). The occluder's plane
+/// bounds both. Source: [Chin89], [Gatenby95].
 class ShadowVolume {
   public:
-    /// How a receiver lies to a volume.
+    /// Position of a receiver relative to a volume.
     enum class Place { outside, partly, inside };
 
-    /// `source` and `occluder`: counter-clockwise about `normal` and in one plane each, metres. What is nearer to a
-    /// plane than `thickness` lies in it. What of the occluder is behind the source's plane hides nothing and is cut
-    /// off. A source that the occluder's plane passes through or touches has no umbra. O((|S| + |O|)^3).
+    /// source, occluder  planar polygons, counter-clockwise about the normals of their planes, metres. The part of the
+    /// occluder behind the source's plane hides nothing and is cut off.
+    /// thickness  metres: points nearer to a plane than this are in the plane
+    /// There is no umbra if the occluder's plane crosses or touches the source. O((|S| + |O|)^3).
     ShadowVolume(std::span<const Point> source, const Plane& source_plane, std::span<const Point> occluder,
                  const Plane& occluder_plane, double thickness);
 
-    bool is_empty() const { return penumbra_.empty(); }  ///< It hides nothing, certainly.
+    bool is_empty() const { return penumbra_.empty(); }  ///< True if the occluder certainly hides nothing.
     bool has_umbra() const { return !umbra_.empty(); }
-    std::span<const Plane> penumbra() const { return penumbra_; }  ///< Inside is in front of all of them.
+    std::span<const Plane> penumbra() const { return penumbra_; }  ///< The inside is in front of all planes.
     std::span<const Plane> umbra() const { return umbra_; }
 
-    /// Does a convex polygon or a point lie outside, partly within or within? A polygon may be called partly within
-    /// that passes by a corner of the volume. `tests` counts looks at a plane.
+    /// Classifies a convex polygon or a point as outside, partly inside or inside a volume. A polygon that passes a
+    /// corner of the volume outside may be reported as `partly`. Adds the number of plane tests to `tests`.
     Place in_penumbra(std::span<const Point> receiver, std::size_t& tests) const;
     Place in_umbra(std::span<const Point> receiver, std::size_t& tests) const;
 

@@ -61,7 +61,7 @@ TEST(ShadowVolume, NothingOutsideIsHiddenAndEverythingInUmbraIs) {
         const ShadowVolume volume(source.corners, source.plane, occluder.corners, occluder.plane, 1e-9);
         for (int k = 0; k < 60; ++k) {
             const Point x = Vec3{0, 0, 0.3} + 2.0 * vector();
-            if (source.plane.signed_distance(x) <= 1e-6) continue;  // it cannot be lit at all
+            if (source.plane.signed_distance(x) <= 1e-6) continue;  // behind the source: unlit
             std::size_t tests = 0;
             const bool in_penumbra = volume.in_penumbra(std::span(&x, 1), tests) != ShadowVolume::Place::outside;
             const bool in_umbra = volume.in_umbra(std::span(&x, 1), tests) != ShadowVolume::Place::outside;
@@ -92,7 +92,7 @@ TEST(ShadowVolume, AnOccluderBehindTheSourceHidesNothing) {
     const Sheet source = square({0, 0, 2}, {1, 0, 0}, {0, -1, 0});
     const Sheet above = square({0, 0, 3}, {0.5, 0, 0}, {0, 0.5, 0});
     EXPECT_TRUE(ShadowVolume(source.corners, source.plane, above.corners, above.plane, 1e-9).is_empty());
-    const Sheet across = square({0, 0, 1.5}, {0.5, 0, 0}, {0, 0, 0.4});  // its plane passes through the source
+    const Sheet across = square({0, 0, 1.5}, {0.5, 0, 0}, {0, 0, 0.4});  // its plane crosses the source
     const ShadowVolume volume(source.corners, source.plane, across.corners, across.plane, 1e-9);
     EXPECT_FALSE(volume.is_empty());
     EXPECT_FALSE(volume.has_umbra());

@@ -35,7 +35,7 @@ void DmTree::insert(const Vec2& from, const Vec2& to, std::uint32_t curve) {
             continue;
         }
         const double da = node.distance(job.a), db = node.distance(job.b);
-        if (std::max(std::abs(da), std::abs(db)) <= tolerance_) continue;  // it lies on a line that is there
+        if (std::max(std::abs(da), std::abs(db)) <= tolerance_) continue;  // it is on an existing line
         if (std::min(da, db) >= -tolerance_) {
             jobs.push_back({node.left, job.a, job.b});
         } else if (std::max(da, db) <= tolerance_) {
@@ -60,7 +60,7 @@ void DmTree::cut_leaf(std::uint32_t at, const Vec2& a, const Vec2& b, std::uint3
     for (const auto& corner : corners) height.push_back(line.distance(at_vertex(corner.vertex)));
     const auto [lowest, highest] = std::minmax_element(height.begin(), height.end());
     if (*lowest >= -tolerance_ || *highest <= tolerance_) return;  // along the border of the face
-    // Where the line enters (heights turn positive) and where it leaves.
+    // Find where the line enters and leaves the face: where heights change sign.
     std::array<std::uint32_t, 2> ends{WingedEdgeMesh::none, WingedEdgeMesh::none};
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const std::size_t j = (i + 1) % corners.size();
@@ -78,8 +78,8 @@ void DmTree::cut_leaf(std::uint32_t at, const Vec2& a, const Vec2& b, std::uint3
     if (ends[1] == WingedEdgeMesh::none) return;
     if (dot(at_vertex(ends[1]) - at_vertex(ends[0]), along) < 0) std::swap(ends[0], ends[1]);
     std::uint32_t edge = mesh_.cut_face(face, ends[0], ends[1]);
-    const auto other = static_cast<std::uint32_t>(mesh_.faces().size() - 1);  // left of the line
-    // Construction edges reach from the curve's ends to the face's border.
+    const auto other = static_cast<std::uint32_t>(mesh_.faces().size() - 1);  // the face on the left of the line
+    // Construction edges extend the curve's ends to the face's border.
     const double first = dot(at_vertex(ends[0]), along), last = dot(at_vertex(ends[1]), along);
     const double begin = dot(a, along), end = dot(b, along);
     if (end < last - tolerance_ && end > first + tolerance_) mesh_.cut_edge(edge, b);

@@ -20,7 +20,7 @@ double area_of(const DmTree& tree, std::uint32_t face) {
     return twice / 2;
 }
 
-/// Every edge is where its faces and its neighbours say.
+/// Checks that every edge is consistent with its faces and neighbours.
 void check(const WingedEdgeMesh& mesh) {
     std::size_t borders = 0;
     for (std::uint32_t f = 0; f < mesh.faces().size(); ++f)
@@ -60,7 +60,7 @@ TEST(DmTree, ASpanningCutMakesTwoFacesAndNoConstructionEdges) {
     EXPECT_EQ(tree.mesh().faces().size(), 2u) << "on a line that is there";
 }
 
-TEST(DmTree, AStretchThatEndsWithinAFaceIsCompletedByConstructionEdges) {
+TEST(DmTree, ACurveThatEndsInsideAFaceIsCompletedByConstructionEdges) {
     DmTree tree(square, 1e-9);
     tree.insert({0.25, 0.5}, {0.75, 0.5}, 3);
     check(tree.mesh());

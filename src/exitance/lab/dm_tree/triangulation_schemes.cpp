@@ -11,7 +11,7 @@ double length(const Vec2& v) {
     return std::hypot(v.x, v.y);
 }
 
-/// Corners of a convex face, by vertex; some may lie in a row.
+/// Vertices of a convex face; some may be collinear.
 using Ring = std::vector<std::uint32_t>;
 
 class FaceTriangulation {
@@ -30,7 +30,7 @@ class FaceTriangulation {
                 continue;
             }
             const auto [i, j] = best_diagonal(r);
-            if (i == j) continue;  // without area
+            if (i == j) continue;  // no area
             if (scheme_ == TriangulationScheme::longest) {
                 join_middle(r, i, j);
                 continue;
@@ -46,8 +46,8 @@ class FaceTriangulation {
   private:
     const Vec2& at(std::uint32_t v) const { return points_[v]; }
 
-    /// Of the two angles into which a diagonal splits the one at its end: the ratio of the smaller sine to the larger,
-    /// times the smaller.
+    /// Quality of a diagonal at one end, where it divides the angle in two: the ratio of the smaller sine to the
+    /// larger, times the smaller.
     double end_value(const Vec2& corner, const Vec2& before, const Vec2& after, const Vec2& other) const {
         const auto sine = [&](const Vec2& a, const Vec2& b) {
             return std::abs(cross(a - corner, b - corner)) / (length(a - corner) * length(b - corner));
@@ -66,13 +66,14 @@ class FaceTriangulation {
                end_value(at(r[j]), at(r[j - 1]), at(r[(j + 1) % n]), at(r[i]));
     }
 
-    /// The diagonal of the largest value among those with area on both sides. O(corners^2).
+    /// Returns the ends of the diagonal with the largest value among those with area on both sides; equal indices if
+    /// there is none. O(corners^2).
     std::pair<std::size_t, std::size_t> best_diagonal(const Ring& r) const {
-        constexpr double flat = 1e-9;  // of a diagonal's squared length
+        constexpr double flat = 1e-9;  // share of a diagonal's squared length
         std::pair<std::size_t, std::size_t> best{0, 0};
         double most = -HUGE_VAL;
         const std::size_t n = r.size();
-        // Twice the area between the first corner and the edges before each.
+        // Twice the area swept from the first corner by the edges before each corner.
         std::vector<double> swept(n + 1, 0);
         for (std::size_t k = 0; k < n; ++k)
             swept[k + 1] = swept[k] + cross(at(r[k]) - at(r[0]), at(r[(k + 1) % n]) - at(r[0]));

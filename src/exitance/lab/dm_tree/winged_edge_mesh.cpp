@@ -47,7 +47,7 @@ std::uint32_t WingedEdgeMesh::cut_edge(std::uint32_t e, const Vec2& at) {
     edges_[added].vertex[0] = m;
     edges_[e].vertex[1] = m;
     vertices_[old.vertex[1]].edge = added;
-    // Left of it the second half comes after the first; right of it, before.
+    // On the left side the second half follows the first; on the right side it precedes it.
     for (std::size_t s = 0; s < 2; ++s) {
         const std::uint32_t face = old.face[s];
         if (s == 0) {

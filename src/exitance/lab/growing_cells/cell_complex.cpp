@@ -129,7 +129,7 @@ bool CellComplex::is_valid() const {
         for (const Unit v : neighbours_[u])
             if (simplices_of_edge(u, v) == 0) return false;
         CellComplex copy = *this;
-        if (unit_end() < 64) {  // of small ones, the lists are made anew
+        if (unit_end() < 64) {  // for small complexes, recompute the lists
             copy.find_neighbours(u);
             if (copy.neighbours_[u] != neighbours_[u]) return false;
         }

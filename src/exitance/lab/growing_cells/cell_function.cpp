@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-constexpr double flatness = 0.25;      ///< s_h: reach across the plane as a share of that along it.
+constexpr double flatness = 0.25;      ///< s_h: reach perpendicular to the plane, relative to that along it.
 constexpr double normal_spread = 0.1;  ///< s_n: 1 - cos of 26 degrees.
 
 }  // namespace
@@ -31,10 +31,11 @@ CellFunction::CellFunction(const CellLight& light) : light_(&light) {
     index_ = Bvh(boxes);
 }
 
-/// By |x - w|^2, for cells that face alike; where none do, the nearest of all. O(cells), seldom called.
+/// The nearest cell (by |x - w|^2) among those with a similar normal, or among all if there are none. O(cells), rarely
+/// called.
 std::uint32_t CellFunction::nearest(const Point& x, const Normal& n) const {
     std::uint32_t best = 0;
-    std::pair<bool, double> least{true, HUGE_VAL};  // does it face another way; squared distance
+    std::pair<bool, double> least{true, HUGE_VAL};  // whether the normal differs; squared distance
     for (std::uint32_t c = 0; c < light_->cells.size(); ++c) {
         const CellLight::Cell& cell = light_->cells[c];
         const std::pair<bool, double> own{dot(n, cell.n) <= 0.5, squared_norm(x - cell.at)};

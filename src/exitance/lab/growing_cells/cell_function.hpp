@@ -8,28 +8,28 @@
 
 namespace exitance {
 
-/// How much a cell counts at a point: exp(-q), with
+/// Exponent q of a cell's weight exp(-q) at a point x with normal n:
 ///
 ///     q = |t|^2 / d^2 + h^2 / (s_h d)^2 + (1 - n . n_c) / s_n,
 ///
-/// t and h the parts of x - w_c along the cell's plane and across it. In the plane it is the isotropic Gaussian of the
-/// published method; a cell does not reach across folds (the third term) or to a parallel surface behind (the second),
-/// but over facets that are tilted by a few degrees it does: surfaces are told apart by their shape, not by how they
-/// were cut. Returns q.
+/// where t and h are the components of x - w_c in the cell's plane and perpendicular to it. In the plane the weight is
+/// the isotropic Gaussian of the published method. The second term keeps a cell from reaching a parallel surface behind
+/// its own, the third from reaching across folds; facets that are tilted by a few degrees are still reached. Thus
+/// surfaces are separated by their shape, not by their tessellation.
 double cell_distance(const CellLight::Cell& cell, const Point& x, const Normal& n);
 
-/// Light of cells as a function of place.
+/// Evaluates the light of cells at points.
 class CellFunction {
   public:
-    /// Keeps a reference. O(cells log cells).
+    /// Keeps a reference to `light`. O(cells log cells).
     explicit CellFunction(const CellLight& light);
 
-    /// Irradiance at x on a surface of normal n, W/m^2: the sum over cells within three widths of exp(-q) v_c, or,
-    /// where `normalised`, the mean of v_c + slope . (x - w_c) by these weights. Where no cell is near, the nearest one
-    /// of those that face alike speaks for itself (normalised), or there is no light (summed). Not below 0.
+    /// Irradiance at x on a surface with normal n, W/m^2: the sum over cells within three widths of exp(-q) v_c or, if
+    /// `normalised`, the mean of v_c + slope . (x - w_c) with these weights. If no cell is near, the result is that of
+    /// the nearest cell with a similar normal (normalised), or 0 (summed). Never negative.
     Spectrum at(const Point& x, const Normal& n) const;
 
-    /// Calls visit(cell, weight) for every cell within three widths, in the order of the index.
+    /// Calls visit(cell, weight) for every cell within three widths, in the order of the search index.
     template <class Visit>
     void visit(const Point& x, const Normal& n, const Visit& visit) const {
         Box here;
@@ -39,7 +39,7 @@ class CellFunction {
             if (q < cutoff) visit(c, std::exp(-q));
         });
     }
-    static constexpr double cutoff = 9;  ///< q beyond which a cell does not count: three widths.
+    static constexpr double cutoff = 9;  ///< q beyond which a cell has no weight: three widths.
 
   private:
     std::uint32_t nearest(const Point& x, const Normal& n) const;

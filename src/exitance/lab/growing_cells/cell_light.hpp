@@ -9,29 +9,29 @@
 
 namespace exitance {
 
-/// Irradiance as the shading network of growing cells holds it: one Gaussian a unit, which lies near a surface and
-/// faces as the surface does. The network's triangles lie in no polygon. With it goes the kernel network, for pictures
-/// and studies. Evaluated by `CellFunction`.
+/// Irradiance in the shading network of growing cells: one Gaussian per unit, located near a surface and with its
+/// normal. The network's triangles do not coincide with polygons. The kernel network is included for pictures and
+/// studies. Evaluated by `CellFunction`.
 struct CellLight {
     /// A unit of the shading network.
     struct Cell {
         Point at;                       ///< metres
-        Normal n;                       ///< Which way its surface faces.
-        double width = 0;               ///< d of exp(-r^2 / d^2), metres.
-        Spectrum value;                 ///< Its output, W/m^2,
-        std::array<Spectrum, 3> slope;  ///< and how that changes along x, y and z, W/m^3.
+        Normal n;                       ///< Normal of its surface.
+        double width = 0;               ///< d in exp(-r^2 / d^2), metres.
+        Spectrum value;                 ///< Its output, W/m^2.
+        std::array<Spectrum, 3> slope;  ///< Derivatives of the output along x, y and z, W/m^3.
     };
-    /// A unit of the kernel network: light that goes from y to x.
+    /// A unit of the kernel network: light from y to x.
     struct Ray {
         Point x, y;
         double width = 0;  ///< metres
-        Spectrum value;    ///< Kernel times exitance, W/m^4; visibility, without unit, where that is learned.
+        Spectrum value;    ///< Kernel times exitance, W/m^4; if visibility is learned instead: without unit.
     };
 
-    /// Weights are divided by their sum, and slopes count; else outputs are summed as they are.
+    /// True if weights are divided by their sum and slopes are used; otherwise outputs are summed.
     bool normalised = true;
     std::vector<Cell> cells;
-    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Of the shading network.
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Triangles of the shading network.
     std::vector<Ray> kernel;
     std::vector<std::array<std::uint32_t, 2>> kernel_edges;
 };

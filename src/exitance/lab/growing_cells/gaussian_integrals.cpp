@@ -7,24 +7,26 @@
 namespace exitance {
 namespace {
 
-constexpr double right_angle = 1e-9;  ///< |cos| of an angle that counts as a right one.
+constexpr double right_angle = 1e-9;  ///< |cos| below which an angle counts as a right angle.
 
 /// int_0^length exp(-(s - c)^2 / d^2) ds
 double on_line(double c, double length, double d) {
     return 0.5 * std::sqrt(pi) * d * (std::erf((length - c) / d) - std::erf(-c / d));
 }
 
-/// Over the triangle of the foot and an edge from a to b (relative to the foot), with the edge's sign.
+/// Integral over the triangle of the foot and an edge from a to b (relative to the foot), with the sign of the edge's
+/// orientation.
 double beside_edge(const Vec3& a, const Vec3& b, const Normal& n, double d) {
     const Vec3 along = b - a;
     const double length = norm(along);
     if (!(length > 0)) return 0;
     const double s_a = dot(a, along) / length, s_b = dot(b, along) / length;
-    const double distance = dot(n, cross(a, along)) / length;  // above 0 where the foot lies inside
+    const double distance = dot(n, cross(a, along)) / length;  // positive if the foot is inside
     const double h = std::abs(distance);
     if (h < 1e-12 * d) return 0;
     const double first = std::atan2(s_a, h), last = std::atan2(s_b, h);
-    // Over half the width's square; the integrand turns sharply where the edge ends are far, so the range is cut.
+    // In units of half the squared width. The integrand varies sharply if the ends of the edge are distant, so the
+    // range is divided.
     const LineRule rule = gauss_legendre(16);
     double sum = 0;
     constexpr int parts = 4;

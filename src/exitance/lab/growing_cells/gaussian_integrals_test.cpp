@@ -13,7 +13,7 @@ namespace {
 
 using Triangle = std::array<Point, 3>;
 
-/// By a product rule on m x m parts of the triangle seen as a square that collapses.
+/// Quadrature by a product rule on parts x parts cells of the triangle, seen as a collapsed square.
 double by_quadrature(const Triangle& t, const std::function<double(const Point&)>& f, int parts = 24) {
     const LineRule rule = gauss_legendre(6);
     const double area = 0.5 * norm(cross(t[1] - t[0], t[2] - t[0]));
@@ -36,7 +36,7 @@ double gaussian(const Point& x, const Point& c, double d) {
 const Triangle floor_triangle{Point{-9, -9, 0}, Point{9, -9, 0}, Point{0, 12, 0}};
 const Triangle wall_triangle{Point{-9, 3, -8}, Point{0, 3, 12}, Point{9, 3, -8}};
 
-/// The chain as published, whose linear coefficient is half of what it should be: of two equal parameters.
+/// The transfer as published, whose linear coefficient is half of the correct one, for two equal parameters.
 double as_printed(const SurfaceGaussian& p, const Point& o, double d_o) {
     const Vec3 f = p.at - o;
     const double f_n = dot(f, p.n), f_t = std::sqrt(squared_norm(f) - f_n * f_n);
@@ -44,7 +44,7 @@ double as_printed(const SurfaceGaussian& p, const Point& o, double d_o) {
     return pi / A * std::exp(-squared_norm(f) / (d_o * d_o)) * std::exp(B * B / (2 * A));
 }
 
-TEST(GaussianIntegrals, TransferOfTwoTrianglesIsThatOfQuadratureAsCorrectedButNotAsPrinted) {
+TEST(GaussianIntegrals, CorrectedTransferAgreesWithQuadratureAndThePrintedOneDoesNot) {
     const SurfaceGaussian p{{0.3, -0.2, 0}, {0, 0, 1}, 0.8}, q{{-0.4, 3, 0.5}, {0, -1, 0}, 0.6};
     const Point o_x{0.9, 0.3, 0.2}, o_y{0.1, 2.8, 0.1};
     const double d_o = 0.7;
@@ -53,7 +53,7 @@ TEST(GaussianIntegrals, TransferOfTwoTrianglesIsThatOfQuadratureAsCorrectedButNo
     const double at_y = by_quadrature(
         wall_triangle, [&](const Point& y) { return gaussian(y, q.at, q.width) * gaussian(y, o_y, d_o); });
     const double right = at_x * at_y;
-    // The triangles reach ten widths beyond the units; what is left is the quadrature's own error.
+    // The triangles extend ten widths beyond the units; the remaining difference is the quadrature error.
     EXPECT_NEAR(transfer(p, q, o_x, o_y, d_o) / right, 1, 1e-8);
     const double printed = as_printed(p, o_x, d_o) * as_printed(q, o_y, d_o);
     EXPECT_LT(printed / right, 0.9);
@@ -75,7 +75,7 @@ TEST(GaussianIntegrals, OverTrianglesAndParallelogramsBordersAreExact) {
         }
 }
 
-TEST(GaussianIntegrals, RectanglesByErrorFunctionsAreTheirTwoTriangles) {
+TEST(GaussianIntegrals, RectanglesByErrorFunctionsEqualTheirTwoTriangles) {
     const std::vector<Point> r{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
     const Normal n{0, 0, 1};
     for (const Point& c : {Point{0.7, 0.2, 0.1}, Point{2, 1, 0}, Point{3, 0.5, 0}}) {

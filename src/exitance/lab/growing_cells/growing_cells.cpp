@@ -9,8 +9,8 @@ namespace exitance {
 namespace {
 
 constexpr std::uint32_t leaf_size = 8;
-constexpr double most_increment = 1e12;  ///< Beyond it resources are scaled back.
-constexpr double least_width = 1e-9;     ///< Of units that stand on one another.
+constexpr double max_increment = 1e12;  ///< Resources are rescaled above this.
+constexpr double min_width = 1e-9;      ///< For units that coincide.
 
 }  // namespace
 
@@ -37,7 +37,7 @@ double GrowingCells::measured_width(Unit u) const {
     double sum = 0;
     const auto around = complex_.neighbours(u);
     for (const Unit c : around) sum += std::sqrt(distance_squared(c, position(u)));
-    return std::max(least_width, around.empty() ? 0 : sum / static_cast<double>(around.size()));
+    return std::max(min_width, around.empty() ? 0 : sum / static_cast<double>(around.size()));
 }
 
 void GrowingCells::refresh() {
@@ -200,7 +200,7 @@ GrowingCells::Unit GrowingCells::insert() {
         const double length = distance_squared(c, position(q));
         if (length > longest) longest = length, f = c;
     }
-    // Resource goes to the new unit as its neighbours' volumes shrink.
+    // The new unit takes resource from its neighbours in proportion to their loss of volume.
     std::vector<Unit> around(complex_.neighbours(q).begin(), complex_.neighbours(q).end());
     around.push_back(q);
     std::vector<double> before;
@@ -221,7 +221,7 @@ GrowingCells::Unit GrowingCells::insert() {
         resource_[c] *= 1 - lost;
     }
     increment_ /= 1 - options_.decay;
-    if (increment_ > most_increment) {
+    if (increment_ > max_increment) {
         for (double& v : resource_) v /= increment_;
         increment_ = 1;
     }

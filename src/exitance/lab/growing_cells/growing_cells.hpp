@@ -9,28 +9,29 @@
 
 namespace exitance {
 
-/// How a network learns; numbers as in [Fritzke94] unless said otherwise.
+/// Parameters of learning; defaults as in [Fritzke94] unless stated otherwise.
 struct GrowingCellsOptions {
     std::size_t simplex = 2;    ///< k, dimension of the complex.
     std::size_t dimension = 3;  ///< n, of the samples, at least k.
-    std::size_t outputs = 0;    ///< Values a unit holds; 0: none is learned.
+    std::size_t outputs = 0;    ///< Number of output values per unit; 0: none is learned.
     double winner_rate = 0.06;
     double neighbour_rate = 0.002;
-    double output_rate = 0.2;  ///< Of the delta rule, by the activations' sum of squares where that is above 1.
-    double decay = 0.05;       ///< Share of resource that a unit loses between two insertions.
-    double width_share = 1;    ///< Of the mean length of a unit's edges, as the width of its Gaussian.
-    bool normalised = false;   ///< Are activations divided by their sum?
+    /// Rate of the delta rule, divided by the activations' sum of squares if that exceeds 1.
+    double output_rate = 0.2;
+    double decay = 0.05;      ///< Share of its resource that a unit loses between two insertions.
+    double width_share = 1;   ///< Width of a unit's Gaussian as a share of the mean length of its edges.
+    bool normalised = false;  ///< True if activations are divided by their sum.
 };
 
-/// Growing cell structures: units in R^n at the corners of a simplicial complex, which move towards samples, learn to
-/// answer with outputs, and become more where resource gathers. Sources: [Fritzke94]; Gaussian outputs by the delta
-/// rule. A step costs O(log units) for the winner, and its neighbourhood. No randomness of its own: the same samples
-/// give the same network.
+/// Growing cell structures: units in R^n at the vertices of a simplicial complex. Units move towards samples, learn
+/// outputs, and are inserted where resource accumulates. Sources: [Fritzke94]; Gaussian outputs by the delta rule. A
+/// step costs O(log units) for finding the winner, plus its neighbourhood. Uses no random numbers: equal samples give
+/// equal networks.
 class GrowingCells {
   public:
     using Unit = CellComplex::Unit;
 
-    /// `corners`: n coordinates of k + 1 units, one after the other.
+    /// corners  n coordinates of each of the k + 1 first units, unit after unit
     GrowingCells(const GrowingCellsOptions& options, std::span<const double> corners);
 
     const GrowingCellsOptions& options() const { return options_; }
@@ -40,10 +41,10 @@ class GrowingCells {
     std::span<const double> position(Unit u) const { return {&position_[u * options_.dimension], options_.dimension}; }
     std::span<const double> output(Unit u) const { return {&output_[u * options_.outputs], options_.outputs}; }
     std::span<double> output(Unit u) { return {&output_[u * options_.outputs], options_.outputs}; }
-    double width(Unit u) const { return width_[u]; }  ///< Of the unit's Gaussian, as last measured.
+    double width(Unit u) const { return width_[u]; }  ///< Width of the unit's Gaussian when last measured.
     double resource(Unit u) const { return resource_[u] / increment_; }
 
-    /// The unit nearest to a sample, of two the one of the lower number.
+    /// The unit nearest to a sample; among equals, the one with the lower number.
     Unit winner(std::span<const double> sample) const;
 
     /// Calls visit(unit, exp(-|x - w|^2 / width^2)) for all units within three widths.
@@ -56,28 +57,31 @@ class GrowingCells {
     }
     static constexpr double cutoff = 9;
 
-    /// Output at a place: sum of activations times outputs, by the sum of activations where `normalised`; zeros where
-    /// no unit is near, then normalised the winner's own.
+    /// Output at a point: the sum of activations times outputs, divided by the sum of activations if `normalised`. If
+    /// no unit is near: the winner's output (normalised), or zeros.
     void evaluate(std::span<const double> x, std::span<double> out) const;
 
-    /// One step: the winner and its neighbours move, outputs follow the target by the delta rule, the winner's resource
-    /// grows by `density` plus `error` times the squared error before the step. Returns that error squared.
+    /// Learns one sample. The winner and its neighbours move towards it, outputs follow the target by the delta rule,
+    /// and the winner's resource grows by `density` plus `error` times the squared error before the step. Returns that
+    /// squared error.
     double learn(std::span<const double> sample, std::span<const double> target, double density, double error);
 
-    /// A new unit on the longest edge at the unit of the largest resource. Returns it.
+    /// Inserts a unit on the longest edge at the unit with the largest resource. Returns it.
     Unit insert();
 
-    /// Takes away units that have won too few samples since this was last called, of those that were there then: the
-    /// count, by volume (mean edge to the power k) or as it is, is below `threshold` times the mean. Returns how many.
+    /// Removes units that have won too few samples since the previous call; units added since then are exempt. A unit
+    /// is idle if its count (per volume, i.e. the mean edge to the power k, if `by_volume`) is below `threshold` times
+    /// the mean. Returns the number of removed units.
     std::size_t remove_idle(double threshold, bool by_volume = true);
 
-    /// Measures all widths and makes the index anew; insert() does so from time to time.
+    /// Measures all widths and rebuilds the search index; insert() does so from time to time.
     void refresh();
 
   private:
     struct Node {
-        std::uint32_t first = 0, count = 0;  ///< Of a leaf; else children are at `first` and `first` + 1.
-        double reach = 0;                    ///< Three of the largest width below.
+        /// Leaf: range in `items_`. Otherwise: count = 0, children at `first` and `first` + 1.
+        std::uint32_t first = 0, count = 0;
+        double reach = 0;  ///< Three times the largest width below.
     };
 
     double distance_squared(Unit u, std::span<const double> x) const {
@@ -119,17 +123,20 @@ class GrowingCells {
     GrowingCellsOptions options_;
     CellComplex complex_;
     std::vector<double> position_, output_, resource_, width_;
-    std::vector<std::uint32_t> signals_;  ///< Samples won since the last look for idle units; `young`: not there then.
+    /// Samples won since the last remove_idle(); flag `young`: inserted after it.
+    std::vector<std::uint32_t> signals_;
     static constexpr std::uint32_t young = 0x80000000u;
-    double increment_ = 1;  ///< What one unit of resource is worth now: decay makes it grow instead.
+    /// Current value of one unit of resource: it grows so that stored resources need not decay.
+    double increment_ = 1;
 
-    // The index: boxes around units as they stood when it was made, by how far any has moved since; later ones aside.
+    // The search index: boxes around the units where they were when it was built, valid up to the largest move since
+    // (drift_). Units added later are in tail_.
     std::vector<Node> nodes_;
-    std::vector<double> boxes_;  ///< Low corner, then high one, of every node.
+    std::vector<double> boxes_;  ///< Lower corner, then upper corner, of every node.
     std::vector<Unit> items_, tail_;
-    std::vector<double> indexed_at_;  ///< Positions when the index was made.
+    std::vector<double> indexed_at_;  ///< Positions when the index was built.
     double drift_ = 0, mean_width_ = 0;
-    std::vector<std::pair<Unit, double>> active_;  ///< Room to work in.
+    std::vector<std::pair<Unit, double>> active_;  ///< Scratch memory.
 };
 
 }  // namespace exitance

@@ -13,7 +13,7 @@ std::vector<double> first_corners(std::size_t k, std::size_t n, RandomStream& ra
     return out;
 }
 
-TEST(CellComplex, StaysValidInEveryDimensionWhereverItIsCutAndThinned) {
+TEST(CellComplex, StaysValidInEveryDimensionAfterSplitsAndRemovals) {
     for (std::size_t k = 1; k <= 4; ++k) {
         RandomStream random(k, Stream::mesh);
         CellComplex complex(k);
@@ -72,9 +72,9 @@ TEST(GrowingCells, TheWinnerIsTheNearestUnit) {
     }
 }
 
-/// Samples of two squares that are apart: what lies between them gets nothing and goes, and two nets are left
+/// Samples from two separate squares: units in between receive nothing and are removed, which leaves two networks
 /// [Fritzke94].
-TEST(GrowingCells, TwoClustersComeApart) {
+TEST(GrowingCells, TwoClustersSeparate) {
     RandomStream random(3, Stream::mesh);
     GrowingCells cells({.simplex = 2, .dimension = 2}, first_corners(2, 2, random));
     std::size_t gone = 0;
@@ -126,7 +126,7 @@ TEST(GrowingCells, OutputsFollowAFunction) {
         cells.evaluate(sample, out);
         sum += std::pow(out[0] - f(x, y), 2) / 1000;
     }
-    EXPECT_LT(std::sqrt(sum), 0.06);  // the function varies by 1.7; a constant leaves 0.45
+    EXPECT_LT(std::sqrt(sum), 0.06);  // the function varies by 1.7; a constant has an error of 0.45
 }
 
 }  // namespace

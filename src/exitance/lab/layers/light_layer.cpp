@@ -13,10 +13,10 @@ namespace {
 
 using Ends = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Numbers edges in the order in which triangles come to them.
+/// Numbers edges in the order in which triangles first use them.
 class EdgeNumbers {
   public:
-    /// Of a triangle's edges 0-1, 1-2, 2-0; `fresh` tells which are new.
+    /// Returns the numbers of a triangle's edges 0-1, 1-2, 2-0; `fresh` receives which of them are new.
     std::array<std::uint32_t, 3> add(const std::array<std::uint32_t, 3>& corners, std::array<bool, 3>& fresh) {
         std::array<std::uint32_t, 3> out;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -31,12 +31,14 @@ class EdgeNumbers {
     std::map<Ends, std::uint32_t> numbers_;
 };
 
-/// The nearest number of 16 bits (binary16 of IEEE 754: 5 of them exponent, 10 mantissa), ties to even; not every
-/// compiler has such a type. Steps are 2^(e - 10) from 2^e on, and 2^-24 below 2^-14. No value is a NaN.
+/// Rounds to the nearest half float (IEEE 754 binary16: 5 bits exponent, 10 bits mantissa), ties to even, because not
+/// every compiler has such a type. The spacing is 2^(e - 10) from 2^e on, and 2^-24 below 2^-14. The value must not be
+/// NaN.
 std::uint16_t to_half(double value) {
     const unsigned sign = std::signbit(value) ? 0x8000 : 0;
     const double size = std::abs(value);
-    if (size >= 65520) return static_cast<std::uint16_t>(sign | 0x7c00);  // nearer to infinity than to the largest
+    // Nearer to infinity than to the largest half float.
+    if (size >= 65520) return static_cast<std::uint16_t>(sign | 0x7c00);
     const int exponent = size > 0 ? std::max(std::ilogb(size), -14) : -14;
     const int steps = static_cast<int>(std::nearbyint(std::ldexp(size, 10 - exponent)));
     return static_cast<std::uint16_t>(sign | static_cast<unsigned>(1024 * (exponent + 14) + steps));
@@ -54,15 +56,16 @@ double interpolated(const std::array<double, 6>& values, Vec2 st) {
     return sum;
 }
 
-/// Barycentric coordinates of p, those of corners 1 and 2.
+/// Barycentric coordinates of p with respect to corners 1 and 2.
 Vec2 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
     const Vec2 a = c[1] - c[0], b = c[2] - c[0], d = p - c[0];
     const double area = cross(a, b);
     return {cross(d, b) / area, cross(a, d) / area};
 }
 
-constexpr double most16 = 65535;
-constexpr double rounding = 1 / most16;  ///< Of the box: a whole step, where corners move by half a step at most.
+constexpr double max_uint16 = 65535;
+/// Share of the box: one step of the 16-bit coordinates; corners move by at most half a step.
+constexpr double rounding = 1 / max_uint16;
 
 }  // namespace
 
@@ -119,8 +122,8 @@ LightLayer::LightLayer(const LayerTriangles& from, Form form) {
                     c.vertices.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(value)});
                 else
                     c.half_vertices.push_back(
-                        {static_cast<std::uint16_t>(std::lround(most16 * (p.x - c.lo.x) / c.size.x)),
-                         static_cast<std::uint16_t>(std::lround(most16 * (p.y - c.lo.y) / c.size.y)),
+                        {static_cast<std::uint16_t>(std::lround(max_uint16 * (p.x - c.lo.x) / c.size.x)),
+                         static_cast<std::uint16_t>(std::lround(max_uint16 * (p.y - c.lo.y) / c.size.y)),
                          to_half(value / c.scale)});
             }
             ids[k] = id;
@@ -174,7 +177,7 @@ std::array<Vec2, 3> LightLayer::corners(std::size_t t) const {
             out[k] = {static_cast<double>(c.vertices[id[k]].u), static_cast<double>(c.vertices[id[k]].v)};
         } else {
             const HalfVertex& v = c.half_vertices[id[k]];
-            out[k] = {c.lo.x + c.size.x * v.u / most16, c.lo.y + c.size.y * v.v / most16};
+            out[k] = {c.lo.x + c.size.x * v.u / max_uint16, c.lo.y + c.size.y * v.v / max_uint16};
         }
     }
     return out;
@@ -225,7 +228,7 @@ double LightLayer::at(const Vec2& p) const {
     if (!(in.x >= -rounding && in.x <= 1 + rounding && in.y >= -rounding && in.y <= 1 + rounding)) return 0;
     const auto i = static_cast<std::size_t>(std::clamp(n * in.x, 0.0, n - 1)),
                j = static_cast<std::size_t>(std::clamp(n * in.y, 0.0, n - 1));
-    // A coordinate below 0 is how far the place lies beyond an edge, over the height above it.
+    // A negative coordinate is the distance of the point beyond an edge, relative to the triangle's height over it.
     double nearest = rounding * std::max(c.size.x, c.size.y), light = 0;
     for (const std::uint32_t t : grid_[i * cells_ + j]) {
         const std::array<Vec2, 3> corner = corners(t);
@@ -233,7 +236,7 @@ double LightLayer::at(const Vec2& p) const {
         const std::array<double, 3> L{1 - st.x - st.y, st.x, st.y};
         if (L[0] >= 0 && L[1] >= 0 && L[2] >= 0) return at(t, st);
         const double twice = std::abs(cross(corner[1] - corner[0], corner[2] - corner[0]));
-        if (!std::isfinite(st.x) || !std::isfinite(st.y)) continue;  // rounded to a line
+        if (!std::isfinite(st.x) || !std::isfinite(st.y)) continue;  // degenerate after rounding
         double beyond = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec2 edge = corner[(k + 2) % 3] - corner[(k + 1) % 3];

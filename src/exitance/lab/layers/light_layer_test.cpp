@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A grid of 2 n^2 triangles over 3 x 2 metres; light falls off from a corner, and is dark beyond x = 2.
+/// A grid of 2 n^2 triangles over 3 x 2 metres; light decreases from a corner and is 0 beyond x = 2.
 LayerTriangles grid(std::uint32_t n) {
     const auto light = [](const Vec2& p) { return p.x >= 2 ? 0 : 100 * (2 - p.x) * std::exp(-p.y); };
     LayerTriangles out;
@@ -37,7 +37,7 @@ LayerTriangles grid(std::uint32_t n) {
 TEST(LightLayer, CompressedFormsHoldTheSameLightInHalfAndAQuarterOfTheBytes) {
     const LayerTriangles all = grid(30);
     const double winged = static_cast<double>(winged_edge_bytes(all));
-    EXPECT_NEAR(winged / static_cast<double>(all.corners.size()), 92, 6);  // bytes a triangle
+    EXPECT_NEAR(winged / static_cast<double>(all.corners.size()), 92, 6);  // bytes per triangle
     for (const auto& [form, share] : {std::pair(LightLayer::Form::floats, 0.5), {LightLayer::Form::halves, 0.25}}) {
         LightLayer layer(all, form);
         EXPECT_EQ(layer.size(), 2u * 30 * 20) << "dark triangles are left out";
@@ -47,7 +47,7 @@ TEST(LightLayer, CompressedFormsHoldTheSameLightInHalfAndAQuarterOfTheBytes) {
         for (int k = 0; k < 500; ++k) {
             const double x = 3 * random.uniform(), y = 2 * random.uniform();
             const double exact = x >= 2 ? 0 : 100 * (2 - x) * std::exp(-y);
-            // A thousandth of the largest value: halves have 11 bits, coordinates 16.
+            // 0.1% of the largest value: halves have 11 bits, coordinates 16.
             EXPECT_NEAR(layer.at({x, y}), exact, 0.2);
         }
         EXPECT_EQ(layer.at({2.5, 1}), 0);
@@ -56,7 +56,7 @@ TEST(LightLayer, CompressedFormsHoldTheSameLightInHalfAndAQuarterOfTheBytes) {
 }
 
 TEST(LightLayer, RoundedBordersLeaveNoDarkPlaces) {
-    // A triangle whose long side is nowhere on the grid of 16 bits: places on it lie beyond it once it is rounded.
+    // A triangle whose long side is not on the 16-bit grid: after rounding, points on it are outside.
     LayerTriangles one;
     one.points = {{0, 0}, {3, 0.1237}, {0.7771, 2}}, one.values = {1, 1, 1};
     one.corners = {{0, 1, 2}}, one.middles = {{1, 1, 1}};
@@ -68,11 +68,11 @@ TEST(LightLayer, RoundedBordersLeaveNoDarkPlaces) {
                 const Vec2 a = one.points[side], b = one.points[(side + 1) % 3];
                 EXPECT_NEAR(layer.at(a + (k / 200.0) * (b - a)), 1, 1e-3);
             }
-        EXPECT_EQ(layer.at({1.5, 0.05}), 0);  // well beside it
+        EXPECT_EQ(layer.at({1.5, 0.05}), 0);  // well outside
     }
 }
 
-TEST(LightLayer, WhatIsStoredMakesItAgainAndNonsenseIsNamed) {
+TEST(LightLayer, ContentsRestoreTheLayerAndInvalidOnesAreReported) {
     const LightLayer layer(grid(5), LightLayer::Form::halves);
     LightLayer again{LightLayer::Contents(layer.contents())};
     EXPECT_FALSE(find_nonsense(layer.contents()));
@@ -89,7 +89,7 @@ TEST(LightLayer, WhatIsStoredMakesItAgainAndNonsenseIsNamed) {
     EXPECT_TRUE(find_nonsense(wrong));
 }
 
-TEST(LightLayer, NothingIsALayer) {
+TEST(LightLayer, AnEmptyMeshIsALayer) {
     LightLayer layer({}, LightLayer::Form::halves);
     layer.make_grid();
     EXPECT_EQ(layer.at({0, 0}), 0);

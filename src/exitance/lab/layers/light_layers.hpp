@@ -7,22 +7,22 @@
 
 namespace exitance {
 
-/// Direct light as one mesh for each source and surface, to be added up.
+/// Direct light as one mesh per source and surface; the light is their sum.
 struct LightLayers {
-    /// Of light whose colour is the same everywhere, one a source and region; else one a band.
+    /// One per source and region if the light has the same colour everywhere, otherwise one per band.
     struct Sheet {
         RegionId region;
-        std::uint32_t source = 0;  ///< Of `sources`.
-        Spectrum colour;           ///< What a value of the layer counts.
+        std::uint32_t source = 0;  ///< Index in `sources`.
+        Spectrum colour;           ///< Light per unit of the layer's value.
         LightLayer light;
     };
-    /// Regions that emit, each by itself; none, the last: what else shines, together.
+    /// The emitting regions, each a source of its own. The last entry, none, represents all other emitters together.
     std::vector<RegionId> sources;
-    std::vector<Sheet> sheets;  ///< By region, then by source.
+    std::vector<Sheet> sheets;  ///< Sorted by region, then by source.
 
     bool empty() const { return sources.empty(); }
-    std::size_t size() const;          ///< Triangles that are stored.
-    std::size_t memory_bytes() const;  ///< Of the compressed layers.
+    std::size_t size() const;          ///< Number of stored triangles.
+    std::size_t memory_bytes() const;  ///< Memory of the compressed layers.
 };
 
 /// The sum of all layers at a point of a region, whose grids must be made: irradiance, W/m^2.
@@ -54,7 +54,7 @@ class LayersForm final : public LightForm {
 /// The layers of a solution; empty ones where it has none.
 const LightLayers& layers_of(const Solution& solution);
 
-/// A place of a region in the coordinates of its layers.
+/// A point of a region in the coordinates of its layers.
 Vec2 layer_place(const Region& region, const Point& p);
 
 }  // namespace exitance

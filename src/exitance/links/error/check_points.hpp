@@ -7,15 +7,15 @@
 
 namespace exitance {
 
-/// Points of a receiver between its nodes, the middle first, at which a polynomial of the basis and one of a degree
-/// more differ by about as much as in the mean; of constants, Gauss's points.
+/// Check points of a receiver between its nodes, the centre first. At these points, a polynomial of the basis and one
+/// of the next degree differ by about as much as in the mean. For constants: Gauss points.
 class CheckPoints {
   public:
     explicit CheckPoints(const NodalBasis& basis);
 
-    /// At most five, in coordinates of the shape.
+    /// At most five points, in coordinates of the shape.
     std::span<const Vec2> at(Patch::Shape shape) const { return points(shape).at; }
-    /// Factors of the basis's numbers in its function at check point i.
+    /// Weights of the basis's nodes in the interpolated value at check point i.
     std::span<const double> factors(Patch::Shape shape, std::size_t i) const {
         return std::span(points(shape).factors).subspan(i * nodes_, nodes_);
     }
@@ -23,7 +23,7 @@ class CheckPoints {
   private:
     struct Points {
         std::vector<Vec2> at;
-        std::vector<double> factors;  ///< A row of nodes a point.
+        std::vector<double> factors;  ///< One row of weights (one per node) per point.
     };
     static Points make_points(const NodalBasis& basis, Patch::Shape shape);
     const Points& points(Patch::Shape shape) const {

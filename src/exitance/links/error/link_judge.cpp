@@ -11,15 +11,15 @@
 namespace exitance {
 namespace {
 
-/// Rays that one number takes, and those of a weak link.
-constexpr unsigned rays_a_link = 16, rays_of_a_weak_link = 4;
+/// Number of rays for one value, and for a weak link.
+constexpr unsigned rays_per_link = 16, rays_per_weak_link = 4;
 
-/// Of light below this share of the tolerance, no more than a few rays tell what stands in between.
+/// Returns whether a link is so weak that a few rays suffice for its visibility.
 bool is_weak(double light, double allowed) {
     return light < calibrated::weak_link_share * allowed;
 }
 
-/// The standard error of so many rays with half of the light hidden, W/m^2.
+/// Standard error of this many rays if half of the light is hidden, W/m^2.
 double error_half_hidden(double light, double rays) {
     return 0.5 * light / std::sqrt(rays);
 }
@@ -42,14 +42,15 @@ LinkJudge::LinkJudge(const LinkSites& sites, const NodalField& b, const Field<El
       rule_(sites, tolerance),
       visible_(sites, tolerance.quadrature, tolerance.seed) {}
 
-/// Can the front of either be seen from anywhere on the other? Errs to yes.
+/// Returns whether the front of each element may be visible from somewhere on the other. Conservative: may return true
+/// unnecessarily.
 bool LinkJudge::may_see(ElementId p, ElementId q) const {
     const Vec3 d = sites_.centre(q) - sites_.centre(p);
     const double reach = sites_.radius(p) + sites_.radius(q), slack = sites_.stage().occluders.rounding();
     return dot(sites_.normal(p), d) > slack - reach && -dot(sites_.normal(q), d) > slack - reach;
 }
 
-/// Finds what may stand in between, unless it is known; of a weak pair, what was known before.
+/// Determines possible occluders, unless they are known. For a weak pair, uses those inherited.
 void LinkJudge::classify_view(LinkPair& pair, std::span<const PieceId> pool, bool is_weak) {
     if (pair.view != View::mixed || classified_) return;
     const auto inherited = pool.subspan(pair.first, pair.triaged ? pair.count : 0);
@@ -66,8 +67,8 @@ void LinkJudge::classify_view(LinkPair& pair, std::span<const PieceId> pool, boo
     }
 }
 
-/// What little an element sends to another arrives alike all over it, wherever on the source it comes from: then one
-/// number does, whatever the basis. Returns nothing where that is not so.
+/// Tries a constant link: a small contribution may be treated as uniform over the receiver and as independent of where
+/// on the source it originates, for every basis. Returns nothing if that is too inaccurate.
 std::optional<LinkDecision> LinkJudge::judge_as_constant(LinkPair& pair, std::span<const PieceId> pool,
                                                          const SourceLight& source, double allowed) {
     const auto [p, q] = std::pair{pair.receiver, pair.source};
@@ -90,8 +91,8 @@ std::optional<LinkDecision> LinkJudge::judge_as_constant(LinkPair& pair, std::sp
     double visibility_error = 0;
     if (pair.view == View::mixed) {
         constexpr double hopeless_excess = 2;
-        if (error_half_hidden(light, rays_a_link) > hopeless_excess * allowed) return std::nullopt;
-        visibility_error = light * visible_.look(p, q, weak ? rays_of_a_weak_link : rays_a_link);
+        if (error_half_hidden(light, rays_per_link) > hopeless_excess * allowed) return std::nullopt;
+        visibility_error = light * visible_.look(p, q, weak ? rays_per_weak_link : rays_per_link);
         if (visibility_error > allowed) return std::nullopt;
     }
     const double area = sites_.tree().area(p);
@@ -106,7 +107,7 @@ std::optional<LinkDecision> LinkJudge::judge_as_constant(LinkPair& pair, std::sp
 
 double LinkJudge::cast_once(const LinkPair& pair, const OpenTransfer& transfer, unsigned times, bool few) {
     if (n_ == 1) {
-        const unsigned rays = tolerance_.quadrature ? 1 : few ? rays_of_a_weak_link : rays_a_link * times;
+        const unsigned rays = tolerance_.quadrature ? 1 : few ? rays_per_weak_link : rays_per_link * times;
         return std::abs(transfer.light[0]) * visible_.look(pair.receiver, pair.source, rays);
     }
     visible_.look_by_node(pair.receiver, pair.source, times, few && !tolerance_.quadrature);
@@ -116,20 +117,20 @@ double LinkJudge::cast_once(const LinkPair& pair, const OpenTransfer& transfer, 
     return std::sqrt(variance);
 }
 
-/// Casts rays between the two, a few or more if the error is not to be above `allowed`; returns the standard error of
-/// the light that arrives, W/m^2.
+/// Casts rays between the two, more if that is needed for an error of at most `allowed`. Returns the standard error of
+/// the received light, W/m^2. few: only a few rays.
 double LinkJudge::cast(const LinkPair& pair, const OpenTransfer& transfer, bool few, double allowed) {
-    constexpr double most_times = 16;
+    constexpr double max_times = 16;
     const double error = cast_once(pair, transfer, 1, few);
     if (few || tolerance_.quadrature || error <= allowed) return error;
-    const double times = std::clamp(std::ceil(std::pow(error / allowed, 2)), 2.0, most_times);
+    const double times = std::clamp(std::ceil(std::pow(error / allowed, 2)), 2.0, max_times);
     return cast_once(pair, transfer, static_cast<unsigned>(times), few);
 }
 
-/// By strength: the larger of the two, as long as the link is too strong. A source that is a leaf stays as it is; as a
-/// receiver it is judged by itself.
+/// Strength oracles: if the link is too strong, selects the larger element for splitting. A source that is a leaf is
+/// not split; as a receiver it is judged separately.
 LinkJudge::Cut LinkJudge::what_to_cut(const LinkPair& pair, const OpenTransfer& transfer) const {
-    constexpr double partial = 0.5;  // of what is allowed, where something may stand in between; [Hanrahan91]
+    constexpr double partial = 0.5;  // share of the limit if occluders are possible; given by [Hanrahan91]
     const auto [p, q] = std::pair{pair.receiver, pair.source};
     const double allowed = (pair.view == View::mixed ? partial : 1) * tolerance_.strongest;
     const double area = sites_.tree().area(p), ratio = area / sites_.tree().area(q);
@@ -167,10 +168,10 @@ LinkDecision LinkJudge::decide_by_error(LinkPair& pair, std::span<const PieceId>
     if (!leaf && transfer.rule_error > allowed) return cut_source;
     double visibility_error = 0;
     if (pair.view == View::mixed) {
-        // Rays whose error would be far too large are not worth casting.
-        const double rays_a_node = n_ == 1 ? rays_a_link : static_cast<double>(n_);
+        // If the error of the rays would be far too large anyway, they are not cast.
+        const double rays_per_node = n_ == 1 ? rays_per_link : static_cast<double>(n_);
         constexpr double hopeless_excess = 3;
-        if (!leaf && error_half_hidden(light, rays_a_node) > hopeless_excess * allowed) return cut_source;
+        if (!leaf && error_half_hidden(light, rays_per_node) > hopeless_excess * allowed) return cut_source;
         visibility_error = cast(pair, transfer, weak, leaf ? allowed : HUGE_VAL);
         if (!leaf && visibility_error > allowed) return cut_source;
     }
@@ -197,7 +198,7 @@ LinkDecision LinkJudge::judge(LinkPair& pair, std::span<const PieceId> pool) {
                                                       : decide_by_strength(pair, pool, source, transfer, allowed);
 }
 
-/// `visibility_error`, `undersampling`: RMS over the receiver, W/m^2.
+/// Makes an accepted link. `visibility_error`, `undersampling`: RMS over the receiver, W/m^2.
 LinkDecision LinkJudge::accept(const LinkPair& pair, const SourceLight& source, const OpenTransfer& transfer,
                                double visibility_error, double undersampling) {
     const auto [p, q] = std::pair{pair.receiver, pair.source};
@@ -219,7 +220,7 @@ void LinkJudge::set_block(const OpenTransfer& transfer, double scale) {
         for (std::size_t l = 0; l < n_; ++l) block_.push_back(static_cast<float>(transfer.rows[k][l] * scale));
 }
 
-/// What the rays have shown becomes bits where it is yes or no, and part of the block where it is in between.
+/// Stores the visibility found by rays: as bits if it is 0 or 1, otherwise as factors in the block.
 void LinkJudge::set_kernel(bool open, const SourceLight& source, const OpenTransfer& transfer, LinkDecision& out) {
     if (n_ == 1) {
         const double share = open ? 1 : visible_.share(0);

@@ -11,51 +11,53 @@
 
 namespace exitance {
 
-/// A pair of elements that is to become a link, or several, with what was found out of what stands in between.
+/// A pair of elements that will become one or more links, with what is known about occluders in between.
 struct LinkPair {
     ElementId receiver, source;
     View view = View::mixed;
-    bool triaged = false;                ///< Has the pair, or one that holds it, been classified?
-    std::uint32_t first = 0, count = 0;  ///< Mixed and classified: the candidates, in the round's pool.
+    bool triaged = false;                ///< True if this pair, or one that contains it, has been classified.
+    std::uint32_t first = 0, count = 0;  ///< If mixed and classified: its candidates in the round's pool.
 };
 
-/// What is decided of a pair.
+/// The decision about a pair.
 struct LinkDecision {
     enum class Verdict : std::uint8_t { drop, accept, cut_source };
     Verdict verdict = Verdict::drop;
     Link link;
-    bool near = false;  ///< The kernel stands in block().
-    /// True if the receiver is to be cut whatever its other links bring: by an oracle of strength, or for a peak.
+    bool near = false;  ///< True if the kernel is in block().
+    /// True if the receiver must be split whatever its other links contribute: because of a strength oracle or a peak.
     bool cuts_receiver = false;
-    double squared_error = 0;  ///< Of rule and visibility: area times squared error, of an accepted link.
+    double squared_error = 0;  ///< Error of the rule and of visibility: area times squared error of an accepted link.
     double undersampling = 0;  ///< Error between nodes and check points, in the units of a tolerance.
-    double light = 0;          ///< Of all of the receiver, in the open, W.
+    double light = 0;          ///< Unoccluded power received by the whole receiver, W.
     Departure departure{};
-    /// Where something stands in between: the light at the receiver's nodes, and the variance that rays leave.
+    /// If occluders are possible: the light at the receiver's nodes, and its variance from the rays.
     NodeRow shadowed{}, variance{};
 };
 
-/// Judges pairs of elements. One a thread; keeps its memory.
+/// Judges pairs of elements. One object per thread; reuses its memory.
 ///
-/// The error of a link is that of the radiosity w E which it causes, w the receiver's reflectance:
-/// - the rule: what its order leaves, and the source's departure from its own polynomial (`roughness`, by element, the
-///   RMS of mean bands) where the kernel is no polynomial over it. Then the source is cut;
-/// - visibility: the standard error of as many rays, where nothing is certain. Then the source is cut, or more are
-///   cast;
-/// - interpolation: light that the link sends to points between the receiver's nodes, against the nodes' polynomial.
-///   This is judged for all links of a receiver together: near an edge each part of a wall sends light that varies
-///   fast, while the whole of it does not.
-/// Or links are judged by their strength alone (LinkOracle): where it is too large, the larger of the two is cut.
+/// The error of a link is that of the radiosity w E that it causes, where w is the receiver's reflectance:
+/// - rule: the error of the kernel rule, and of replacing the source's radiosity by its polynomial (`roughness`, per
+/// element, RMS of the mean over bands) where the kernel varies over it. If too large, the source is split;
+/// - visibility: the standard error of the rays, if visibility is uncertain. If too large, the source is split or more
+/// rays are cast;
+/// - interpolation: the difference between the link's light at check points of the receiver and the polynomial through
+/// its nodes. It is judged for all links of a receiver together: near an edge, each part of a wall contributes light
+/// that varies strongly although the sum does not.
+/// Alternatively links are judged by their strength alone (LinkOracle); a link that is too strong has the larger of the
+/// two elements split.
 /// Source: the oracle of [Gortler93] and [Lischinski94], by samples; certain visibility of [Haines91] is inherited.
 class LinkJudge {
   public:
     LinkJudge(const LinkSites& sites, const NodalField& b, const Field<ElementId, double>& roughness,
               const LinkTolerance& tolerance);
 
-    /// `pool` holds the pairs' candidates. For a pair to be cut, what its parts inherit is in candidates().
+    /// Judges a pair. `pool` contains the pairs' candidates. If the pair is split, candidates() is what its parts
+    /// inherit.
     LinkDecision judge(LinkPair& pair, std::span<const PieceId> pool);
 
-    std::span<const float> block() const { return block_; }  ///< nodes() x nodes(), receiver first.
+    std::span<const float> block() const { return block_; }  ///< nodes() x nodes() entries, receiver first.
     std::span<const PieceId> candidates() const { return candidates_; }
     std::size_t rays() const { return visible_.rays(); }
     std::size_t form_factors() const { return rule_.form_factors(); }
@@ -88,7 +90,7 @@ class LinkJudge {
     Shaft shaft_;
     std::vector<PieceId> candidates_;
     std::vector<float> block_;
-    bool classified_ = false;  ///< True once the view of the pair at hand is classified.
+    bool classified_ = false;  ///< True once the view of the current pair is classified.
 };
 
 }  // namespace exitance

@@ -4,11 +4,11 @@
 
 namespace exitance {
 
-/// By what links are held to be good enough.
+/// Criterion by which links are accepted.
 enum class LinkOracle : std::uint8_t {
-    transport,    ///< The error of what they bring.
+    transport,    ///< Error of their contribution.
     form_factor,  ///< The larger of F_pq and F_qp. Source: [Hanrahan91].
-    power,        ///< What they bring, F_pq b_q w_p A_p (BF). Source: [Hanrahan91].
+    power,        ///< Their contribution F_pq b_q w_p A_p (BF). Source: [Hanrahan91].
 };
 
 }  // namespace exitance

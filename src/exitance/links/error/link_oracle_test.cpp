@@ -9,13 +9,13 @@
 namespace exitance {
 namespace {
 
-/// How many links an oracle takes, and how far their light is from the exact one, RMS over the surfaces.
+/// Number of links of an oracle, and RMS error of their light over the surfaces.
 struct Outcome {
     std::size_t links = 0;
     double error = 0;
 };
 
-/// A room without anything in it, one wall of which reflects `bright` W/m^2 and the others `dark`.
+/// An empty room; one wall reflects `bright` W/m^2 and the others `dark`.
 struct Room {
     Scene scene = box_scene(3, 4, 2.5, 0.5, 1);
     Stage stage{scene};
@@ -56,7 +56,7 @@ struct Room {
         return {refiner.size(), std::sqrt(sum / stage.area)};
     }
 
-    /// As the threshold falls, the last one of at most `links` links and the first one of more.
+    /// While the threshold falls: the last outcome with at most `links` links, and the first one with more.
     std::pair<Outcome, Outcome> around(LinkOracle oracle, std::size_t links) const {
         Outcome before;
         for (double threshold = 0.5; threshold > 1e-3; threshold *= 0.6) {
@@ -70,16 +70,16 @@ struct Room {
 
 }  // namespace
 
-TEST(LinkOracle, ByPowerIsBetterThanByFormFactorAndByErrorBetterThanBoth) {
+TEST(LinkOracle, PowerIsBetterThanFormFactorAndErrorIsBetterThanBoth) {
     const Room room;
-    // Walls that meet have form factors that cuts do not lessen: from one threshold to the next their links are cut
-    // down to the least area, and many come at once. The others may have as many.
+    // Walls that meet have form factors that splitting does not reduce. From one threshold to the next their links are
+    // split down to the minimum area, so the number of links jumps. The other oracles are allowed as many.
     const Outcome ff = room.around(LinkOracle::form_factor, 2000).second,
                   bf = room.around(LinkOracle::power, ff.links).first,
                   error = room.around(LinkOracle::transport, ff.links).first;
     EXPECT_LE(bf.links, ff.links);
     EXPECT_LE(error.links, ff.links);
-    // 0.038, 0.020 and 0.012 W/m^2 of 0.2 in the mean.
+    // Errors: 0.038, 0.020 and 0.012 W/m^2, for a mean of 0.2.
     EXPECT_LT(bf.error, 0.7 * ff.error) << bf.links << " " << ff.links;
     EXPECT_LT(error.error, 0.7 * bf.error) << error.links;
 }

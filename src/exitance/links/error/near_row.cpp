@@ -14,7 +14,7 @@ void NearRow::set_source(ElementId q) {
     outline_ = sites_.tree().outline(q);
 }
 
-/// What reaches x from around uv, to the numbers that stand for the function there.
+/// Adds transport K from around uv to the values that represent the function there.
 void NearRow::add_point(Vec2 uv, double K) {
     const NodalBasis& basis = sites_.basis();
     if (basis.is_flat()) {
@@ -51,8 +51,8 @@ void NearRow::add(const Point& x, const Normal& n, const Box& box, int depth) {
         }
         return;
     }
-    constexpr int deepest = 5;
-    if (depth == deepest) {
+    constexpr int max_depth = 5;
+    if (depth == max_depth) {
         corners_ = {origin, origin + a, triangle ? origin + b : origin + a + b, origin + b};
         const double F = point_to_polygon(x, n, std::span(corners_).first(triangle ? 3 : 4));
         if (F > 0) add_point(triangle ? at(1.0 / 3, 1.0 / 3) : at(0.5, 0.5), F);
@@ -91,7 +91,7 @@ double NearRow::operator()(const Point& x, const Normal& n, double* out) {
     for (std::size_t l = 0; l < count; ++l) all += out[l];
     if (all > 1e-12 * F) {  // given by rounding
         for (std::size_t l = 0; l < count; ++l) out[l] *= F / all;
-    } else {  // what is seen is a sliver between the rule's points
+    } else {  // only a sliver between the rule's points is visible
         for (std::size_t l = 0; l < count; ++l) out[l] = F * basis.nodes(frame_.shape)[l].weight;
     }
     return F;

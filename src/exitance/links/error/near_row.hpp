@@ -7,23 +7,24 @@
 
 namespace exitance {
 
-/// Light from an element to points that may be near to it, node by node of the element:
+/// Transport from an element to points that may be near it, per node of the element:
 ///
 ///     K_l(x) = int over q of  cos cos / (pi |y - x|^2)  N_l(y) dA
 ///
-/// with N_l the function that is 1 at node l: boxes that are small from x take Gauss's points, larger ones are cut,
-/// and the last ones take the exact form factor of the box. In the end all are scaled to the exact form factor of the
-/// whole element, so that even light arrives exactly. O(log(size / distance)) boxes, about 10 ns a point.
+/// where N_l is the function that is 1 at node l. A box of the element that appears small from x is integrated by Gauss
+/// points; a larger one is subdivided; the last ones use the exact form factor of the box. Finally the row is scaled to
+/// the exact form factor of the whole element, so that uniform light is transported exactly. O(log(size / distance))
+/// boxes, about 10 ns per point.
 class NearRow {
   public:
     explicit NearRow(const LinkSites& sites) : sites_(sites) {}
     void set_source(ElementId q);
-    /// Writes nodes() entries; returns their sum, the form factor.
+    /// Writes nodes() entries to `out`; returns their sum, the form factor.
     double operator()(const Point& x, const Normal& n, double* out);
 
   private:
     struct Box {
-        Vec2 origin, size;  ///< In the element's coordinates; a triangle's box of negative size is a turned one.
+        Vec2 origin, size;  ///< In the element's coordinates. A negative size denotes an inverted triangle.
     };
     void add(const Point& x, const Normal& n, const Box& box, int depth);
     void add_point(Vec2 uv, double K);

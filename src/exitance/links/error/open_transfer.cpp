@@ -9,10 +9,10 @@
 namespace exitance {
 namespace {
 
-/// Scale from what a rule sends to what is exact. Beyond these bounds the horizon cuts the source.
+/// Scale from a rule's result to the exact one. Beyond these bounds the horizon cuts the source.
 double scale_to(double exact, double rule) {
-    constexpr double least = 0.5, most = 2;
-    return rule > 0 ? std::clamp(exact / rule, least, most) : 1;
+    constexpr double min_scale = 0.5, max_scale = 2;
+    return rule > 0 ? std::clamp(exact / rule, min_scale, max_scale) : 1;
 }
 
 }  // namespace
@@ -24,10 +24,10 @@ double OpenTransfer::largest_light(std::size_t nodes) const {
 }
 
 double OpenTransferRule::ratio(ElementId receiver, ElementId source) const {
-    constexpr double least_gap = 1e-3;  // of the source's size: rounding (given by rounding)
+    constexpr double min_gap = 1e-3;  // share of the source's size: avoids rounding (given by rounding)
     const double radius = sites_.radius(source);
     const double gap = norm(sites_.centre(source) - sites_.centre(receiver)) - sites_.radius(receiver);
-    return radius / std::max(gap, least_gap * radius);
+    return radius / std::max(gap, min_gap * radius);
 }
 
 double OpenTransferRule::form_factor(const Point& x, const Normal& n, std::span<const Point> outline) {
@@ -44,8 +44,8 @@ NodeRow OpenTransferRule::row(const OpenTransfer& transfer, const SourceLight& s
     return out;
 }
 
-/// One number stands for the whole receiver: the mean over Gauss's points of what reaches them, which goes to `light`.
-/// Its middle alone would miss what peaks at edges where surfaces meet.
+/// The row for a receiver with one value: the mean over its Gauss points, whose light is stored in `light`. The centre
+/// alone would miss peaks at edges where surfaces meet.
 NodeRow OpenTransferRule::mean_row(const OpenTransfer& transfer, const SourceLight& source, const Patch& receiver,
                                    const Normal& n, Departure& light) {
     const std::span<const Vec2> at = checks_.at(receiver.shape);
@@ -58,8 +58,8 @@ NodeRow OpenTransferRule::mean_row(const OpenTransfer& transfer, const SourceLig
     return out;
 }
 
-/// Fills rows and light at the nodes, and of constants light at the check points, which goes to `departure`. Returns
-/// the mean form factor over the receiver.
+/// Computes rows and light at the nodes; for constants also the light at the check points, stored in `departure`.
+/// Returns the mean form factor over the receiver.
 double OpenTransferRule::set_rows(OpenTransfer& transfer, ElementId receiver, const SourceLight& source) {
     const Normal& n = sites_.normal(receiver);
     const Patch frame = sites_.frame(receiver);
@@ -75,11 +75,12 @@ double OpenTransferRule::set_rows(OpenTransfer& transfer, ElementId receiver, co
     return mean;
 }
 
-/// How much light the kernel, made anew and scaled to send what near rows do in the mean, misplaces at the node where
-/// that is most: of small or dim sources little, near as they are.
+/// Largest error at a node of the recomputed kernel, scaled to the mean of the near rows, W/m^2. It is small for small
+/// or dim sources even if they are near.
 double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId receiver, const SourceLight& source) const {
     if (nodes_ == 1) return 0;
-    constexpr double least = 1e-3;  // of their sizes: single precision loses nodes that are nearer (given by rounding)
+    // Share of their sizes: single precision loses nodes that are nearer (given by rounding)
+    constexpr double least = 1e-3;
     const double nearest = least * (sites_.radius(receiver) + sites_.radius(source.element));
     std::array<NodeRow, 9> kernel;
     double exact = 0, rule = 0;
@@ -94,7 +95,7 @@ double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId recei
     }
     const double scale = transfer.kernel_scale = scale_to(exact, rule);
     constexpr double rounding = 1e-6;                                        // given by rounding
-    if (std::abs(scale * rule - exact) > rounding * exact) return HUGE_VAL;  // errors of one sign would add up
+    if (std::abs(scale * rule - exact) > rounding * exact) return HUGE_VAL;  // errors of one sign would accumulate
     double most = 0;
     for (std::size_t k = 0; k < nodes_; ++k)
         most = std::max(most, std::abs(scale * source.received(kernel[k]) - transfer.light[k]));
@@ -110,19 +111,19 @@ OpenTransfer OpenTransferRule::send(ElementId receiver, const SourceLight& sourc
     double mean_form_factor = 0, kernel_error = 0;
     if (out.ratio <= calibrated::nearest_integrated_ratio) {
         mean_form_factor = set_rows(out, receiver, source);
-        // Strength says nothing of the rule: there the good one is taken.
-        const bool is_rough =
+        // Strength says nothing about the accuracy of the rule, so those oracles always use the accurate one.
+        const bool needs_near_rows =
             !by_error || out.largest_light(nodes_) * relative_error > calibrated::negligible_link_share * allowed;
-        out.near = out.ratio > calibrated::farthest_integrated_ratio && is_rough;
+        out.near = out.ratio > calibrated::farthest_integrated_ratio && needs_near_rows;
     }
     if (out.ratio > calibrated::nearest_integrated_ratio || out.near) {
         out.near = true;
         near_row_.set_source(source.element);
         mean_form_factor = set_rows(out, receiver, source);
         kernel_error = tolerance_.systematic * error_of_kernel(out, receiver, source);
-        const bool will_do =
+        const bool is_good_enough =
             by_error && kernel_error <= calibrated::negligible_link_share * allowed && allowed < HUGE_VAL;
-        out.has_block = nodes_ > 1 && !will_do;
+        out.has_block = nodes_ > 1 && !is_good_enough;
         if (out.has_block) kernel_error = 0;
     }
     const double most = out.largest_light(nodes_);
@@ -163,7 +164,7 @@ EvenTransfer OpenTransferRule::send_evenly(ElementId receiver, const SourceLight
     for (std::size_t i = 0; i < at.size(); ++i) {
         const Point x = frame.at(at[i]);
         F[i] = is_near ? std::max(0.0, point_to_polygon(x, n, outline_)) : source.kernel_from(middle, x, n);
-        // All but the middle are nearly Gauss's rule of as many points.
+        // All points except the centre are nearly a Gauss rule of that many points.
         if (i > 0) out.form_factor += F[i] / static_cast<double>(at.size() - 1);
     }
     for (std::size_t i = 0; i < at.size(); ++i) out.departure[i] = (F[i] - out.form_factor) * b;

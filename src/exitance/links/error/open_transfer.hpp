@@ -9,52 +9,53 @@
 
 namespace exitance {
 
-/// Light at a receiver's check points less the polynomial of its nodes there, w E, W/m^2.
+/// Difference between a source's light at a receiver's check points and the polynomial through the nodes, w E, W/m^2.
 using Departure = std::array<double, 5>;
 
-/// What a source sends to a receiver with nothing in between.
+/// Unoccluded transport from a source to a receiver.
 struct OpenTransfer {
-    std::array<NodeRow, 9> rows{};  ///< Of each of the receiver's nodes.
+    std::array<NodeRow, 9> rows{};  ///< Per node of the receiver.
     NodeRow light{};                ///< At the receiver's nodes, w E, W/m^2.
     Departure departure{};
-    double rule_error = 0;  ///< RMS over the receiver of what the rule and the source's polynomial miss, W/m^2.
-    double brightest = 0;   ///< At nodes and check points, W/m^2.
-    double ratio = 0;       ///< Size of the source to its distance.
-    bool near = false;      ///< The rows are integrated (NearRow), and not those of the basis's rule.
-    bool has_block =
-        false;  ///< The rows are to be kept with the link; else the kernel is made anew when it is applied,
-    double kernel_scale = 1;  ///< scaled by this where the rows are near ones.
+    double rule_error = 0;  ///< RMS error over the receiver of the rule and of the source's polynomial, W/m^2.
+    double brightest = 0;   ///< Largest light at nodes and check points, W/m^2.
+    double ratio = 0;       ///< Size of the source relative to its distance.
+    bool near = false;      ///< True if the rows are integrated (NearRow) and not those of the basis's rule.
+    /// True if the rows must be stored with the link; otherwise the kernel is recomputed when it is applied.
+    bool has_block = false;
+    double kernel_scale = 1;  ///< Scale of the recomputed kernel, if the rows are integrated ones.
 
     double largest_light(std::size_t nodes) const;
 };
 
-/// What one number sends to another: the mean form factor over the receiver.
+/// Transport with one value per element: the mean form factor over the receiver.
 struct EvenTransfer {
     double form_factor = 0, rule_error = 0;
     Departure departure{};
 };
 
-/// Evaluates light from elements to elements in the open, and the error of doing so by the basis's rule.
-/// One a thread; keeps its memory. Source: the oracle of [Gortler93] and [Lischinski94], by samples.
+/// Evaluates unoccluded transport between elements, and the error of using the basis's rule for it. One object per
+/// thread; reuses its memory. Source: the oracle of [Gortler93] and [Lischinski94], by samples.
 class OpenTransferRule {
   public:
     OpenTransferRule(const LinkSites& sites, const LinkTolerance& tolerance)
         : sites_(sites), tolerance_(tolerance), nodes_(sites.nodes()), checks_(sites.basis()), near_row_(sites) {}
 
-    /// Light by the basis's rule where that is exact enough beside `allowed`, W/m^2, else by near rows.
+    /// Computes the transport: by the basis's rule if its error is small relative to `allowed` (W/m^2), otherwise by
+    /// near rows.
     OpenTransfer send(ElementId receiver, const SourceLight& source, double allowed);
-    /// The same for one number: b stands for all of the source.
+    /// Like send(), with one value b for the whole source.
     EvenTransfer send_evenly(ElementId receiver, const SourceLight& source, double b, double allowed);
-    /// A row of a transfer that send() made last.
+    /// The row at a point x, for the transfer that send() returned last.
     NodeRow row(const OpenTransfer& transfer, const SourceLight& source, const Point& x, const Normal& n);
-    /// Light of the nodes' polynomial at a point of the receiver, W/m^2.
+    /// Value at a point of the receiver of the polynomial through the nodes, W/m^2.
     double interpolated(const OpenTransfer& transfer, ElementId receiver, const Point& x) const;
-    /// Scale of the kernel of orders 2 and 3 by which even light arrives exactly in the mean over the receiver.
-    /// Constants have rays to correct them.
+    /// Scale of the kernel for which uniform light has the exact mean over the receiver, for orders 2 and 3. Constants
+    /// are corrected by rays instead.
     double scale_of_kernel(const OpenTransfer& transfer, ElementId receiver, const SourceLight& source);
-    /// Size of a source to its distance.
+    /// Size of a source relative to its distance.
     double ratio(ElementId receiver, ElementId source) const;
-    /// Exact form factor of a part of the source.
+    /// Exact form factor of a part of the source, given by its outline.
     double form_factor(const Point& x, const Normal& n, std::span<const Point> outline);
 
     std::size_t form_factors() const { return form_factors_; }

@@ -8,7 +8,8 @@
 namespace exitance {
 namespace {
 
-/// Of a share that `open` of `all` rays tell: as many open as closed ones are half a ray short of certainty.
+/// Variance of a share of `open` out of `all` rays. Half a ray is added to both open and blocked rays, so that few rays
+/// do not give certainty.
 double variance_of_share(double open, double all) {
     const double v = (open + 0.5) / (all + 1);
     return v * (1 - v) / all;
@@ -16,7 +17,7 @@ double variance_of_share(double open, double all) {
 
 }  // namespace
 
-/// Where the two front sides see each other. Returns whether they do.
+/// Adds a ray if the two front sides face each other there. Returns whether they do.
 bool PairVisibility::add_ray(ElementId p, ElementId q, const Point& x, const Point& y) {
     if (dot(sites_.normal(p), y - x) <= 0 || dot(sites_.normal(q), x - y) <= 0) return false;
     from_.push_back(x), to_.push_back(y);
@@ -46,7 +47,7 @@ double PairVisibility::look(ElementId p, ElementId q, unsigned count) {
 }
 
 void PairVisibility::look_by_node(ElementId p, ElementId q, unsigned each, bool few) {
-    // Given by the rule: twice its first node's distance from the border.
+    // Given by the rule: twice the distance of its first node from the border.
     const double size = at_nodes_ ? 0 : n_ == 4 ? 0.42 : 0.22;
     RandomStream random(seed_, Stream::visibility, p.value, q.value);
     const Patch receiver = sites_.frame(p), source = sites_.frame(q);

@@ -7,26 +7,26 @@
 
 namespace exitance {
 
-/// What part of the light between two elements meets nothing on its way, by rays: one share for all of it, or one for
-/// each pair of their nodes. One a thread; keeps its memory.
+/// Unoccluded share of the light between two elements, by rays: one share for all of it, or one per pair of nodes. One
+/// object per thread; reuses its memory.
 class PairVisibility {
   public:
-    /// `at_nodes`: rays join the nodes themselves, as quadrature rules have it; else they join places around them.
+    /// at_nodes  rays join the nodes themselves, as quadrature rules require; otherwise points around them
     PairVisibility(const LinkSites& sites, bool at_nodes, std::uint64_t seed)
         : sites_(sites), n_(sites.nodes()), at_nodes_(at_nodes), seed_(seed) {}
 
-    /// Rays from anywhere on the receiver to anywhere on the source; their share is share(0). Returns its standard
-    /// error.
+    /// Casts `count` rays from random points of the receiver to random points of the source, and stores their
+    /// unoccluded share in share(0). Returns its standard error.
     double look(ElementId p, ElementId q, unsigned count);
 
-    /// `each` rays join a place near a receiver's node with one near a source's node: copies of the elements, so much
-    /// smaller, stand around the nodes. `few`: one a receiver's node, to anywhere on the source.
+    /// Casts `each` rays per pair of nodes, between points near the two nodes. The points are in scaled-down copies of
+    /// the elements around the nodes. few: only one ray per node of the receiver, to a random point of the source.
     void look_by_node(ElementId p, ElementId q, unsigned each, bool few);
 
-    /// Of node k of the receiver and node l of the source, at k n + l.
+    /// Share for node k of the receiver and node l of the source: pair = k n + l.
     double share(std::size_t pair) const { return share_[pair]; }
     void set_all(double share) { share_.fill(share); }
-    /// Of the share of what arrives at node k: by look_by_node.
+    /// Variance of the share at node k, after look_by_node().
     double variance(std::size_t k) const { return variance_[k]; }
 
     std::size_t rays() const { return rays_; }

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Two plates of 1 m x 1 m that face each other, 1 m apart, and halfway between them a third over the half x < 0.5.
+/// Two plates of 1 m x 1 m that face each other, 1 m apart, and halfway between them a third one over the half x < 0.5.
 Scene half_covered_plates() {
     return test::make({{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
                        {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}},
@@ -23,18 +23,18 @@ struct Plates : LitElements {
     ElementId lower = tree.roots()[0], upper = tree.roots()[1];
 };
 
-TEST(PairVisibility, OfTwoHalfCoveredPlatesIsAHalf) {
+TEST(PairVisibility, IsOneHalfForHalfCoveredPlates) {
     const Scene scene = half_covered_plates();
     const Plates plates(scene, HierarchyBasis::haar);
     PairVisibility visible(plates.sites, false, 1);
-    // A ray passes where the mean of its ends' x is above 0.5, which half of all pairs of points have.
+    // A ray passes if the mean of its ends' x is above 0.5: half of all pairs of points.
     const double error = visible.look(plates.lower, plates.upper, 1024);
     EXPECT_NEAR(visible.share(0), 0.5, 3 * error);
     EXPECT_NEAR(error, std::sqrt(0.25 / 1024), 1e-4);
     EXPECT_EQ(visible.rays(), 1024u);
 }
 
-TEST(PairVisibility, ByNodeTellsWhichPairsSeeEachOther) {
+TEST(PairVisibility, ByNodeIsExactPerPairOfNodes) {
     const Scene scene = half_covered_plates();
     const Plates plates(scene, HierarchyBasis::multiwavelet2);
     PairVisibility visible(plates.sites, true, 1);
@@ -48,8 +48,8 @@ TEST(PairVisibility, ByNodeTellsWhichPairsSeeEachOther) {
         }
 }
 
-/// A floor that is cut along a line, one side of which lies under a lid, and a ceiling: the other side sees all of it.
-TEST(PairVisibility, OfACellBeginsWithinIt) {
+/// A floor split along a line, with a lid over one side, and a ceiling: the other side sees all of it.
+TEST(PairVisibility, RaysOfACellStartInsideIt) {
     const Scene scene = test::make({{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
                                     {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}},
                                     {{{0.75, 0, 1e-9}, {1, 0, 1e-9}, {1, 1, 1e-9}, {0, 1, 1e-9}, {0, 0.5625, 1e-9}}}});

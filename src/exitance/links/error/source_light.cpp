@@ -3,7 +3,7 @@
 namespace exitance {
 namespace {
 
-/// cos cos / r^2 between two points of two surfaces, m^-2; 0 where either faces away from the other.
+/// cos cos / r^2 between two points of two surfaces, m^-2; 0 if either faces away from the other.
 double point_kernel(const Point& x, const Normal& n, const Point& y, const Normal& m) {
     const Vec3 d = y - x;
     const double here = dot(n, d), there = -dot(m, d), rr = squared_norm(d);

@@ -9,16 +9,16 @@
 namespace exitance {
 namespace {
 
-/// What of an element lies before a plane.
+/// The part of an element in front of a plane.
 struct FrontPart {
     Plane plane;
     std::vector<Point> outline;
     Point middle;
-    double area = 0, radius = 0;  ///< m^2, m; area 0: nothing does.
+    double area = 0, radius = 0;  ///< m^2, m; area 0: nothing is in front.
 
-    double thickness() const { return area / (2 * radius); }  ///< Of a long one the width, m.
+    double thickness() const { return area / (2 * radius); }  ///< Width of a long part, m.
 
-    /// A point moved towards the middle by at least the share, and in front of the plane.
+    /// Moves a point towards the middle by at least this share of the way, and in front of the plane.
     Point drawn_in(const Point& x, double share) const {
         const double height = plane.signed_distance(middle), h = plane.signed_distance(x),
                      to_front = h < height ? (share * height - h) / (height - h) : 0;
@@ -37,7 +37,7 @@ FrontPart front_part(const LinkSites& sites, ElementId element, ElementId other)
     return out;
 }
 
-/// Compares one transfer at points that its check points leave out.
+/// Compares one transfer at points away from its check points.
 class Undersampling {
   public:
     Undersampling(OpenTransferRule& rule, const LinkSites& sites, const OpenTransfer& transfer, ElementId receiver,
@@ -57,7 +57,7 @@ class Undersampling {
         const auto nearest = [](const Patch& patch, const FrontPart& part, const Point& x) {
             return part.drawn_in(patch.at(into_shape(patch.coordinates(x), patch.shape)), 0);
         };
-        // In shares of the source's thickness and of the receiver: points stand off borders by these.
+        // Distances of points from borders, as shares of the source's thickness and of the receiver.
         constexpr double in_front = 0.5;
         const double thickness = source.thickness();
         const Point before = nearest(receiver_frame, receiver, source.middle + in_front * thickness * source_.normal);
@@ -73,10 +73,10 @@ class Undersampling {
                         error(receiver.drawn_in(close, off)));
     }
 
-    /// `allowed`, W/m^2: smaller errors are not computed.
+    /// allowed  W/m^2: smaller errors are not computed
     double fall(double allowed) const {
-        // A fall counts where the polynomial is at least `least_factor` times what arrives and off by half of
-        // the brightest point; it spans about `fall_area` of the receiver.
+        // A fall counts if the polynomial is at least `least_factor` times the exact value and the error is at least
+        // half of the brightest point; it covers about `fall_area` of the receiver.
         const double area_share = calibrated::fall_area;
         constexpr double least_factor = 4, least_share = 0.5;
         if (source_.nodes == 1 || std::sqrt(area_share) * transfer_.brightest <= allowed) return 0;
@@ -96,8 +96,8 @@ class Undersampling {
         return source_.received(rule_.row(transfer_, source_, x, sites_.normal(receiver_)));
     }
 
-    /// At a point which is `gap` metres off the source. Where it is not brighter than the check points by a factor,
-    /// those tell.
+    /// RMS error over the receiver from a peak at point x, `gap` metres from the source. 0 if x is not brighter than
+    /// the check points by a factor.
     double error_at(const Point& x, double gap, const FrontPart& source) const {
         const double least_factor = source_.nodes == 1 ? 8
                                     : certainly_open_  ? 4

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Corners of triangles that are one node: those that meet across edges where light does not jump.
+/// Groups the triangle corners that share a node: those connected across edges without a discontinuity.
 class CornerSectors {
   public:
     explicit CornerSectors(const LabelledTriangles& t) : triangles_(t), sets_(3 * t.corners.size()) {
@@ -40,7 +40,7 @@ class CornerSectors {
             if (triangles_.corners[n][m] == b) sets_.unite(number(i, (k + 1) % 3), number(n, m));
         }
     }
-    /// A place where cut edges of different directions meet.
+    /// Records a cut edge at a point. The point is singular if cut edges of different directions meet there.
     void meet(std::uint32_t p, Vec2 d) {
         Vec2& known = ends_[p];
         constexpr double straight = 1e-6;  // sine
@@ -56,7 +56,7 @@ class CornerSectors {
     const LabelledTriangles& triangles_;
     DisjointSets sets_;
     std::vector<bool> jump_, singular_;
-    std::vector<Vec2> ends_;  ///< Direction of a cut edge at a point.
+    std::vector<Vec2> ends_;  ///< Direction of a cut edge at each point.
 };
 
 }  // namespace
@@ -76,7 +76,7 @@ double BisectionMesh::longest_edge(std::uint32_t triangle) const {
     return norm(nodes_[t.corner[(t.longest + 1) % 3]].at - nodes_[t.corner[t.longest]].at);
 }
 
-/// A short step in a direction, at most a part of the way.
+/// A step of length nudge_ in a direction, but at most a share of the way.
 Vec3 BisectionMesh::inwards(const Vec3& way) const {
     constexpr double most = 0.3;
     const double distance = norm(way);
@@ -91,7 +91,7 @@ std::uint32_t BisectionMesh::add_node(const Point& at, const Triangle& t, bool n
 
 void BisectionMesh::find_longest(std::uint32_t triangle) {
     Triangle& t = triangles_[triangle];
-    // Both sides of an edge see the same length and the same middle: their order of edges is one.
+    // Both triangles at an edge compute the same length and middle node, so both order edges consistently.
     std::tuple<double, std::uint32_t> best{-1, 0};
     for (std::uint32_t i = 0; i < 3; ++i) {
         const Vec3 d = nodes_[t.corner[(i + 1) % 3]].at - nodes_[t.corner[i]].at;
@@ -114,7 +114,7 @@ void BisectionMesh::add_inner(std::uint32_t triangle) {
         add_node(0.5 * (nodes_[t.middle[t.longest]].at + nodes_[t.corner[(t.longest + 2) % 3]].at), t, false);
 }
 
-/// Takes an edge's middle and quarters over from the neighbour.
+/// Copies an edge's middle and quarter nodes from the neighbour.
 void BisectionMesh::share_edge(std::uint32_t triangle, std::size_t i) {
     Triangle& t = triangles_[triangle];
     const Triangle& n = triangles_[t.neighbor[i]];
@@ -152,7 +152,8 @@ void BisectionMesh::add(const LabelledTriangles& in, const PlaneFrame& frame) {
                 widest_.push_back(-1);
                 singular_.push_back(sectors.is_singular(p));
             }
-            // Of the triangles around it, the widest looks for the node: from within a sliver one sees the border.
+            // The widest of the triangles around a node provides its evaluation point: inside a sliver it would be too
+            // close to the border.
             if (sectors.on_cut(p) && width > widest_[shared]) {
                 widest_[shared] = width;
                 nodes_[shared].face = t.face;
@@ -190,8 +191,8 @@ std::vector<std::uint32_t> BisectionMesh::take_changed() {
     return std::exchange(changed_, {});
 }
 
-/// Cuts one triangle across its longest edge: it keeps the part where that edge begins, the other part's number is
-/// returned. Only what lies within and the outer edges' neighbours are set.
+/// Splits one triangle across its longest edge. It becomes the part where that edge begins; returns the index of the
+/// other part. Sets only the data of the inside and of the outer edges' neighbours.
 std::uint32_t BisectionMesh::split(std::uint32_t number) {
     const Triangle t = triangles_[number];
     const std::size_t i = t.longest, j = (i + 1) % 3, k = (i + 2) % 3;

@@ -10,48 +10,50 @@
 
 namespace exitance {
 
-/// Triangles that are bisected across their longest edges, together with their neighbours, so that edges always meet
-/// whole: no angle gets much smaller than the smallest at first. Source: [Rivara84].
+/// Triangle mesh that is refined by bisecting longest edges. Neighbours are bisected as well, so that there are no
+/// hanging nodes. No angle becomes much smaller than the smallest initial one. Source: [Rivara84].
 ///
-/// A triangle has six nodes of its polynomial and seven more at which the polynomial is tried: quarters of its edges
-/// and the middle between the longest edge's middle and the corner across. Bisected, it needs just these: no node is
-/// ever looked at twice. Across borders and lines where light jumps, triangles have no neighbours and share no nodes;
-/// where such a line ends or turns, light depends on the direction one comes from, and every triangle has a corner of
-/// its own.
+/// A triangle has the six nodes of its quadratic polynomial and seven more at which the polynomial is checked: the
+/// quarter points of its edges, and the midpoint between the longest edge's middle and the opposite corner. Bisection
+/// needs exactly these nodes, so no node is evaluated twice. Across borders and lines of discontinuity, triangles are
+/// not neighbours and share no nodes. Where such a line ends or turns, light depends on the direction of approach, and
+/// every triangle has a corner node of its own.
 class BisectionMesh {
   public:
     static constexpr std::uint32_t none = 0xffffffffu;
 
     struct Node {
-        Point at;                ///< Metres.
-        Point seen_from;         ///< The same, on borders and where light jumps a little inside.
-        std::uint32_t face = 0;  ///< A face whose closure holds it.
+        Point at;  ///< Metres.
+        /// Point at which light is evaluated: `at`, but moved slightly inwards on borders and lines of discontinuity.
+        Point seen_from;
+        std::uint32_t face = 0;  ///< A face whose closure contains the node.
     };
     struct Triangle {
         std::array<std::uint32_t, 3> corner, middle, neighbor;
-        std::array<std::array<std::uint32_t, 2>, 3> quarter;  ///< Nearer to the corner where the edge begins, or ends.
+        /// Quarter points of each edge, nearer to its first and to its second corner.
+        std::array<std::array<std::uint32_t, 2>, 3> quarter;
         std::uint32_t inner = none;
         std::array<CurveOrder, 3> order;
         std::uint32_t face = 0;
         std::uint32_t longest = 0;
-        std::uint8_t depth = 0;  ///< Bisections since the face was made.
+        std::uint8_t depth = 0;  ///< Number of bisections since the face was made.
     };
 
-    /// `nudge`: how far nodes on borders are seen from within, metres.
+    /// nudge  metres: how far the evaluation points of border nodes are moved inwards
     explicit BisectionMesh(double nudge) : nudge_(nudge) {}
 
-    /// Adds the triangles of a region; each is a face. Labels are those of CurveOrder.
+    /// Adds the triangles of a region; each becomes a face. Labels are values of CurveOrder.
     void add(const LabelledTriangles& triangles, const PlaneFrame& frame);
 
     const std::vector<Triangle>& triangles() const { return triangles_; }
     const std::vector<Node>& nodes() const { return nodes_; }
-    /// Bisects a triangle, and others as far as they have to be.
+    /// Bisects a triangle, and as many others as conformity requires.
     void bisect(std::uint32_t triangle);
-    /// Gives a triangle to a face of its own.
+    /// Makes a triangle a face of its own, with the given number.
     void set_face(std::uint32_t triangle, std::uint32_t face) {
         triangles_[triangle].face = face, triangles_[triangle].depth = 0;
     }
-    /// Triangles that are new or changed since the last call, each once.
+    /// Returns the triangles that are new or changed since the last call, each once.
     std::vector<std::uint32_t> take_changed();
 
     double area(std::uint32_t triangle) const;
@@ -74,7 +76,8 @@ class BisectionMesh {
     double nudge_;
     std::vector<Node> nodes_;
     std::vector<bool> singular_;
-    std::vector<double> widest_;  ///< Of the triangles that a node on a border was seen from, metres.
+    /// For a border node: the largest size of the triangles that it was evaluated from, metres.
+    std::vector<double> widest_;
     std::vector<Triangle> triangles_;
     std::vector<std::uint32_t> changed_, pending_;
     std::vector<bool> is_changed_;

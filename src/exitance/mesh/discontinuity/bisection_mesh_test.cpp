@@ -22,7 +22,7 @@ double area(const BisectionMesh& mesh) {
     return sum;
 }
 
-TEST(BisectionMesh, TrianglesMeetEdgeByEdgeAndShareNodesHoweverOftenTheyAreBisected) {
+TEST(BisectionMesh, TrianglesStayConformingAndShareNodesAfterManyBisections) {
     BisectionMesh mesh = square_with_jump();
     RandomStream random(1, Stream::mesh);
     for (int i = 0; i < 500; ++i) mesh.bisect(static_cast<std::uint32_t>(random.bits() % mesh.triangles().size()));
@@ -47,7 +47,7 @@ TEST(BisectionMesh, TrianglesMeetEdgeByEdgeAndShareNodesHoweverOftenTheyAreBisec
     }
 }
 
-TEST(BisectionMesh, NodesWhereLightJumpsAreEachSidesOwnAndSeenFromThere) {
+TEST(BisectionMesh, EachSideOfADiscontinuityHasItsOwnNodesEvaluatedFromThere) {
     const BisectionMesh mesh = square_with_jump();
     for (const auto& t : mesh.triangles())
         for (std::size_t i = 0; i < 3; ++i) {

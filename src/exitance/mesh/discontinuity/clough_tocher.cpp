@@ -9,10 +9,11 @@ CloughTocher::CloughTocher(const Data& data) : corner_(data.value) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         edge_[i] = {corner_[i] + data.to_next[i][0] / 3, corner_[j] + data.to_next[j][1] / 3};
-        spoke_[i] = corner_[i] + (data.to_next[i][0] + data.to_next[i][1]) / 9;  // S - V = (sum of both ways) / 3
+        spoke_[i] = corner_[i] + (data.to_next[i][0] + data.to_next[i][1]) / 9;  // S - V = (sum of both vectors) / 3
     }
-    // The slope at an edge's middle towards S, a third of the way across, is that of the cubic beside the edge:
-    // across / 3 = 3 (d_0 / 4 + d_1 / 2 + d_2 / 4), d_k differences of its ordinates, of which one is the wing.
+    // The slope at an edge's middle towards S, which is a third of the way across, equals that of the cubic at the
+    // edge: across / 3 = 3 (d_0 / 4 + d_1 / 2 + d_2 / 4), where d_k are differences of ordinates, one of which is the
+    // wing.
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         wing_[i] = 2 * (data.across[i] / 9 + (corner_[i] + corner_[j]) / 8 + 3 * (edge_[i][0] + edge_[i][1]) / 8 -
@@ -32,7 +33,7 @@ double CloughTocher::at(const std::array<double, 3>& L) const {
 }
 
 double CloughTocher::mean() const {
-    double sum = 3 * centre_;  // A cubic has the mean of its ten ordinates; the three parts have one area.
+    double sum = 3 * centre_;  // The mean of a cubic is that of its ten ordinates; the three parts have equal areas.
     for (std::size_t i = 0; i < 3; ++i)
         sum += 2 * (corner_[i] + spoke_[i] + hub_[i]) + edge_[i][0] + edge_[i][1] + wing_[i];
     return sum / 30;

@@ -7,43 +7,46 @@
 
 namespace exitance {
 
-/// Clough and Tocher's element: a function on a triangle by its values and slopes at the corners and one slope at the
-/// middle of every edge. Three cubic polynomials, on the triangle's parts between its edges and its centroid, that join
-/// with one tangent plane. Cubic polynomials are reproduced; two triangles that share an edge, its ends' values and
-/// slopes and its middle's slope join with one tangent plane, too. Source: [CloughTocher65]; as Bezier polynomials,
-/// [Farin86].
+/// Clough-Tocher element: a function on a triangle, defined by its values and gradients at the corners and its normal
+/// slopes at the middles of the edges. It consists of three cubic polynomials, on the sub-triangles between an edge and
+/// the centroid, that join with a continuous tangent plane. It reproduces cubic polynomials. Two triangles with a
+/// common edge join with a continuous tangent plane, too, if they share the data on it. Source: [CloughTocher65]; as
+/// Bezier polynomials: [Farin86].
 struct CloughTocher {
-    /// What the function is given by, of edges i from corner i to corner i + 1 across from corner i + 2.
+    /// The data that define the function. Edge i leads from corner i to corner i + 1, opposite corner i + 2.
     struct Data {
-        std::array<double, 3> value;                   ///< At corner i.
-        std::array<std::array<double, 2>, 3> to_next;  ///< Slope at corner i times the way to corner i + 1, i + 2.
-        std::array<double, 3> across;                  ///< Slope at the middle of edge i times the way to the corner
-                                                       ///< across.
+        std::array<double, 3> value;  ///< Value at corner i.
+        /// Gradient at corner i times the vector to corner i + 1, and to corner i + 2.
+        std::array<std::array<double, 2>, 3> to_next;
+        std::array<double, 3> across;  ///< Gradient at the middle of edge i times the vector to the opposite corner.
     };
     explicit CloughTocher(const Data& data);
 
-    /// At barycentric coordinates.
+    /// Value at barycentric coordinates L.
     double at(const std::array<double, 3>& L) const;
-    /// Over the triangle.
+    /// Mean over the triangle.
     double mean() const;
 
   private:
     // Bezier ordinates; S is the centroid.
     std::array<double, 3> corner_;
-    std::array<std::array<double, 2>, 3> edge_;  ///< On edge i, next to corner i, i + 1.
-    std::array<double, 3> spoke_, hub_;          ///< On the line from corner i to S, next to the corner, to S.
-    std::array<double, 3> wing_;                 ///< In the midst of the part beside edge i.
+    std::array<std::array<double, 2>, 3> edge_;  ///< On edge i, next to corner i, and next to corner i + 1.
+    std::array<double, 3> spoke_,
+        hub_;                     ///< On the line from corner i to S: next to the corner (spoke), next to S (hub).
+    std::array<double, 3> wing_;  ///< In the middle of the sub-triangle at edge i.
     double centre_;
 };
 
-/// The way from an edge's middle to the corner across: so much of the edge and so far at a right angle to it.
+/// The vector from an edge's middle to the opposite corner, as a share `along` of the edge plus a perpendicular
+/// `height` (metres).
 struct EdgeFrame {
     double along = 0, height = 0;
 
     EdgeFrame(const Point& a, const Point& b, const Point& across);
 };
 
-/// Slope along edge i at its middle times the way from corner i to the next: it follows from the edge's ends.
+/// Gradient at the middle of edge i times the vector from corner i to the next; it follows from the data at the edge's
+/// ends.
 double slope_along(const CloughTocher::Data& data, std::size_t edge);
 
 }  // namespace exitance

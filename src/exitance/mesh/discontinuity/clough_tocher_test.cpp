@@ -48,7 +48,8 @@ TEST(CloughTocher, ReproducesCubicPolynomials) {
         const auto L = random_place(random);
         EXPECT_NEAR(element.at(L), f(place(corner, L)), rounding);
     }
-    // The rule of seven places by Radon has degree five; a cubic's mean is that of four: corners, middles, centroid.
+    // Radon's rule with seven points has degree five; the mean of a cubic is that of four values: corners, middles,
+    // centroid.
     double sum = 9.0 / 20 * f(place(corner, {1.0 / 3, 1.0 / 3, 1.0 / 3}));
     for (std::size_t k = 0; k < 3; ++k)
         sum += f(corner[k]) / 20 + 2.0 / 15 * f(0.5 * (corner[k] + corner[(k + 1) % 3]));
@@ -63,7 +64,7 @@ TEST(CloughTocher, ItsThreePartsJoinWithOneTangentPlane) {
         data.to_next[i] = {random.uniform(), random.uniform()};
     }
     const CloughTocher element(data);
-    // Four values on one side of a place give a cubic's slope there exactly, up to rounding over the step.
+    // Four values on one side of a point give a cubic's slope there exactly, up to rounding divided by the step.
     constexpr double step = 1e-2, rounding = 1e-11;
     const auto slope = [&](const std::array<double, 3>& L, const std::array<double, 3>& d) {
         const auto at = [&](double k) {
@@ -73,7 +74,7 @@ TEST(CloughTocher, ItsThreePartsJoinWithOneTangentPlane) {
     };
     for (std::size_t i = 0; i < 3; ++i)
         for (const double t : {0.2, 0.5, 0.8}) {
-            // On the line from corner i to the centroid, the step from corner i + 1 to i + 2 leads across it.
+            // On the line from corner i to the centroid; the step from corner i + 1 to i + 2 crosses it.
             std::array<double, 3> L{}, d{}, back{};
             for (std::size_t k = 0; k < 3; ++k) L[k] = (1 - t) / 3;
             L[i] += t;

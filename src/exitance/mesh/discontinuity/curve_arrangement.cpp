@@ -13,7 +13,7 @@ double length(Vec2 v) {
     return std::hypot(v.x, v.y);
 }
 
-/// A line n . p = offset with the stretches of curves on it.
+/// A line n . p = offset with the curve segments on it.
 struct Line {
     Vec2 n;
     double offset = 0;
@@ -54,7 +54,8 @@ class Arrangement {
         std::erase_if(curves_, [&](const FlatCurve& c) {
             return !std::isfinite(c.a.x + c.a.y + c.b.x + c.b.y) || length(c.b - c.a) <= 2 * tolerance_;
         });
-        // Long ones first: their directions are the most certain. Ties go by place, so that order does not matter.
+        // Longest first, because their directions are the most accurate. Ties are resolved by position, so that the
+        // input order does not matter.
         std::sort(curves_.begin(), curves_.end(), [](const FlatCurve& p, const FlatCurve& q) {
             const double lp = dot(p.b - p.a, p.b - p.a), lq = dot(q.b - q.a, q.b - q.a);
             return std::tuple(-lp, p.a.x, p.a.y, p.b.x, p.b.y, p.order, p.cause, p.source.value) <
@@ -68,7 +69,7 @@ class Arrangement {
     }
 
   private:
-    /// A curve joins the first longer one that both its ends lie on the line of.
+    /// Assigns each curve to the line of the first longer curve that contains both its ends, or to a line of its own.
     void find_lines() {
         std::vector<Box> boxes;
         for (const FlatCurve& c : curves_) boxes.push_back(box_of(c.a, c.b, tolerance_));
@@ -96,7 +97,7 @@ class Arrangement {
         }
     }
 
-    /// Where along the line something begins or ends: the curves' ends and the border.
+    /// Sorted positions along the line at which curves begin or end, or the border crosses it.
     std::vector<double> places_on(const Line& line) const {
         std::vector<double> at;
         double lo = HUGE_VAL, hi = -HUGE_VAL;
@@ -120,7 +121,7 @@ class Arrangement {
         return out;
     }
 
-    /// Is the place inside the polygon, and not on its border?
+    /// Returns whether the point is inside the polygon and not on its border.
     bool is_inside(Vec2 p) const {
         bool on_border = false;
         border_tree_.visit_box(box_of(p, p, tolerance_), [&](std::uint32_t i) {
@@ -134,7 +135,7 @@ class Arrangement {
         return inside;
     }
 
-    /// The strongest curve of every stretch; neighbours that are of one curve run on.
+    /// Adds the strongest curve of every stretch of a line. Consecutive stretches of the same curve are joined.
     void add_stretches(const Line& line) {
         const std::vector<double> at = places_on(line);
         constexpr std::size_t none = ~std::size_t(0);
@@ -163,7 +164,7 @@ class Arrangement {
         }
     }
 
-    /// Ends move to the border, or to the first end that is near.
+    /// Moves ends to the nearest border corner or the first nearby end.
     void weld_ends() {
         std::vector<Box> boxes;
         std::vector<Vec2*> ends;
@@ -192,7 +193,7 @@ class Arrangement {
         end_tree_ = Bvh(boxes);
     }
 
-    /// The segment's ends, and between them the ends of curves that lie on it.
+    /// The segment's ends, and the ends of curves on it, in order.
     std::vector<Vec2> stops_on(Vec2 a, Vec2 b) const {
         std::vector<std::pair<double, Vec2>> stops = {{0, a}, {1, b}};
         const Vec2 d = b - a;
@@ -211,7 +212,7 @@ class Arrangement {
         return out;
     }
 
-    /// Curves run through the ends of others that lie on them.
+    /// Splits curves at the ends of other curves on them.
     std::vector<FlatCurve> split_at_ends() const {
         std::vector<FlatCurve> out;
         for (const FlatCurve& c : out_) {
@@ -225,8 +226,8 @@ class Arrangement {
         return out;
     }
 
-    /// An end beside a sharp corner is near both of its sides, but a corner of the nearer one alone: a loop that came
-    /// to it twice would enclose nothing in between.
+    /// Splits the border at the ends of curves on it. An end near a sharp corner is near both sides but becomes a
+    /// corner of the nearer one only; otherwise the loop would visit it twice and enclose nothing in between.
     std::vector<std::vector<Vec2>> split_border() const {
         std::vector<std::vector<Vec2>> out;
         for (const auto& loop : loops_) {

@@ -7,20 +7,23 @@
 
 namespace exitance {
 
-/// A stretch of a straight line on a receiver, in the receiver's own coordinates, metres.
+/// A straight segment on a receiver, in the receiver's plane coordinates, metres.
 struct FlatCurve {
     Vec2 a, b;
     CurveOrder order = CurveOrder::d1;
     CurveCause cause = CurveCause::contact;
     RegionId source;
-    double gain = 0;  ///< How much light it may change, W/m^2: of many, those with the most are kept.
+    /// Upper bound of the change of light across it, W/m^2. If there are too many curves, those with the largest gain
+    /// are kept.
+    double gain = 0;
 };
 
-/// Curves made ready to be cut along: lines nearer than `tolerance` (metres) become one, of stretches that lie on one
-/// another the strongest is kept, each ends at the polygon's border, those on the border go, and ends nearer than the
-/// tolerance to one another or to a line become one place. In an order that follows from the input alone.
-/// loops    outer loops and holes of the polygon, in any order
-/// Ends on the border become corners of the loops that are returned.
+/// Prepares curves for cutting. Lines nearer than `tolerance` become one. Of overlapping segments the strongest is
+/// kept. Segments are clipped to the polygon; those on its border are removed. Ends nearer than the tolerance to each
+/// other or to a line are merged with them. The order of the result depends on the input only.
+/// loops  outer loops and holes of the polygon, in any order
+/// tolerance  metres
+/// Ends of curves on the border become corners of the returned loops.
 /// O(n log n + n (border edges) + near pairs).
 struct ArrangedCurves {
     std::vector<FlatCurve> curves;

@@ -14,7 +14,7 @@ FlatCurve curve(Vec2 a, Vec2 b, CurveOrder order = CurveOrder::d2) {
     return {a, b, order, CurveCause::vertex_edge, RegionId(0), 1};
 }
 
-TEST(CurveArrangement, StretchesOnOneAnotherBecomeOneOfTheStrongestKind) {
+TEST(CurveArrangement, OverlappingCurvesBecomeOneOfTheStrongestKind) {
     const auto [curves, loops] = arranged_curves(
         {curve({0.1, 0.5}, {0.9, 0.5}), curve({0.1, 0.5 + 1e-9}, {0.5, 0.5 - 1e-9}, CurveOrder::d1)}, square, 1e-8);
     ASSERT_EQ(curves.size(), 2u);
@@ -32,7 +32,7 @@ TEST(CurveArrangement, CurvesEndAtTheBorderAndMakeCornersThere) {
         EXPECT_TRUE(std::find(loops[0].begin(), loops[0].end(), end) != loops[0].end());
 }
 
-TEST(CurveArrangement, CurvesOnTheBorderAndOutsideAndWithoutLengthGo) {
+TEST(CurveArrangement, CurvesOnTheBorderOrOutsideOrWithoutLengthAreRemoved) {
     const double nan = std::nan("");
     const auto [curves, loops] = arranged_curves(
         {curve({0, 0}, {1, 1e-9}), curve({2, 0}, {3, 1}), curve({0.5, 0.5}, {0.5, 0.5}), curve({0.2, nan}, {0.5, 0.5})},
@@ -41,15 +41,15 @@ TEST(CurveArrangement, CurvesOnTheBorderAndOutsideAndWithoutLengthGo) {
     EXPECT_EQ(loops, square);
 }
 
-TEST(CurveArrangement, CurvesPassThroughEndsThatLieOnThem) {
+TEST(CurveArrangement, CurvesAreSplitAtEndsOnThem) {
     const auto [curves, loops] =
         arranged_curves({curve({0.1, 0.5}, {0.9, 0.5}), curve({0.3, 0.5 + 1e-10}, {0.3, 0.8})}, square, 1e-8);
     EXPECT_EQ(curves.size(), 3u);
 }
 
-TEST(CurveArrangement, AnEndBesideASharpCornerIsACornerOfOneSide) {
-    // Nearer than four tolerances to both sides, but not to the corner: the loop came to it twice, and the triangles
-    // between lost the area behind it.
+TEST(CurveArrangement, AnEndNearASharpCornerIsACornerOfOneSideOnly) {
+    // Nearer than four tolerances to both sides, but not to the corner. If it were a corner of both sides, the loop
+    // would visit it twice, and the triangles in between would lose the area behind it.
     const Vec2 end = {2 - 6e-8, 0};
     const std::vector<std::vector<Vec2>> sharp = {{{0, 0}, {2, 0}, {0, 1}}};
     const auto [curves, loops] = arranged_curves({curve({0.5, 0.3}, end)}, sharp, 1e-8);

@@ -10,7 +10,7 @@ double length(Vec2 d) {
     return std::sqrt(dot(d, d));
 }
 
-/// The part of a convex outline where normal . p <= offset (side 1) or >= offset (side -1).
+/// The part of a convex outline with normal . p <= offset (side 1) or >= offset (side -1).
 std::vector<Vec2> half(std::span<const Vec2> outline, Vec2 normal, double offset, double side) {
     std::vector<Vec2> out;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -40,7 +40,7 @@ Extent extent(std::span<const Vec2> outline, Vec2 along) {
     return out;
 }
 
-/// The stretch of a curve within a convex outline. False where that is shorter than the tolerance, or on the border.
+/// Clips a curve to a convex outline. Returns false if the rest is shorter than the tolerance or on the border.
 bool cut_to(std::span<const Vec2> outline, double tolerance, FlatCurve& curve) {
     double first = 0, last = 1;
     const Vec2 d = curve.b - curve.a;

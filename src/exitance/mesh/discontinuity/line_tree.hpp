@@ -10,38 +10,40 @@
 
 namespace exitance {
 
-/// Binary trees of convex polygons, one a piece of a surface, whose cuts follow discontinuity lines: the line of the
-/// lowest order that crosses a node, of several the one whose halves are most even; across the longer side where none
-/// is left. Source: [Lischinski93].
+/// Binary trees of convex polygons, one tree per piece of a surface, whose cuts follow discontinuity lines. A node is
+/// cut along the line of the lowest order that crosses it; among equals, along the one with the most even halves. If no
+/// line is left it is cut across its longer side. Source: [Lischinski93].
 class LineTree {
   public:
     static constexpr std::uint32_t none = 0xffffffffu;
 
     struct Node {
         RegionId region;
-        std::uint32_t parent = none, first_child = none;  ///< Two children, side by side.
+        std::uint32_t parent = none, first_child = none;  ///< The two children are consecutive.
         std::uint32_t root = 0;
-        std::vector<Vec2> outline;      ///< Convex, counter-clockwise, in the region's coordinates, metres.
-        std::vector<FlatCurve> curves;  ///< That cross the inside; those of inner nodes have gone to the children.
-        Vec2 normal;                    ///< Of the cut; the first child is where normal . p <= offset.
+        std::vector<Vec2> outline;  ///< Convex, counter-clockwise, in the region's plane coordinates, metres.
+        /// Curves that cross the interior. For inner nodes they have been passed on to the children.
+        std::vector<FlatCurve> curves;
+        Vec2 normal;  ///< Normal of the cut; the first child is where normal . p <= offset.
         double offset = 0;
         double area = 0;        ///< m^2
-        Vec2 centre;            ///< Of the area.
-        bool by_curve = false;  ///< Does the cut follow a curve?
+        Vec2 centre;            ///< Centroid.
+        bool by_curve = false;  ///< True if the cut follows a curve.
 
         bool is_leaf() const { return first_child == none; }
     };
 
-    /// `tolerance`: curves this near to a node's border do not cross it, metres.
+    /// tolerance  metres: curves nearer to a node's border than this do not cross it
     explicit LineTree(double tolerance) : tolerance_(tolerance) {}
 
-    /// `outline` convex, counter-clockwise. Curves may lie anywhere: those that cross the outline are cut to it.
+    /// Adds a tree. `outline`: convex, counter-clockwise. `curves` are clipped to the outline. Returns the root's
+    /// index.
     std::uint32_t add_root(RegionId region, std::vector<Vec2> outline, std::span<const FlatCurve> curves);
 
-    /// Cuts a leaf. False, and nothing is done, where no cut leaves two pieces that are wider than the tolerance.
+    /// Splits a leaf. Returns false, and does nothing, if no cut leaves two parts wider than the tolerance.
     bool split(std::uint32_t node);
 
-    /// The leaf under a root that holds a point. O(depth).
+    /// Returns the leaf below a root that contains a point. O(depth).
     std::uint32_t leaf_under(std::uint32_t root, Vec2 p) const;
 
     const std::vector<Node>& nodes() const { return nodes_; }
@@ -60,8 +62,7 @@ class LineTree {
     std::vector<Node> nodes_;
 };
 
-/// Area (m^2) and centre of a convex outline's triangles from its first corner, for quadrature: exact for linear
-/// functions. Returns the whole area.
+/// A triangle of a convex outline's fan around its first corner, for quadrature that is exact for linear functions.
 struct FanTriangle {
     Vec2 a, b, c;
     double area = 0;

@@ -22,7 +22,7 @@ TEST(LineTree, CutsAlongTheStrongestLineThenTheMostEven) {
                                         curve({0, 0.4}, {1, 0.4}, CurveOrder::d1)};
     const std::uint32_t root = tree.add_root(RegionId(0), square, curves);
     ASSERT_TRUE(tree.split(root));
-    // Of the two of order 1 the one at 0.4 is more even than that at 0.2; the even one of order 2 waits.
+    // The cut at 0.4 is more even than the other one of order 1, at 0.2; the even line of order 2 comes later.
     EXPECT_NEAR(std::abs(tree.nodes()[root].offset), 0.4, 1e-12);
     const std::uint32_t child = tree.nodes()[root].first_child;
     EXPECT_NEAR(tree.nodes()[child].area + tree.nodes()[child + 1].area, 1, 1e-12);
@@ -30,7 +30,7 @@ TEST(LineTree, CutsAlongTheStrongestLineThenTheMostEven) {
     EXPECT_NEAR(std::abs(tree.nodes()[child].offset), 0.2, 1e-12);
 }
 
-TEST(LineTree, KeepsAreaAndFindsLeavesThatHoldAPoint) {
+TEST(LineTree, KeepsAreaAndFindsLeavesThatContainAPoint) {
     LineTree tree(1e-9);
     const std::uint32_t root =
         tree.add_root(RegionId(0), square, std::vector{curve({0.1, -1}, {0.9, 2}, CurveOrder::d0)});
@@ -43,7 +43,7 @@ TEST(LineTree, KeepsAreaAndFindsLeavesThatHoldAPoint) {
         EXPECT_TRUE(!tree.nodes()[n].is_leaf() || tree.leaf_under(root, tree.nodes()[n].centre) == n);
 }
 
-TEST(LineTree, LinesBesideTheBorderDoNotCut) {
+TEST(LineTree, LinesNearTheBorderDoNotCut) {
     LineTree tree(1e-6);
     const std::uint32_t root =
         tree.add_root(RegionId(0), square,

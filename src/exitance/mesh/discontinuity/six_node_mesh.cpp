@@ -39,7 +39,7 @@ CloughTocher SixNodeMesh::element(std::uint32_t triangle, std::size_t band) cons
 }
 
 Spectrum SixNodeMesh::mean(std::uint32_t triangle) const {
-    if (!is_clough_tocher()) {  // A quadratic polynomial has the mean of its values at the middles of edges.
+    if (!is_clough_tocher()) {  // The mean of a quadratic polynomial is that of its values at the edge middles.
         const auto& n = nodes[triangle];
         return (1.0 / 3) * (value(n[3]) + value(n[4]) + value(n[5]));
     }
@@ -76,7 +76,7 @@ double SixNodeMesh::mean_radius_ratio() const {
         double side[3];
         for (std::size_t i = 0; i < 3; ++i) side[i] = norm(points[nodes[t][(i + 1) % 3]] - points[nodes[t][i]]);
         const double perimeter = side[0] + side[1] + side[2], a = area(t), product = side[0] * side[1] * side[2];
-        if (product > 0) sum += 8 * a * a / (perimeter * product);  // (2 A / p) / (a b c / 4 A)
+        if (product > 0) sum += 8 * a * a / (perimeter * product);  // r / R = (2 A / p) / (a b c / 4 A)
     }
     return empty() ? 0 : sum / static_cast<double>(size());
 }
@@ -112,7 +112,7 @@ SixNodeLocator::Place SixNodeLocator::find(RegionId region, const Point& p) cons
         const Point& o = mesh_->points[n[0]];
         const Vec3 a = mesh_->points[n[1]] - o, b = mesh_->points[n[2]] - o, w = p - o;
         const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), det = aa * bb - ab * ab;
-        // Triangles thinner than rounding hold no place that their neighbours do not.
+        // Triangles thinner than rounding contain no point that their neighbours do not.
         constexpr double thin = 1e-7;  // height over length
         const double longest = std::max({aa, bb, aa + bb - 2 * ab});
         if (!(det > thin * thin * longest * longest)) return false;

@@ -8,28 +8,29 @@
 
 namespace exitance {
 
-/// What becomes of a ray at a pane of clear glass.
+/// Outcome of a ray at a pane of clear glass.
 enum class RayFate { passes, is_mirrored, is_absorbed };
 
-/// Panes of glass as rays meet them: one ray in so many is stopped, as the share of the light that does not pass asks
-/// for, and of these so many are mirrored (`Pane::transmission` and `reflection`, mean over bands, within 1e-4 by
-/// tables). Which ones these are follows from the ray and the pane alone.
+/// Decides pseudo-randomly which rays a pane of glass stops, and which of those it reflects. The shares match
+/// `Pane::transmission` and `reflection` (mean over bands, within 1e-4, from tables). The decision depends only on the
+/// ray and the pane.
 class RayFates {
   public:
     explicit RayFates(const std::vector<Pane>& panes);
 
-    /// Origin and direction, of any length, in the coordinates that rays are traced in; `pane`: its number.
+    /// origin, direction  in the coordinates that rays are traced in; the direction may have any length
+    /// pane  index of the pane
     RayFate operator()(const std::array<float, 3>& origin, const std::array<float, 3>& direction,
                        std::uint32_t pane) const;
 
   private:
     static constexpr std::size_t steps = 256;
-    using Table = std::array<float, steps + 1>;  ///< By the cosine.
+    using Table = std::array<float, steps + 1>;  ///< Indexed by the cosine of the angle of incidence.
     struct Shares {
         Normal n;
         Table through, back;
     };
-    std::vector<Shares> shares_;  ///< By pane.
+    std::vector<Shares> shares_;  ///< Per pane.
 };
 
 }  // namespace exitance

@@ -17,7 +17,7 @@ auto values_of(const SkyModel& sky) {
                     sky.blends_ground, sky.below, sky.scale);
 }
 
-/// The skies of a scene with the place of their parts, to the last bit.
+/// The sky models of a scene and the placement of the sky's parts, for exact comparison.
 struct SkyParts {
     std::vector<SkyModel> models;
     Point middle;
@@ -37,7 +37,7 @@ struct SkyParts {
     }
 };
 
-/// Factors of all parts by direction.
+/// Form factors of all parts of the sky, per direction.
 class FarFactorMemory {
   public:
     double& at(const Occluders& occluders, PieceId part, const Normal& n) {

@@ -4,12 +4,12 @@
 
 namespace exitance {
 
-/// Memory of one thread for the form factor of a part of the sky (one of `occluders.distant_pieces()`) that nothing
-/// hides, at surfaces that face along `n`. Below 0: not known yet, to be set by the caller.
+/// Returns the cached form factor of an unoccluded part of the sky (one of `occluders.distant_pieces()`) at surfaces
+/// with normal n, per thread. Negative: not computed yet; the caller must store it through the reference.
 ///
-/// The factor depends on the sky and on n alone, so that one integral serves all elements that face one way: the
-/// integral of a sky that varies fast takes about 0.1 ms. It is found again by the values that it depends on, never by
-/// addresses; hence results do not depend on what a thread did before. 64 directions are remembered. O(domes).
+/// The factor depends only on the sky and on n, so one integral serves all elements with the same normal; for a sky
+/// with strong gradients the integral takes about 0.1 ms. Entries are looked up by value, not by address, so results do
+/// not depend on what the thread computed before. Remembers 64 directions. O(domes).
 double& known_far_factor(const Occluders& occluders, PieceId part, const Normal& n);
 
 }  // namespace exitance

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A square under a clear sky whose sun stands at this height, moved by `along` x.
+/// A square under a clear sky whose sun is at height `height`, shifted by `along` in x.
 Scene square(double height, double along = 0) {
     SceneDescription d;
     d.file = "square";
@@ -43,7 +43,7 @@ TEST(FarFactor, IsRememberedByDirectionPartAndSky) {
     EXPECT_LT(known_far_factor(of_moved, first, up), 0) << "its corners are rounded otherwise";
 }
 
-TEST(FarFactor, LightDoesNotDependOnWhatWasLookedAtBefore) {
+TEST(FarFactor, LightDoesNotDependOnEarlierQueries) {
     const Scene one = square(0.2), other = square(2);
     const Occluders at_one(one), at_other(other);
     const DirectLight light_of_one(one, at_one), light_of_other(other, at_other);
@@ -57,7 +57,7 @@ TEST(FarFactor, LightDoesNotDependOnWhatWasLookedAtBefore) {
     EXPECT_EQ(light(light_of_one, up), first);
     EXPECT_EQ(light(light_of_other, up), second);
     EXPECT_EQ(light(light_of_one, slanting), third);
-    EXPECT_NEAR(first, 100, 0.1);  // 1e-3, as skies are integrated
+    EXPECT_NEAR(first, 100, 0.1);  // 1e-3, the accuracy of sky integrals
     EXPECT_NEAR(second, 100, 0.1);
     EXPECT_GT(std::abs(third - first), 1);
 }
