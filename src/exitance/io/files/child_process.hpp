@@ -25,7 +25,7 @@ class ChildProcess {
     /// folder   its working folder; empty: the current one
     /// returns  false if the system cannot create a process
     bool start(const std::vector<std::string>& words, int in, int out, int err, const std::string& folder);
-    /// Returns at once.
+    /// Checks whether the process has ended, without waiting.
     bool has_ended();
     /// Sends SIGTERM to the process.
     void ask_to_end();

@@ -19,11 +19,11 @@ class Luminaires {
 
     double lumens_to_light = 1;
     void add(const PlacedLuminaire& luminaire);
-    /// What the path of luminaires means, without a file.
+    /// Uses `photometry` for luminaires with this path, in place of a file.
     void know(const std::string& path, Photometry photometry);
 
   private:
-    /// A photometric file and what has been made of it.
+    /// A photometric file with the faces and the profile made from it.
     struct Lamp {
         bool is_read = false;
         Photometry photometry;
@@ -65,7 +65,7 @@ void Luminaires::know(const std::string& path, Photometry photometry) {
     lamp.is_read = true;
 }
 
-/// Faces that are alike in how they shine share a material.
+/// Returns the material of a luminaire's face; faces with equal emission share a material.
 std::uint32_t Luminaires::material_of(const Lamp& lamp, const PlacedLuminaire& luminaire, double table_exitance,
                                       double factor) {
     const auto world = [&](const Vec3& v) { return v.x * luminaire.x + v.y * luminaire.y + v.z * luminaire.z; };

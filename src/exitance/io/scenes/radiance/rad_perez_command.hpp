@@ -28,7 +28,7 @@ struct RadSkyWords {
     char zenith_by = 0, solar_by = 0;  ///< How they are given: 0: by formulas; b, r: as radiance; B, R: as irradiance.
     char input = 0;                    ///< gendaylit's P, W, L, G with two numbers, or E with one.
     double first = 0, second = 0;
-    double output = 0;            ///< -O: 0: watts in the visible range, 1: watts, 2: lumens.
+    double output = 0;            ///< -O: 0: lumens over 179, 1: watts, 2: lumens.
     double dew_point = 10.97353;  ///< -d, degrees C; the default gives 2 cm of precipitable water.
     double interval = 0;          ///< -i: interval around the hour, minutes.
 
