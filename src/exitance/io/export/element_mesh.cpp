@@ -52,8 +52,8 @@ class CubicCells {
         }
         for (std::size_t i = 0; i < 3; ++i) {
             const Weights &a = at[i], &b = at[(i + 1) % 3];
-            std::uint32_t& shared =
-                thirds_[from_.nodes[t][3 + i]];  // the element that creates the points defines their direction, a to b
+            // The element that creates the points defines their direction, a to b.
+            std::uint32_t& shared = thirds_[from_.nodes[t][3 + i]];
             edge[i] = shared;
             if (shared != none) continue;
             shared = edge[i] = put(t, between(a, b, 1), mesh);
@@ -96,8 +96,8 @@ class CubicCells {
     }
 
     const SixNodeMesh& from_;
-    std::vector<std::uint32_t> corner_,
-        thirds_;  ///< Points by node: corners, and the first inner point of an edge by the edge's middle node.
+    /// Points by node: corners, and the first inner point of an edge by the edge's middle node.
+    std::vector<std::uint32_t> corner_, thirds_;
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace exitance {
 namespace {
 
-constexpr double aspect =
-    1.6;  ///< Assumed ratio of width to height of a camera's picture, since scenes only store the horizontal angle.
+/// Assumed ratio of width to height of a camera's picture, since scenes only store the horizontal angle.
+constexpr double aspect = 1.6;
 
 Vec3 y_up(const Vec3& v) {
     return {v.x, v.z, -v.y};

@@ -34,8 +34,8 @@ struct Primitive {
 
 struct Mesh {
     std::vector<Float3> position, normal;
-    std::vector<Float2> place, second_place,
-        map_place;  ///< Texture coordinates: of the scene or of the plane; the scene's second set or none; in the maps.
+    /// Texture coordinates: of the scene or of the plane; the scene's second set or none; in the maps.
+    std::vector<Float2> place, second_place, map_place;
     std::vector<std::uint32_t> index;  ///< Relative to the first vertex of the primitive.
     std::vector<Primitive> primitives;
 };

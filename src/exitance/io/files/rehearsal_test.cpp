@@ -48,8 +48,8 @@ TEST(Rehearsal, EndsAtTheMemoryLimit) {
 
 TEST(Rehearsal, EndsAWaitingCopyAndReportsNothing) {
     const auto waits = [] {
-        const unsigned seconds_left =
-            ::alarm(1);  // the alarm stands for the limit of elapsed time, most of which must be left
+        // The alarm stands for the limit of elapsed time, most of which must be left.
+        const unsigned seconds_left = ::alarm(1);
         if (seconds_left >= 40 && seconds_left <= 80) ::pause();
         return false;
     };

@@ -50,8 +50,8 @@ class IesReader {
     IesText text_;
     Photometry out_;
     std::string tilt_;
-    bool has_blpf_ =
-        false;  ///< In files of 1986 and 1991, the third factor is the ballast-lamp photometric factor and is applied.
+    /// In files of 1986 and 1991, the third factor is the ballast-lamp photometric factor and is applied.
+    bool has_blpf_ = false;
     Header header_;
 };
 

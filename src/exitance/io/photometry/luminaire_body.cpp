@@ -12,8 +12,8 @@ using Shape = Opening::Shape;
 using Polygons = std::vector<std::vector<Point>>;
 
 constexpr double degree = pi / 180;
-constexpr int sides =
-    24;  ///< Sides of a round edge: their normals are at angles that tables of 1, 3, 5 and 15 degrees contain.
+/// Sides of a round edge: their normals are at angles that tables of 1, 3, 5 and 15 degrees contain.
+constexpr int sides = 24;
 constexpr int bands_of_sphere = 8, sides_of_sphere = 16;
 
 /// A regular polygon with the area of a circle of diameter 1. The normals of its edges are at multiples of 360 / n

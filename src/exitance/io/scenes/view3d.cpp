@@ -19,8 +19,8 @@ namespace exitance {
 namespace {
 
 constexpr double min_emittance = 0.001, max_emittance = 0.999;  // View3D's limits
-constexpr double max_bend =
-    3e-5;  ///< Largest distance of a quadrangle's corner from its plane, as a share of its size.
+/// Largest distance of a quadrangle's corner from its plane, as a share of its size.
+constexpr double max_bend = 3e-5;
 
 using Polygon = std::vector<Point>;
 

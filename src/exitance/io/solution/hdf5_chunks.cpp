@@ -19,8 +19,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t checksum_bytes = 4;
-constexpr std::size_t max_chunk_bytes =
-    1 << 20;  ///< Limit on the bytes of a chunk unpacked here: four times the size that is written.
+/// Limit on the bytes of a chunk unpacked here: four times the size that is written.
+constexpr std::size_t max_chunk_bytes = 1 << 20;
 
 /// Stores the first bytes of all items, then the second bytes, and so on.
 void shuffle(std::span<const std::byte> items, std::size_t item_bytes, std::byte* out) {

@@ -158,8 +158,8 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
             statistics.elements_by_level.push_back(static_cast<std::size_t>(std::max<std::int64_t>(0, count)));
     if (const std::string rooms = group + "/rooms"; file.has(rooms)) {
         const std::vector<double> values = file.read<double>(rooms, 3);
-        for (std::size_t i = 0; i + 2 < values.size();
-             i += 3)  // without references in the file, the means serve as references
+        // Without references in the file, the means serve as references.
+        for (std::size_t i = 0; i + 2 < values.size(); i += 3)
             statistics.rooms.push_back({values[i], values[i + 1], values[i + 2], values[i + 1]});
         if (const std::string references = group + "/room_references"; file.has(references)) {
             const std::vector<double> given = file.read<double>(references);

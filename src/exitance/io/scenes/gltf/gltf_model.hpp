@@ -83,8 +83,8 @@ struct GltfModel {
         std::string name;
         Colour base, emission;  ///< Factors times the means of their textures; emission in W/(m^2 sr).
         double metallic = 1;
-        double diffuse_transmission =
-            0;  ///< KHR_materials_diffuse_transmission: transmitted share of the light that leaves diffusely.
+        /// KHR_materials_diffuse_transmission: transmitted share of the light that leaves diffusely.
+        double diffuse_transmission = 0;
         double transmission = 0;  ///< KHR_materials_transmission: share of light that passes without scattering.
         bool double_sided = false, transparent = false;
         TextureUse base_texture, emission_texture;  ///< Set if textures were requested.

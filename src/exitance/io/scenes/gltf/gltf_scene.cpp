@@ -14,8 +14,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_triangles =
-    20'000'000;  ///< Limit for all instances together: a small file can create any number.
+/// Limit for all instances together: a small file can create any number.
+constexpr std::size_t max_triangles = 20'000'000;
 constexpr double max_reflectance = 0.95;
 
 /// Rotates Y up to Z up.

@@ -27,8 +27,8 @@ struct MtlExtras {
     };
     std::map<std::string, Glass> glass;
     std::map<std::string, MtlPictures> pictures;
-    std::map<std::string, std::shared_ptr<const TextureArea>>
-        read;  ///< Keyed by path, so that each picture is read once.
+    /// Keyed by path, so that each picture is read once.
+    std::map<std::string, std::shared_ptr<const TextureArea>> read;
 };
 
 /// Reads the materials of an MTL text and appends them to `materials` in order. `Kd` is the reflectance in [0, 1), `Ke`

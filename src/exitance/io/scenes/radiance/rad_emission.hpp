@@ -32,11 +32,11 @@ class RadEmission {
     RadFindings& findings_;
     const std::string& scene_file_;
     std::map<std::uint32_t, Lamp> lamps_;  ///< Keyed by pattern.
-    std::map<std::string, ProfileId>
-        by_words_;  ///< Keyed by the words of the pattern: copies of a lamp share its table.
+    /// Keyed by the words of the pattern: copies of a lamp share its table.
+    std::map<std::string, ProfileId> by_words_;
     std::map<std::array<std::int64_t, 4>, double> flux_;  ///< Keyed by profile and rounded normal.
-    std::map<std::array<std::int64_t, 14>, std::uint32_t>
-        by_turn_;  ///< Keyed by material, profile, rounded axes and normal.
+    /// Keyed by material, profile, rounded axes and normal.
+    std::map<std::array<std::int64_t, 14>, std::uint32_t> by_turn_;
 };
 
 }  // namespace exitance

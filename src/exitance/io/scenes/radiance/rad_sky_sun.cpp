@@ -26,8 +26,8 @@ double within(double value, double period) {
 
 /// Declination and solar time at a time of a given year [Michalsky88].
 SolarDay almanac_day(const RadSkyWords& in) {
-    const double days = julian_day({*in.year, in.month, in.day, in.hour, -in.meridian / 15}) -
-                        2451545;  // days since 2000-01-01 12:00 UT
+    // Days since 2000-01-01 12:00 UT.
+    const double days = julian_day({*in.year, in.month, in.day, in.hour, -in.meridian / 15}) - 2451545;
     const double mean_longitude = 280.460 + 0.9856474 * days, anomaly = (357.528 + 0.9856003 * days) * degree;
     const double longitude = (mean_longitude + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * degree;
     const double obliquity = (23.439 - 4e-7 * days) * degree;

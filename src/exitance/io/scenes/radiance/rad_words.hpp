@@ -19,9 +19,8 @@ class RadWords {
     /// Returns the rest of a command, after a word that begins with '!'. A backslash at the end of a line continues it.
     std::string rest_of_command();
     int line() const { return line_; }  ///< Line of the last word.
-    bool was_quoted() const {
-        return was_quoted_;
-    }  ///< The last word was quoted, so its first character has no special meaning.
+    /// The last word was quoted, so its first character has no special meaning.
+    bool was_quoted() const { return was_quoted_; }
     bool is_open_quote() const { return open_quote_; }  ///< The text ended within a quoted word.
 
   private:

@@ -35,8 +35,8 @@ void add_band(const std::vector<Point>& lower, const std::vector<Point>& upper, 
 }  // namespace
 
 Facets ring_facets(const Point& centre, const Normal& normal, double inner, double outer) {
-    const double wider =
-        std::sqrt(pi / (0.5 * n * std::sin(2 * pi / n)));  // makes the polygon's area that of the circle
+    // Makes the polygon's area that of the circle.
+    const double wider = std::sqrt(pi / (0.5 * n * std::sin(2 * pi / n)));
     const Frame frame(normal);
     if (inner <= 0) return {circle(centre, frame, wider * outer)};
     Facets out;
