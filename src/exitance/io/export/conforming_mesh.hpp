@@ -13,10 +13,11 @@ struct ConformingMesh {
     std::vector<bool> has_middle;
 };
 
-/// Makes a conforming mesh: merges corners that differ by a few units of single precision, adds the corners of the
-/// region's other polygons to each edge that they are on (with interpolated values), and removes polygons that become
-/// degenerate. Corners of other regions are ignored: where two walls meet they may be arbitrarily close, and a triangle
-/// between them would have an undefined normal. Expected O(n log n).
+/// Makes a conforming mesh in three steps. Corners that differ by a few units of single precision are merged. Each edge
+/// gets the corners of the region's other polygons that are on it, with interpolated values. Polygons that become
+/// degenerate are removed.
+/// Corners of other regions are ignored: where two walls meet they may be arbitrarily close, and a triangle between
+/// them would have an undefined normal. Expected O(n log n).
 ConformingMesh make_conforming(const ElementMesh& mesh);
 
 }  // namespace exitance

@@ -20,8 +20,8 @@ struct ProbePoints {
     std::size_t size() const { return points.size(); }
 };
 
-/// Reads probe points from a file, in batches. The file is CSV with the columns x,y,z,nx,ny,nz (in any order, among
-/// other columns), or has lines "x y z dx dy dz" if its name ends in .pts or its text begins with a number. "-" is
+/// Reads probe points from a file, in batches. A CSV file has the columns x,y,z,nx,ny,nz, in any order, among other
+/// columns. If the name ends in .pts or the text begins with a number, the file has lines "x y z dx dy dz". "-" is
 /// standard input. Normals are scaled to length 1; a normal without a direction is an error.
 class ProbeReader {
   public:

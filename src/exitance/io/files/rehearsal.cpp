@@ -27,7 +27,7 @@ unsigned max_wait_seconds(rlim_t seconds) {
 
 enum Outcome { went_well, failed, lacks_memory };  ///< Exit status of the copy.
 
-/// Limits the address space of this process to what it has mapped now plus `bytes`.
+/// Limits the address space of this process to its current size plus `bytes`.
 void limit_memory(std::size_t bytes) {
     std::size_t pages = 0;
     if (has_address_sanitizer || !(std::ifstream("/proc/self/statm") >> pages)) return;

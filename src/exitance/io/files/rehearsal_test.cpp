@@ -48,7 +48,7 @@ TEST(Rehearsal, EndsAtTheMemoryLimit) {
 
 TEST(Rehearsal, EndsAWaitingCopyAndReportsNothing) {
     const auto waits = [] {
-        // The alarm stands for the limit of elapsed time, most of which must be left.
+        // Replaces the limit of elapsed time by 1 s; almost all of the limit must be left.
         const unsigned seconds_left = ::alarm(1);
         if (seconds_left >= 40 && seconds_left <= 80) ::pause();
         return false;

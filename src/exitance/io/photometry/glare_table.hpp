@@ -7,8 +7,8 @@
 
 namespace exitance {
 
-/// A room of the standard table: its sizes at right angles to and along the line of sight, in units of the mounting
-/// height H above the eye, its reflectances, and the UGR of an observer in the middle of a wall, who looks along Y.
+/// A room of the standard table, with the UGR of an observer in the middle of a wall, whose line of sight is along Y.
+/// The sizes, across (X) and along (Y) the line of sight, are in units of the mounting height H above the eye.
 struct GlareTableRow {
     double x = 2, y = 2;
     double ceiling = 0.7, walls = 0.5, floor = 0.2;

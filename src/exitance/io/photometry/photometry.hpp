@@ -16,12 +16,12 @@ struct Opening {
     enum class Shape : std::uint8_t {
         point,
         rectangle,
-        ellipse,  ///< Or a circle.
+        ellipse,  ///< Ellipse or circle.
         box,
         cylinder_x,  ///< Cylinder along the luminaire's x axis; the other two sizes are its diameters.
         cylinder_y,  ///< Cylinder along y.
         cylinder_z,  ///< Cylinder along z.
-        ellipsoid,   ///< Or a sphere.
+        ellipsoid,   ///< Ellipsoid or sphere.
     };
     Shape shape = Shape::point;
     Vec3 size;  ///< Along the luminaire's x, y and z axes, metres.
@@ -48,7 +48,7 @@ struct Photometry {
     std::string symmetry;                                       ///< In words, for reports.
     std::vector<std::pair<std::string, std::string>> keywords;  ///< In the order of the file.
     int lamps = 1;
-    std::optional<double> lamp_lumens;          ///< Of all lamps together, lm; empty: absolute photometry.
+    std::optional<double> lamp_lumens;          ///< Total flux of the lamps, lm; empty: absolute photometry.
     double watts = 0;                           ///< 0: unknown.
     std::optional<double> stated_output_ratio;  ///< EULUMDAT's LORL, in [0, 1].
     Opening opening;

@@ -16,7 +16,7 @@ constexpr double lumens_per_watt = 179;  ///< Radiance's luminous efficacy of wh
 
 /// Sky and sun in the parameters of Perez' model.
 struct Perez {
-    double zenith_angle = 0;         ///< Of the sun, radians, at most pi / 2.
+    double zenith_angle = 0;         ///< Angle of the sun from the zenith, radians, at most pi / 2.
     int day = 0;                     ///< Day of the year, from 1.
     double water = 2;                ///< Precipitable water, cm.
     double diffuse = 0, direct = 0;  ///< Horizontal and normal irradiance, W/m^2.

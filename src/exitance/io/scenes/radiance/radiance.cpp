@@ -360,7 +360,7 @@ void RadianceReader::open_up() {
         for (const std::uint32_t c : d.faces[i].corners)
             (i >= bubble.first && i < bubble.last ? box : rest).add(d.points[c]);
     const Vec3 half = 0.5 * box.size();
-    // As shares of the radius: more than the deviation of facets from the sphere, and the limit of the scene inside.
+    // Shares of the radius: a limit for the deviation of facets from the sphere, and for the scene inside it.
     constexpr double ball = 1e-2, well_within = 0.9;
     const double radius = half.x;
     const bool is_ball = std::abs(half.y - radius) < ball * radius && std::abs(half.z - radius) < ball * radius;
