@@ -93,7 +93,7 @@ Mesh make_mesh(const Scene& scene, const LightMaps& light, const SceneTextures* 
 
 struct TextureLevels {
     double peak = 1;             ///< Value of the brightest colour of a texture, W/m^2.
-    std::vector<Spectrum> mean;  ///< Per material, W/m^2.
+    std::vector<Spectrum> mean;  ///< Mean irradiance per material, W/m^2.
 };
 
 TextureLevels find_levels(const Scene& scene, const LightMaps& light, const LightMaps& shown, const ToneMap& tone) {

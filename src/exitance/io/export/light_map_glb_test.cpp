@@ -79,7 +79,7 @@ TEST(LightMapModel, ReflectedLightFollowsTheTextureAndKeepsItsMean) {
     ASSERT_NEAR(s.scene.materials()[MaterialId(0)].reflectance[0], 0.5, 1e-12);
     ASSERT_NEAR(s.scene.material(floor).reflectance[0], 0.75, 0.02)
         << "the triangle's own part is white by three quarters";
-    // Its two triangles have separate colours, regions and charts.
+    // The floor's two triangles have separate colours, regions and charts.
     const auto read = [&](const LightMaps& maps, const Point& p) {
         const SurfaceId triangle(p.y > -0.5 * p.x ? 1 : 0);
         const Chart& chart = light.charts[s.scene.surfaces()[triangle].region.value];

@@ -7,10 +7,11 @@
 
 namespace exitance {
 
-/// A picture with one pixel per grid point, the first row at the bottom. Pixels of hidden points are empty.
+/// A picture with one pixel per grid point, the first row at the bottom. Pixels of points covered by objects are empty.
 Picture picture_of_points(const GridLight& light, const std::vector<double>& values);
 
-/// Interpolates such a picture bilinearly to a width of about `wanted` pixels. The cell around a hidden point is empty.
+/// Interpolates such a picture bilinearly to a width of about `wanted` pixels. The cell around a covered point is
+/// empty.
 Picture smooth_picture(const Picture& points, int wanted);
 
 /// A visible pixel with this irradiance in all bands.

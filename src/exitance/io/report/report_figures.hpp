@@ -24,8 +24,8 @@ struct ReportFigures {
     struct Grid {
         const GridLight* light;
         std::vector<double> values;  ///< One per point.
-        Levels levels;               ///< Statistics of the unoccluded points.
-        std::size_t hidden = 0;      ///< Number of occluded points.
+        Levels levels;               ///< Statistics of the points that no object covers.
+        std::size_t hidden = 0;      ///< Number of covered points.
     };
     std::vector<Face> faces;  ///< From the largest to the smallest.
     std::vector<MaterialUse> materials;

@@ -32,7 +32,7 @@ class CheckpointFile final : public CheckpointStore {
     bool is_due() const override;
     void keep(std::string dealt) override;
     std::string resumed() override { return std::exchange(state_, {}); }
-    /// Result of the last writing. If it failed, the checkpoint before is unchanged.
+    /// Result of the last keep(). If it failed, the previous checkpoint is unchanged.
     const Result<void>& written() const { return written_; }
     void remove() const;
 

@@ -12,7 +12,7 @@ namespace exitance {
 void write_sky(Hdf5Writer& file, const std::string& group, const DistantLight& light);
 DistantLight read_sky(Hdf5Reader& file, const std::string& group);
 
-/// Panes of glass, in the same way.
+/// Panes of glass of a scene; a data set is omitted if there are none. The reader validates everything that it returns.
 void write_panes(Hdf5Writer& file, const std::string& group, const std::vector<Pane>& panes);
 std::vector<Pane> read_panes(Hdf5Reader& file, const std::string& group);
 

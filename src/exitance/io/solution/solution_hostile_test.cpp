@@ -112,7 +112,7 @@ TEST(HostileSolutions, WithInvalidFansAreErrors) {
 }
 
 TEST(HostileSolutions, RepeatedlySplitSliversAreAccepted) {
-    // A solve that repeatedly halves thin triangles produces inaccurate areas.
+    // Triangles such as a solve makes by repeatedly halving thin ones, whose areas are inaccurate.
     Solution s = sample_solution();
     RandomStream random(3, Stream::mesh);
     s.indirect = sample_function(s.scene, 1, 0);
@@ -173,7 +173,7 @@ TEST(HostileSolutions, WithElementsOutsideTheSceneAreErrors) {
 }
 
 TEST(HostileSolutions, AreDarkAtNonFinitePoints) {
-    // Ray hits may be there in a damaged scene.
+    // In a damaged scene, rays may hit such points.
     const Solution s = sample_solution();
     const ElementLocator locator(s.indirect.tree, s.scene.regions().size());
     const double nan = std::numeric_limits<double>::quiet_NaN();
