@@ -15,11 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders whose numbers decide work.
+/// Folders in which numbers control the amount of work.
 const std::vector<std::string> deciding{"accuracy", "links", "methods", "reconstruct"};
 
-/// Parts of these that no solve goes through: what a picture, a light map, a standard or a study asks for stands with
-/// it; methods whose numbers are those of their papers; and forecasts.
+/// Exceptions, which no solve uses: pictures, light maps, standards and studies, whose numbers are next to the code;
+/// methods with the numbers of their papers; and forecasts.
 const std::vector<std::string> apart{"reconstruct/pictures/",
                                      "reconstruct/light_maps/",
                                      "reconstruct/glare/",
@@ -37,7 +37,7 @@ bool is_below(const std::vector<std::string>& places, const std::string& file) {
     return std::any_of(places.begin(), places.end(), [&](const std::string& p) { return file.starts_with(p); });
 }
 
-/// The numbers that nobody has to explain.
+/// True for numbers that need no explanation.
 bool is_plain(double value) {
     const std::vector<double> plain{0, 0.5, 1, 2, 4};
     return std::find(plain.begin(), plain.end(), value) != plain.end();
@@ -53,8 +53,8 @@ std::vector<double> literals(std::string line) {
     return out;
 }
 
-/// Places with a literal that decides work and has no home: neither in the table of calibrated numbers nor marked, on
-/// its line or in the comment right above, as "given by" mathematics, rounding or a source.
+/// Lines with a number that controls work but is neither in the table of calibrated numbers nor marked as "given by"
+/// mathematics, rounding or a source. The mark is on the line or in the comment directly above.
 std::vector<std::string> homeless_literals(const std::string& name, std::istream& in) {
     static const std::regex marker("//.*[gG]iven by ");
     std::vector<std::string> out;
@@ -73,7 +73,7 @@ std::vector<std::string> homeless_literals(const std::string& name, std::istream
 
 }  // namespace
 
-TEST(Literals, ThatDecideWorkStandInTheTable) {
+TEST(Literals, ThatControlWorkAreInTheTable) {
     const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     std::size_t files = 0;
     for (const std::string& folder : deciding)
@@ -89,7 +89,7 @@ TEST(Literals, ThatDecideWorkStandInTheTable) {
     EXPECT_GT(files, 20u);
 }
 
-TEST(Literals, AreFoundUnlessTheySayWhatTheyAreGivenBy) {
+TEST(Literals, AreFoundUnlessTheirOriginIsMarked) {
     const auto count = [](const std::string& code) {
         std::istringstream in(code);
         return homeless_literals("x.cpp", in).size();

@@ -196,8 +196,8 @@ TEST(RadSkyCommand, GendaylitPrintsSkiesOfNightHours) {
     EXPECT_TRUE(warnings("gendaylit 3 22 +5.75 -a 40 -W 50 40 -i 60").empty());
     EXPECT_EQ(warnings("gendaylit 3 22 +5.25 -a 40 -W 50 40 -i 60").size(), 1u);
     const double rising = numbers_after(output("gendaylit 3 22 +5.75 -a 40 -W 50 40 -i 60"), "skyfunc")[9];
-    EXPECT_NEAR(std::asin(rising) * 180 / pi, 0.125 * 15 * std::cos(40 * pi / 180),
-                0.05);  // daylight is from 6 to 6.25 h
+    // Daylight is from 6 to 6.25 h.
+    EXPECT_NEAR(std::asin(rising) * 180 / pi, 0.125 * 15 * std::cos(40 * pi / 180), 0.05);
 }
 
 TEST(RadSkyCommand, GendaylitSupportsGlobalLightAndDewPoint) {
